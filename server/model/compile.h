@@ -1,0 +1,28 @@
+/// From the tree that was written to the scene that it means.
+#pragma once
+
+#include "model/blueprint.h"
+#include "model/scene.h"
+#include "model/type_registry.h"
+
+namespace plab::model
+{
+
+struct CompileLimits
+{
+    std::size_t components = 1'000'000;
+    std::size_t errors = 100;  ///< reported at once; the rest are counted
+};
+
+/// Resolves types (loading plugins), ids, roles, groups, short forms, repeats and stage lists; checks every value.
+/// All errors are collected. `existing`: the scene that a fragment is added to; its ids can be referred to and not be
+/// defined again; the result then holds the fragment's components only.
+Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const SceneSpec* existing = nullptr,
+                          const CompileLimits& limits = {});
+
+/// The ids that `written` (an id, an alias, an object) stands for in a role with `facets` and `family`: the component
+/// itself, or the only fitting one inside an object. Reason on failure.
+Result<std::vector<std::string>> resolve_participant(const SceneSpec& scene, TypeSource& types, const std::string& written,
+                                                     const Role& role);
+
+}  // namespace plab::model

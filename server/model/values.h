@@ -1,0 +1,41 @@
+/// Text to values and back, with units, dimensions and rules.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/scene.h"
+#include "plab/schema.h"
+
+namespace plab::model
+{
+
+/// Parses `text` for `field`: numbers in SI or with a unit that fits ("30 deg", "5 cm", "60 rpm"), vectors by blanks.
+/// Refused: commas, locale decimals, NaN, infinity unless the field may be infinite, trailing text, a unit of another
+/// dimension. Applies check_value. The error carries only a reason.
+Result<Value> parse_value(std::string_view text, const Field& field);
+
+/// Checks type, finiteness and rules of a value made elsewhere; normalises directions and rotations in place.
+Result<void> check_value(Value& value, const Field& field);
+
+/// Text that parses back to the same bits (17 significant digits where needed), without unit.
+std::string format_value(const Value& value);
+
+/// Parses "1/240", "0.001", "2 ms": exact where it can be. Must be positive and finite.
+Result<StepLength> parse_step_length(std::string_view text);
+
+/// The shortest decimal text that reads back as the same double.
+std::string format_real(double value);
+
+/// Up to `most` names near to `wanted` (edit distance, case and last part considered), nearest first.
+std::vector<std::string> nearest_names(std::string_view wanted, const std::vector<std::string>& known, std::size_t most = 3);
+/// ", did you mean 'a' or 'b'?" or nothing.
+std::string did_you_mean(std::string_view wanted, const std::vector<std::string>& known);
+
+/// "velocity_factor" from "SetVelocityFactor" or "VelocityFactor".
+std::string field_name_of_setter(std::string_view setter);
+/// "SetVelocityFactor" from "velocity_factor".
+std::string setter_of_field_name(std::string_view field);
+
+}  // namespace plab::model

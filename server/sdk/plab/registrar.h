@@ -1,0 +1,254 @@
+/// How a plugin declares its component types: one call per type, commands bound to plain functions.
+///
+/// A command is a free function whose signature says what it reads (const X&) and writes (X&); the registrar derives
+/// the call and the access table from it. Functions take `Rows` (all rows of the phase, in id order) or one `Row`.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "plab/collision.h"
+#include "plab/context.h"
+#include "plab/dynamics.h"
+#include "plab/result.h"
+#include "plab/schema.h"
+#include "plab/shafts.h"
+#include "plab/stage.h"
+#include "plab/tables.h"
+#include "plab/wrenches.h"
+
+namespace plab
+{
+
+/// The rows of one component type in one world.
+class TableBase
+{
+public:
+    virtual ~TableBase() = default;
+    virtual void describe(Schema& schema) = 0;
+    virtual void* rows() = 0;
+};
+
+template <class T>
+class TableOf final : public TableBase
+{
+public:
+    void describe(Schema& schema) override { rows_.describe(schema); }
+    void* rows() override { return &rows_; }
+
+private:
+    T rows_;
+};
+
+/// Everything that a command may ask for. The host fills what the phase has; the rest is null.
+struct PhaseCall
+{
+    const StepContext* context = nullptr;
+    Rows rows;
+    Bodies* bodies = nullptr;
+    Shafts* shafts = nullptr;
+    Shapes* shapes = nullptr;
+    Materials* materials = nullptr;
+    Wrenches* wrenches = nullptr;             // Force
+    ShaftMotion* shaft_motion = nullptr;      // Couple
+    RatioGraph* ratios = nullptr;             // Connect
+    const ShaftReactions* reactions = nullptr;  // Finish
+    DynamicSystem* system = nullptr;          // Advance
+    ContactSink* contacts = nullptr;          // Detect
+    Trial* trial = nullptr;                   // Locate
+    Impact* impact = nullptr;                 // Respond
+    MassProperties* solid = nullptr;          // Measure
+};
+
+using Thunk = Result<void> (*)(const PhaseCall& call, void* table);
+
+struct Access
+{
+    std::string table;  ///< "Bodies", "Wrenches", ...
+    bool writes = false;
+};
+
+struct CommandInfo
+{
+    std::string name;  ///< as in blueprints: "CDetection/Handle"
+    Phase phase = Phase::Finish;
+    std::string doc;
+    Thunk run = nullptr;
+    std::vector<Access> access;
+};
+
+/// A component type, as declared by its plugin.
+struct TypeInfo
+{
+    std::string name;
+    std::string doc;
+    std::string family;  ///< what it can be exchanged within; the name without its last part unless stated
+    Facet facet = Facet::Component;
+    std::unique_ptr<TableBase> (*make)() = nullptr;
+    std::vector<CommandInfo> commands;
+
+    // The ladder's facts, for listings and for choosing.
+    int order = 0;             ///< order of convergence, where it has one
+    bool elementwise = false;  ///< solver: groups may be advanced together without changing a bit
+    bool local = false;        ///< resolution: rewinds the touched group only, not the whole world
+    bool locates = false;      ///< resolution: finds the time of an event inside the step
+    std::string cost;          ///< e.g. "4 force evaluations per step"
+    std::string limits;        ///< where it fails
+    std::string source;        ///< paper or book, with the equation
+};
+
+namespace detail
+{
+template <class A, class Table>
+struct Argument;
+
+#define PLAB_ARGUMENT(Type, member, label)                                                       \
+    template <class Table>                                                                        \
+    struct Argument<Type, Table>                                                                  \
+    {                                                                                             \
+        static Type get(const PhaseCall& c, Table&, Row) { return *c.member; }                    \
+        static void note(std::vector<Access>& out)                                                \
+        {                                                                                         \
+            out.push_back({label, !std::is_const_v<std::remove_reference_t<Type>>});              \
+        }                                                                                         \
+    }
+PLAB_ARGUMENT(const StepContext&, context, "StepContext");
+PLAB_ARGUMENT(Bodies&, bodies, "Bodies");
+PLAB_ARGUMENT(const Bodies&, bodies, "Bodies");
+PLAB_ARGUMENT(Shafts&, shafts, "Shafts");
+PLAB_ARGUMENT(const Shafts&, shafts, "Shafts");
+PLAB_ARGUMENT(Shapes&, shapes, "Shapes");
+PLAB_ARGUMENT(const Shapes&, shapes, "Shapes");
+PLAB_ARGUMENT(Materials&, materials, "Materials");
+PLAB_ARGUMENT(Wrenches&, wrenches, "Wrenches");
+PLAB_ARGUMENT(ShaftMotion&, shaft_motion, "ShaftMotion");
+PLAB_ARGUMENT(RatioGraph&, ratios, "RatioGraph");
+PLAB_ARGUMENT(const ShaftReactions&, reactions, "ShaftReactions");
+PLAB_ARGUMENT(DynamicSystem&, system, "DynamicSystem");
+PLAB_ARGUMENT(ContactSink&, contacts, "Contacts");
+PLAB_ARGUMENT(Trial&, trial, "Trial");
+PLAB_ARGUMENT(Impact&, impact, "Impact");
+PLAB_ARGUMENT(MassProperties&, solid, "MassProperties");
+#undef PLAB_ARGUMENT
+
+template <class Table>
+struct Argument<Rows, Table>
+{
+    static Rows get(const PhaseCall& c, Table&, Row) { return c.rows; }
+    static void note(std::vector<Access>&) {}
+};
+template <class Table>
+struct Argument<Row, Table>
+{
+    static Row get(const PhaseCall&, Table&, Row row) { return row; }
+    static void note(std::vector<Access>&) {}
+};
+template <class Table>
+struct Argument<Table&, Table>
+{
+    static Table& get(const PhaseCall&, Table& t, Row) { return t; }
+    static void note(std::vector<Access>& out) { out.push_back({"own", true}); }
+};
+template <class Table>
+struct Argument<const Table&, Table>
+{
+    static const Table& get(const PhaseCall&, Table& t, Row) { return t; }
+    static void note(std::vector<Access>& out) { out.push_back({"own", false}); }
+};
+
+template <auto F, class Table, class R, class... A>
+struct Command
+{
+    static constexpr bool kPerRow = (std::is_same_v<A, Row> || ...);
+
+    static Result<void> once(const PhaseCall& call, Table& table, Row row)
+    {
+        if constexpr (std::is_void_v<R>)
+        {
+            F(Argument<A, Table>::get(call, table, row)...);
+            return {};
+        }
+        else
+            return F(Argument<A, Table>::get(call, table, row)...);
+    }
+    static Result<void> run(const PhaseCall& call, void* rows)
+    {
+        Table& table = *static_cast<Table*>(rows);
+        if constexpr (!kPerRow) return once(call, table, kNoIndex);
+        for (const Row row : call.rows)
+            if (auto r = once(call, table, row); !r) return r;
+        return {};
+    }
+    static std::vector<Access> access()
+    {
+        std::vector<Access> out;
+        (Argument<A, Table>::note(out), ...);
+        return out;
+    }
+};
+
+template <auto F, class Table, class Signature = decltype(F)>
+struct CommandOf;
+template <auto F, class Table, class R, class... A>
+struct CommandOf<F, Table, R (*)(A...)> : Command<F, Table, R, A...>
+{
+};
+}  // namespace detail
+
+/// Adds commands and facts to a type just declared.
+template <class Table>
+class TypeBuilder
+{
+public:
+    explicit TypeBuilder(TypeInfo& info) : info_(&info) {}
+
+    template <auto F>
+    TypeBuilder& command(Phase phase, std::string name, std::string doc)
+    {
+        using C = detail::CommandOf<F, Table>;
+        info_->commands.push_back({std::move(name), phase, std::move(doc), &C::run, C::access()});
+        return *this;
+    }
+    /// A command that the host itself carries out (e.g. State/Restore); listed so that scenes can name it.
+    TypeBuilder& host_command(Phase phase, std::string name, std::string doc)
+    {
+        info_->commands.push_back({std::move(name), phase, std::move(doc), nullptr, {}});
+        return *this;
+    }
+    TypeBuilder& facet(Facet f) { return info_->facet = f, *this; }
+    TypeBuilder& family(std::string name) { return info_->family = std::move(name), *this; }
+    TypeBuilder& order(int p) { return info_->order = p, *this; }
+    TypeBuilder& elementwise() { return info_->elementwise = true, *this; }
+    TypeBuilder& local() { return info_->local = true, *this; }
+    TypeBuilder& locates() { return info_->locates = true, *this; }
+    TypeBuilder& cost(std::string text) { return info_->cost = std::move(text), *this; }
+    TypeBuilder& limits(std::string text) { return info_->limits = std::move(text), *this; }
+    TypeBuilder& source(std::string text) { return info_->source = std::move(text), *this; }
+
+private:
+    TypeInfo* info_;
+};
+
+/// Collects the types of one plugin.
+class Registrar
+{
+public:
+    template <class Table>
+    TypeBuilder<Table> component(std::string name, std::string doc)
+    {
+        TypeInfo& t = types_.emplace_back();
+        t.name = std::move(name), t.doc = std::move(doc);
+        t.family = t.name.substr(0, t.name.rfind('/'));
+        t.make = [] { return std::unique_ptr<TableBase>(std::make_unique<TableOf<Table>>()); };
+        return TypeBuilder<Table>(t);
+    }
+    std::deque<TypeInfo>& types() { return types_; }
+
+private:
+    std::deque<TypeInfo> types_;
+};
+
+}  // namespace plab

@@ -1,0 +1,198 @@
+/// The one declaration of a component type's fields and roles.
+///
+/// A table's describe(Schema&) states each column once; from it come parsing, checks, storage, memento, hash, requests,
+/// --expand, the catalogue and the reference manual.
+#pragma once
+
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "plab/column.h"
+#include "plab/unit.h"
+
+namespace plab
+{
+
+enum class FieldKind : std::uint8_t
+{
+    Param,    ///< from the blueprint; changed only by a request
+    State,    ///< evolves; has an initial value; in memento and hash, carried over in a swap
+    Output,   ///< computed by a step; published
+    Scratch,  ///< dies with the step
+};
+
+/// A condition on a value; `text` says it in words ("must be positive").
+struct Rule
+{
+    enum class Kind : std::uint8_t
+    {
+        AtLeast,     ///< every component >= bound
+        MoreThan,    ///< every component > bound
+        AtMost,      ///< every component <= bound
+        NonZero,     ///< a number other than 0, a vector other than the zero vector
+        UnitLength,  ///< a direction; normalised on reading, so only zero is refused
+        OneOf,       ///< a text out of a list
+    };
+    Kind kind;
+    double bound = 0;
+    std::vector<std::string> options;
+};
+
+struct Field
+{
+    std::string name;
+    FieldKind kind = FieldKind::Param;
+    FieldType type = FieldType::None;
+    Unit unit;
+    Value fallback;             ///< used where the blueprint gives none; no value: the field is required
+    bool required = false;
+    bool may_be_infinite = false;
+    bool hosted = false;        ///< lives in the host's table of the facet; the column only carries the initial value
+    bool is_error = false;      ///< an output that accounting reports as this interaction's error
+    std::vector<Rule> rules;
+    std::string doc;
+    ColumnBase* column = nullptr;
+};
+
+struct Role
+{
+    std::string name;
+    std::string doc;
+    std::vector<Facet> facets;
+    std::string family;         ///< for Facet::Component: the type prefix that fits, e.g. "Response/"
+    std::string default_type;   ///< the short form makes a sub-component of this type where none is named
+    std::size_t min = 1, max = 1;
+    bool writes = false;        ///< acts on the participant; else only reads it
+    bool exclusive = false;     ///< no second component may act on the participant through such a role
+    bool independent = false;   ///< acts on each participant by itself: connects them to nothing
+    Column<Ref>* one = nullptr;
+    Column<RefList>* many = nullptr;
+};
+
+/// Refines a field just declared. Reads as a sentence: param(...).or_else(1).positive().
+template <class T>
+class FieldBuilder
+{
+public:
+    explicit FieldBuilder(Field& field) : field_(&field) {}
+    FieldBuilder& or_else(T value) { return field_->fallback = Value(std::in_place_type<T>, std::move(value)), field_->required = false, *this; }
+    FieldBuilder& initially(T value) { return or_else(std::move(value)); }
+    FieldBuilder& positive() { return rule({Rule::Kind::MoreThan, 0, {}}); }
+    FieldBuilder& not_negative() { return rule({Rule::Kind::AtLeast, 0, {}}); }
+    FieldBuilder& at_least(double bound) { return rule({Rule::Kind::AtLeast, bound, {}}); }
+    FieldBuilder& at_most(double bound) { return rule({Rule::Kind::AtMost, bound, {}}); }
+    FieldBuilder& nonzero() { return rule({Rule::Kind::NonZero, 0, {}}); }
+    FieldBuilder& unit_length() { return rule({Rule::Kind::UnitLength, 0, {}}); }
+    FieldBuilder& one_of(std::vector<std::string> options) { return rule({Rule::Kind::OneOf, 0, std::move(options)}); }
+    FieldBuilder& may_be_infinite() { return field_->may_be_infinite = true, *this; }
+    /// The host keeps the live value (Bodies, Shafts) under this name; see Facet fields in server/docs/notation.md.
+    FieldBuilder& hosted() { return field_->hosted = true, *this; }
+    FieldBuilder& reported_as_error() { return field_->is_error = true, *this; }
+
+private:
+    FieldBuilder& rule(Rule r) { return field_->rules.push_back(std::move(r)), *this; }
+    Field* field_;
+};
+
+class RoleBuilder
+{
+public:
+    explicit RoleBuilder(Role& role) : role_(&role) {}
+    RoleBuilder& optional() { return role_->min = 0, *this; }
+    RoleBuilder& at_least(std::size_t n) { return role_->min = n, *this; }
+    RoleBuilder& writes() { return role_->writes = true, *this; }
+    RoleBuilder& exclusive() { return role_->exclusive = true, *this; }
+    RoleBuilder& independent() { return role_->independent = true, *this; }
+    RoleBuilder& family(std::string prefix) { return role_->family = std::move(prefix), *this; }
+    RoleBuilder& default_type(std::string type) { return role_->default_type = std::move(type), *this; }
+
+private:
+    Role* role_;
+};
+
+/// Collects what describe() declares. Names are snake_case and unique within a type, roles included.
+class Schema
+{
+public:
+    /// A parameter; required unless or_else gives a default.
+    template <class T>
+    FieldBuilder<T> param(Column<T>& column, std::string name, Unit unit, std::string doc)
+    {
+        return add<T>(FieldKind::Param, column, std::move(name), unit, std::move(doc), true);
+    }
+    /// A state; starts from T{} unless initially() says otherwise, and is settable in the blueprint.
+    template <class T>
+    FieldBuilder<T> state(Column<T>& column, std::string name, Unit unit, std::string doc)
+    {
+        return add<T>(FieldKind::State, column, std::move(name), unit, std::move(doc), false);
+    }
+    template <class T>
+    FieldBuilder<T> output(Column<T>& column, std::string name, Unit unit, std::string doc)
+    {
+        return add<T>(FieldKind::Output, column, std::move(name), unit, std::move(doc), false);
+    }
+    /// Working memory or an opaque object of the plugin; no text form.
+    template <class T>
+    void scratch(Column<T>& column, std::string name, std::string doc)
+    {
+        add<T>(FieldKind::Scratch, column, std::move(name), unit::one, std::move(doc), false);
+    }
+    RoleBuilder role(Column<Ref>& column, std::string name, std::vector<Facet> facets, std::string doc)
+    {
+        Role& r = roles_.emplace_back();
+        r.name = std::move(name), r.facets = std::move(facets), r.doc = std::move(doc), r.one = &column;
+        return RoleBuilder(r);
+    }
+    RoleBuilder role(Column<RefList>& column, std::string name, std::vector<Facet> facets, std::string doc)
+    {
+        Role& r = roles_.emplace_back();
+        r.name = std::move(name), r.facets = std::move(facets), r.doc = std::move(doc), r.many = &column;
+        r.max = std::numeric_limits<std::size_t>::max();
+        return RoleBuilder(r);
+    }
+
+    const std::deque<Field>& fields() const { return fields_; }
+    const std::deque<Role>& roles() const { return roles_; }
+    const Field* find_field(std::string_view name) const
+    {
+        for (const Field& f : fields_)
+            if (f.name == name) return &f;
+        return nullptr;
+    }
+    const Role* find_role(std::string_view name) const
+    {
+        for (const Role& r : roles_)
+            if (r.name == name) return &r;
+        return nullptr;
+    }
+    /// All columns, roles' included, for sizing them together.
+    std::vector<ColumnBase*> columns() const
+    {
+        std::vector<ColumnBase*> out;
+        for (const Field& f : fields_) out.push_back(f.column);
+        for (const Role& r : roles_) out.push_back(r.one ? static_cast<ColumnBase*>(r.one) : r.many);
+        return out;
+    }
+
+private:
+    template <class T>
+    FieldBuilder<T> add(FieldKind kind, Column<T>& column, std::string name, Unit unit, std::string doc, bool required)
+    {
+        Field& f = fields_.emplace_back();
+        f.name = std::move(name), f.kind = kind, f.type = kFieldTypeOf<T>, f.unit = unit, f.doc = std::move(doc);
+        f.column = &column, f.required = required;
+        if constexpr (kIsField<T>)
+            if (!required) f.fallback = Value(std::in_place_type<T>);
+        return FieldBuilder<T>(f);
+    }
+
+    // Deques: builders and the host keep pointers to elements.
+    std::deque<Field> fields_;
+    std::deque<Role> roles_;
+};
+
+}  // namespace plab

@@ -1,0 +1,185 @@
+/// Host tables: what components meet on. One array per field; an index is a Ref's index and stays valid while the
+/// component lives. The world owns them; phase functions see them as const or not, as their signature says.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "plab/ref.h"
+#include "plab/vector.h"
+
+namespace plab
+{
+
+enum class Motion : std::uint8_t
+{
+    Static,     ///< never moves
+    Kinematic,  ///< moves with the velocity it was given; nothing pushes it
+    Dynamic,    ///< moves by forces
+};
+
+/// Rigid bodies in space. Frames: W world, B the body's frame as authored, C its centre of mass with B's axes.
+/// Angular momentum is the state of a dynamic body's rotation; its angular velocity follows from it
+/// (see refresh_spin), so that free rotation keeps its momentum to the last bit.
+struct Bodies
+{
+    std::vector<Motion> motion;
+    std::vector<Vec3> position;          ///< p_WC, m
+    std::vector<Quat> orientation;       ///< q_WB
+    std::vector<Vec3> velocity;          ///< v_WC, m/s
+    std::vector<Vec3> angular_velocity;  ///< w_WB in W, rad/s
+    std::vector<Vec3> angular_momentum;  ///< about C, in W, N m s; dynamic bodies only
+    std::vector<double> mass;            ///< kg
+    std::vector<double> inverse_mass;    ///< 1/kg; 0 unless dynamic
+    std::vector<Mat3> inertia_B;         ///< about C, in B, kg m^2
+    std::vector<Mat3> inverse_inertia_B; ///< 0 unless dynamic
+    std::vector<Vec3> center_B;          ///< p_BC, m
+    std::vector<std::uint32_t> material; ///< index into Materials
+    std::vector<RefList> shapes;         ///< Facet::Shape
+
+    std::size_t size() const { return motion.size(); }
+    bool dynamic(std::uint32_t i) const { return motion[i] == Motion::Dynamic; }
+    /// X_WB, the frame as authored.
+    Pose pose(std::uint32_t i) const { return {position[i] - rotate(orientation[i], center_B[i]), orientation[i]}; }
+    /// Velocity of the point of body i that is at p_W.
+    Vec3 velocity_at(std::uint32_t i, const Vec3& p_W) const
+    {
+        return velocity[i] + cross(angular_velocity[i], p_W - position[i]);
+    }
+    /// Inverse inertia about C in W.
+    Mat3 inverse_inertia_W(std::uint32_t i) const
+    {
+        const Mat3 R = rotation_matrix(orientation[i]);
+        return R * inverse_inertia_B[i] * transposed(R);
+    }
+    /// w from L: w = R I_B^-1 R^T L.
+    void refresh_spin(std::uint32_t i)
+    {
+        const Mat3 R = rotation_matrix(orientation[i]);
+        angular_velocity[i] = R * (inverse_inertia_B[i] * transposed_times(R, angular_momentum[i]));
+    }
+    /// L from w, after w was set.
+    void refresh_momentum(std::uint32_t i)
+    {
+        const Mat3 R = rotation_matrix(orientation[i]);
+        angular_momentum[i] = R * (inertia_B[i] * transposed_times(R, angular_velocity[i]));
+    }
+    /// An impulse j (N s) at p_W; nothing happens to a body that is not dynamic.
+    void apply_impulse(std::uint32_t i, const Vec3& j, const Vec3& p_W)
+    {
+        if (!dynamic(i)) return;
+        velocity[i] += j * inverse_mass[i];
+        angular_momentum[i] += cross(p_W - position[i], j);
+        refresh_spin(i);
+    }
+    double kinetic_energy(std::uint32_t i) const
+    {
+        return dynamic(i) ? 0.5 * mass[i] * length_squared(velocity[i]) + 0.5 * dot(angular_momentum[i], angular_velocity[i]) : 0.0;
+    }
+};
+
+/// Shafts: one degree of freedom about an axle that is fixed in W.
+struct Shafts
+{
+    std::vector<Motion> motion;
+    std::vector<double> angle;            ///< rad, never wrapped
+    std::vector<double> speed;            ///< rad/s
+    std::vector<double> inertia;          ///< about the axle, kg m^2
+    std::vector<double> inverse_inertia;  ///< 0 unless dynamic
+    std::vector<Pose> axle;               ///< X_WA: origin on the axle, z along it, at angle 0; m
+    std::vector<RefList> shapes;          ///< for drawing
+
+    std::size_t size() const { return motion.size(); }
+    bool dynamic(std::uint32_t i) const { return motion[i] == Motion::Dynamic; }
+    Vec3 axis_W(std::uint32_t i) const { return rotate(axle[i].q, Vec3{0, 0, 1}); }
+    double kinetic_energy(std::uint32_t i) const { return dynamic(i) ? 0.5 * inertia[i] * speed[i] * speed[i] : 0.0; }
+};
+
+/// Volume, centre and inertia of a solid of density 1 kg/m^3, in the shape's parent (body) frame.
+struct MassProperties
+{
+    double mass = 0;  ///< kg (= volume at density 1)
+    Vec3 center;      ///< m
+    Mat3 inertia;     ///< about the centre, kg m^2
+};
+
+enum class GeometryKind : std::uint8_t
+{
+    None,
+    Sphere,
+    Box,
+    Plane,
+    Mesh,  ///< triangles for drawing and integration; collides as its convex hull where `hull_collides`
+};
+
+struct Geometry
+{
+    GeometryKind kind = GeometryKind::None;
+    Pose pose;                            ///< X_BS of the shape in its body
+    Vec3 size;                            ///< sphere: x = radius; box: half extents; plane: nothing (normal is z of S)
+    std::vector<Vec3> vertices;           ///< mesh, in S, m
+    std::vector<std::uint32_t> triangles; ///< mesh: index triples, counter-clockwise seen from outside
+    bool hull_collides = false;
+};
+
+/// Shapes, shared by reference: several bodies may name one.
+struct Shapes
+{
+    std::vector<Geometry> geometry;
+    std::vector<MassProperties> solid;       ///< by Shape/VolumeIntegration; valid where unmeasurable is empty
+    std::vector<std::string> unmeasurable;   ///< why there are no mass properties ("mesh is open at edge 3-7")
+    std::size_t size() const { return geometry.size(); }
+};
+
+struct SurfaceLaw
+{
+    double friction = 0;     ///< Coulomb coefficient, 1
+    double restitution = 0;  ///< Newton's coefficient, 0..1
+};
+
+/// Named materials and the laws between pairs of them (Material/Pair).
+class Materials
+{
+public:
+    /// The index of a name; the empty name is 0, a body without material.
+    std::uint32_t intern(const std::string& name);
+    void clear_pairs() { pairs_.clear(); }
+    /// Sets the law for a pair, in either order. False if another component set it already.
+    bool add_pair(std::uint32_t a, std::uint32_t b, const SurfaceLaw& law);
+    /// The law of a pair, or null: then the response's own parameters hold.
+    const SurfaceLaw* find_pair(std::uint32_t a, std::uint32_t b) const;
+
+private:
+    struct Pair
+    {
+        std::uint32_t a = 0, b = 0;
+        SurfaceLaw law;
+    };
+    std::vector<std::string> names_{""};
+    std::vector<Pair> pairs_;
+};
+
+inline std::uint32_t Materials::intern(const std::string& name)
+{
+    for (std::uint32_t i = 0; i < names_.size(); ++i)
+        if (names_[i] == name) return i;
+    names_.push_back(name);
+    return static_cast<std::uint32_t>(names_.size() - 1);
+}
+
+inline bool Materials::add_pair(std::uint32_t a, std::uint32_t b, const SurfaceLaw& law)
+{
+    if (find_pair(a, b)) return false;
+    pairs_.push_back({a, b, law});
+    return true;
+}
+
+inline const SurfaceLaw* Materials::find_pair(std::uint32_t a, std::uint32_t b) const
+{
+    for (const Pair& p : pairs_)
+        if ((p.a == a && p.b == b) || (p.a == b && p.b == a)) return &p.law;
+    return nullptr;
+}
+
+}  // namespace plab

@@ -1,0 +1,64 @@
+/// Where forces go: one sum per body and shaft, and the power of each force component for the energy ledger.
+#pragma once
+
+#include <vector>
+
+#include "plab/ref.h"
+#include "plab/tables.h"
+
+namespace plab
+{
+
+/// Sums of forces and torques of one solver stage. Phase::Force functions add; the host clears and reads.
+class Wrenches
+{
+public:
+    std::vector<Vec3> force;           ///< N, in W, per body
+    std::vector<Vec3> torque;          ///< N m about C, in W, per body
+    std::vector<double> shaft_torque;  ///< N m about the axle, per shaft
+
+    Wrenches() = default;
+    Wrenches(const Bodies& bodies, const Shafts& shafts) : bodies_(&bodies), shafts_(&shafts) {}
+
+    /// Names the component (directory index) that the following additions belong to. To be called before the first one.
+    void begin(std::uint32_t component) { current_ = component; }
+
+    /// A force through the centre of mass.
+    void add_force(Ref body, const Vec3& f_W)
+    {
+        force[body.index] += f_W;
+        account(dot(f_W, bodies_->velocity[body.index]));
+    }
+    /// A force at a point of the body.
+    void add_force_at(Ref body, const Vec3& f_W, const Vec3& p_W)
+    {
+        const Vec3 t = cross(p_W - bodies_->position[body.index], f_W);
+        force[body.index] += f_W;
+        torque[body.index] += t;
+        account(dot(f_W, bodies_->velocity[body.index]) + dot(t, bodies_->angular_velocity[body.index]));
+    }
+    void add_torque(Ref body, const Vec3& t_W)
+    {
+        torque[body.index] += t_W;
+        account(dot(t_W, bodies_->angular_velocity[body.index]));
+    }
+    void add_shaft_torque(Ref shaft, double t)
+    {
+        shaft_torque[shaft.index] += t;
+        account(t * shafts_->speed[shaft.index]);
+    }
+
+    /// Power by component, W; null while nobody accounts (trial steps).
+    std::vector<double>* power = nullptr;
+
+private:
+    void account(double watts)
+    {
+        if (power) (*power)[current_] += watts;
+    }
+    const Bodies* bodies_ = nullptr;
+    const Shafts* shafts_ = nullptr;
+    std::uint32_t current_ = 0;
+};
+
+}  // namespace plab
