@@ -1,0 +1,15 @@
+# One set of flags for everything. Determinism (server/docs/determinism.md): no contraction of products and sums, no
+# fast-math, and the mathematical functions come from the host's libm instead of from the compiler.
+add_library(plab_flags INTERFACE)
+target_compile_options(plab_flags INTERFACE
+  -ffp-contract=off -fno-math-errno
+  -fno-builtin-sin -fno-builtin-cos -fno-builtin-tan -fno-builtin-asin -fno-builtin-acos -fno-builtin-atan
+  -fno-builtin-atan2 -fno-builtin-exp -fno-builtin-log -fno-builtin-pow
+  -Wall -Wextra -Wconversion -Wshadow)
+if(PLAB_WARNINGS_AS_ERRORS)
+  target_compile_options(plab_flags INTERFACE -Werror)
+endif()
+if(PLAB_SANITIZE)
+  target_compile_options(plab_flags INTERFACE -fsanitize=${PLAB_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(plab_flags INTERFACE -fsanitize=${PLAB_SANITIZE})
+endif()

@@ -1,0 +1,13 @@
+# plab_plugin(NAME sources... [LINK libraries...]): a plugin in build/lib/plab with its manifest, the list of types by
+# which it is found without loading it. A plugin sees the SDK and its own third party, nothing else of pLab.
+function(plab_plugin name)
+  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
+  add_library(plugin_${name} MODULE ${arg_UNPARSED_ARGUMENTS})
+  target_link_libraries(plugin_${name} PRIVATE plab_sdk ${arg_LINK})
+  target_include_directories(plugin_${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  set_target_properties(plugin_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${PLAB_PLUGIN_DIR})
+  add_custom_command(TARGET plugin_${name} POST_BUILD
+    COMMAND plab-manifest $<TARGET_FILE:plugin_${name}> ${PLAB_PLUGIN_DIR}/${name}.manifest VERBATIM)
+  add_dependencies(plugin_${name} plab-manifest)
+  set_property(GLOBAL APPEND PROPERTY PLAB_PLUGINS plugin_${name})
+endfunction()
