@@ -44,6 +44,8 @@ class ContactSink
 public:
     virtual ~ContactSink() = default;
     virtual std::span<const StandingPair> standing() const = 0;
+    /// Only the standing pairs are asked for: no broad phase is needed (trial times of one pair).
+    virtual bool only_standing() const { return false; }
     /// normal from a to b; a and b in the order in which `precedes` says they stand.
     virtual void add(const Contact& contact) = 0;
     /// The order of two bodies by component id: pairs must be formed in it *before* a library computes contacts.

@@ -43,6 +43,12 @@ private:
     T rows_;
 };
 
+/// What Phase::Potential fills: the energy that a component stores at the present state.
+struct StoredEnergy
+{
+    double joule = 0;
+};
+
 /// Everything that a command may ask for. The host fills what the phase has; the rest is null.
 struct PhaseCall
 {
@@ -61,6 +67,7 @@ struct PhaseCall
     Trial* trial = nullptr;                   // Locate
     Impact* impact = nullptr;                 // Respond
     MassProperties* solid = nullptr;          // Measure
+    StoredEnergy* stored = nullptr;           // Potential
 };
 
 using Thunk = Result<void> (*)(const PhaseCall& call, void* table);
@@ -132,6 +139,7 @@ PLAB_ARGUMENT(ContactSink&, contacts, "Contacts");
 PLAB_ARGUMENT(Trial&, trial, "Trial");
 PLAB_ARGUMENT(Impact&, impact, "Impact");
 PLAB_ARGUMENT(MassProperties&, solid, "MassProperties");
+PLAB_ARGUMENT(StoredEnergy&, stored, "StoredEnergy");
 #undef PLAB_ARGUMENT
 
 template <class Table>

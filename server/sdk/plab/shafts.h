@@ -35,6 +35,9 @@ class ShaftMotion
 {
 public:
     virtual ~ShaftMotion() = default;
+    /// Names the component (directory index) that the following calls belong to, and the shaft that it drives: what it
+    /// applies to that one is its reaction. To be called before the first of them.
+    virtual void begin(std::uint32_t component, Ref driven) = 0;
     /// rad/s^2 or rad/s.
     virtual double rate(Ref shaft) const = 0;
     /// 1/(kg m^2): change of the rate per unit of torque (impulse); 0 for prescribed motion.

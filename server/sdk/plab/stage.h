@@ -31,6 +31,7 @@ enum class Phase : std::uint8_t
     Locate,   ///< PostStep: choose trial times within a step that holds an event
     Respond,  ///< PostStep: apply impulses to touching bodies
     Finish,   ///< PostStep: outputs and history of a finished step
+    Potential,  ///< PostStep: energy stored by a conservative force; asked for when somebody reads energies
     Draw,     ///< PostStep: show; never changes state
     Restore,  ///< Rewind: participant's saved state comes back (done by the host; listed so that scenes can select it)
 };
@@ -61,7 +62,7 @@ constexpr std::string_view name_of(Stage stage)
 constexpr std::string_view name_of(Phase phase)
 {
     constexpr std::string_view names[] = {"measure", "prepare", "connect", "drive",  "force",   "couple", "advance",
-                                          "detect",  "locate",  "respond", "finish", "draw", "restore"};
+                                          "detect",  "locate",  "respond", "finish", "potential", "draw", "restore"};
     return names[static_cast<int>(phase)];
 }
 

@@ -89,6 +89,11 @@ struct Shafts
     std::vector<double> inverse_inertia;  ///< 0 unless dynamic
     std::vector<Pose> axle;               ///< X_WA: origin on the axle, z along it, at angle 0; m
     std::vector<RefList> shapes;          ///< for drawing
+    // Written by the host's constraint graph: angle = anchor + ratio * (angle of root - root_anchor).
+    std::vector<std::uint32_t> root;      ///< the shaft that carries the motion; itself where nothing joins it
+    std::vector<double> ratio;            ///< turns per turn of root; 1 where nothing joins it
+    std::vector<double> anchor;           ///< rad, own angle when it was joined
+    std::vector<double> root_anchor;      ///< rad, the root's angle then
 
     std::size_t size() const { return motion.size(); }
     bool dynamic(std::uint32_t i) const { return motion[i] == Motion::Dynamic; }

@@ -1,6 +1,7 @@
 /// Where forces go: one sum per body and shaft, and the power of each force component for the energy ledger.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "plab/ref.h"
@@ -19,6 +20,7 @@ public:
 
     Wrenches() = default;
     Wrenches(const Bodies& bodies, const Shafts& shafts) : bodies_(&bodies), shafts_(&shafts) {}
+    void bind(const Bodies& bodies, const Shafts& shafts) { bodies_ = &bodies, shafts_ = &shafts; }
 
     /// Names the component (directory index) that the following additions belong to. To be called before the first one.
     void begin(std::uint32_t component) { current_ = component; }
@@ -27,7 +29,7 @@ public:
     void add_force(Ref body, const Vec3& f_W)
     {
         force[body.index] += f_W;
-        account(dot(f_W, bodies_->velocity[body.index]));
+        if (accounted(body)) account(dot(f_W, bodies_->velocity[body.index]));
     }
     /// A force at a point of the body.
     void add_force_at(Ref body, const Vec3& f_W, const Vec3& p_W)
@@ -35,27 +37,31 @@ public:
         const Vec3 t = cross(p_W - bodies_->position[body.index], f_W);
         force[body.index] += f_W;
         torque[body.index] += t;
-        account(dot(f_W, bodies_->velocity[body.index]) + dot(t, bodies_->angular_velocity[body.index]));
+        if (accounted(body)) account(dot(f_W, bodies_->velocity[body.index]) + dot(t, bodies_->angular_velocity[body.index]));
     }
     void add_torque(Ref body, const Vec3& t_W)
     {
         torque[body.index] += t_W;
-        account(dot(t_W, bodies_->angular_velocity[body.index]));
+        if (accounted(body)) account(dot(t_W, bodies_->angular_velocity[body.index]));
     }
     void add_shaft_torque(Ref shaft, double t)
     {
         shaft_torque[shaft.index] += t;
-        account(t * shafts_->speed[shaft.index]);
+        if (accounted(shaft)) account(t * shafts_->speed[shaft.index]);
     }
 
     /// Power by component, W; null while nobody accounts (trial steps).
     std::vector<double>* power = nullptr;
+    /// Whose power counts: participants outside what is advanced take no part in the ledger. Empty: all.
+    std::span<const std::uint8_t> accounted_bodies, accounted_shafts;
 
 private:
-    void account(double watts)
+    bool accounted(Ref r) const
     {
-        if (power) (*power)[current_] += watts;
+        const auto& who = r.facet == Facet::Body ? accounted_bodies : accounted_shafts;
+        return power && (who.empty() || who[r.index] != 0);
     }
+    void account(double watts) { (*power)[current_] += watts; }
     const Bodies* bodies_ = nullptr;
     const Shafts* shafts_ = nullptr;
     std::uint32_t current_ = 0;

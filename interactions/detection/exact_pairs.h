@@ -1,0 +1,21 @@
+/// Closed forms for the pairs of shapes that have one; right to rounding.
+#pragma once
+
+#include "narrow.h"
+
+namespace plab::detection
+{
+
+/// depth = r_a + r_b - |c_b - c_a|.
+void sphere_sphere(double radius_a, const Vec3& a, double radius_b, const Vec3& b, Touches& out);
+/// depth = r - n . (c - p); the plane's solid side is below n.
+void sphere_plane(double radius, const Vec3& center, const Pose& X_plane, Touches& out);
+/// depth = r - |c - nearest point|, or r + distance to the nearest face with the centre inside.
+void sphere_box(double radius, const Vec3& center, const Vec3& half, const Pose& X_box, Touches& out);
+void sphere_hull(double radius, const Vec3& center, const Hull& hull, const Pose& X_hull, Touches& out);
+/// Every corner below the plane; depth = -n . (corner - p).
+void box_plane(const Vec3& half, const Pose& X_box, const Pose& X_plane, Touches& out);
+/// The deepest vertex, and the outermost ones below the plane in 8 directions.
+void hull_plane(const Hull& hull, const Pose& X_hull, const Pose& X_plane, Touches& out);
+
+}  // namespace plab::detection

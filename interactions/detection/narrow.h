@@ -1,0 +1,47 @@
+/// Two shapes at two poses: where they touch and how deep.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "collider.h"
+
+namespace plab::detection
+{
+
+/// One point of contact; normal from the first shape to the second.
+struct Touch
+{
+    Vec3 point;                 ///< m, half way between the two surfaces
+    Vec3 normal;                ///< unit
+    double depth = 0;           ///< m, > 0
+    std::uint32_t feature = 0;  ///< which corner or edge, < kFeatures; stable while the same ones touch
+};
+
+inline constexpr std::uint32_t kFeatures = 1u << 20;
+
+/// Up to kCapacity points between two shapes.
+class Touches
+{
+public:
+    static constexpr std::size_t kCapacity = 16;
+    void clear() { count_ = 0; }
+    /// Keeps points that overlap, as far as there is room.
+    void add(const Touch& touch)
+    {
+        if (touch.depth > 0 && count_ < kCapacity)
+            touches_[count_++] = touch;
+    }
+    std::span<Touch> all() { return {touches_.data(), count_}; }
+    std::span<const Touch> all() const { return {touches_.data(), count_}; }
+
+private:
+    std::array<Touch, kCapacity> touches_{};
+    std::size_t count_ = 0;
+};
+
+/// Adds the points where `a` at X_a and `b` at X_b overlap. Both poses are relative to an origin near by, so that
+/// distances keep their digits far from the origin of W. The answer depends on nothing but the arguments.
+void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out);
+
+}  // namespace plab::detection

@@ -1,0 +1,66 @@
+/// Picks the few points of contact that matter out of many.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "narrow.h"
+
+namespace plab::detection
+{
+
+/// Keeps the deepest point and the outermost one in each of 8 directions across the normal: what holds a body upright.
+class Spread
+{
+public:
+    explicit Spread(const Vec3& normal) : t1_(any_perpendicular(normal)), t2_(cross(normal, t1_)) {}
+
+    void offer(const Touch& touch)
+    {
+        constexpr double kDiagonal = 0.70710678118654752;
+        constexpr std::array<std::array<double, 2>, 4> kAxes{
+            {{1, 0}, {kDiagonal, kDiagonal}, {0, 1}, {-kDiagonal, kDiagonal}}};
+        if (!(touch.depth > 0))
+            return;
+        const double x = dot(t1_, touch.point), y = dot(t2_, touch.point);
+        for (std::size_t k = 0; k < kAxes.size(); ++k)
+        {
+            const double along = kAxes[k][0] * x + kAxes[k][1] * y;
+            keep(2 * k, along, touch);
+            keep(2 * k + 1, -along, touch);
+        }
+        keep(kDeepest, touch.depth, touch);
+        any_ = true;
+    }
+    double deepest() const { return any_ ? best_[kDeepest].value : 0.0; }
+    /// Adds what was kept, each feature once, in the order of features.
+    void take(Touches& out)
+    {
+        if (!any_)
+            return;
+        std::sort(best_.begin(), best_.end(),
+                  [](const Best& a, const Best& b) { return a.touch.feature < b.touch.feature; });
+        for (std::size_t i = 0; i < best_.size(); ++i)
+            if (i == 0 || best_[i].touch.feature != best_[i - 1].touch.feature)
+                out.add(best_[i].touch);
+    }
+
+private:
+    static constexpr std::size_t kDeepest = 8;
+    struct Best
+    {
+        double value = 0;
+        Touch touch;
+    };
+    void keep(std::size_t k, double value, const Touch& touch)
+    {
+        if (!any_ || value > best_[k].value)
+            best_[k] = {value, touch};
+    }
+
+    Vec3 t1_, t2_;
+    bool any_ = false;
+    std::array<Best, 9> best_{};
+};
+
+}  // namespace plab::detection

@@ -1,0 +1,44 @@
+#include "bisection.h"
+
+#include <algorithm>
+
+namespace plab::resolution
+{
+
+void accept_end(const StepContext&, Row, const NoneRows&, Trial& trial)
+{
+    trial.decision = Trial::Decision::Accept;
+}
+
+void BisectionRows::describe(Schema& s)
+{
+    s.param(time_tolerance, "time_tolerance", unit::second,
+            "length of the bracket at which the time counts as found; never less than 2^-48 of the step")
+        .or_else(1e-15)
+        .not_negative();
+    s.param(max_iterations, "max_iterations", unit::one, "trials per impact before giving up").or_else(60).positive();
+}
+
+void bisect(const StepContext& context, Row row, const BisectionRows& rows, Trial& trial)
+{
+    // Below 2^-48 of the step the time itself has hardly a bit left to choose.
+    const double tolerance = std::max(rows.time_tolerance[row], 0x1p-48 * trial.step);
+    const double length = trial.end - trial.begin;
+    const double middle = trial.begin + 0.5 * length;
+    trial.decision = Trial::Decision::Accept;
+    if (length <= tolerance || !(middle > trial.begin && middle < trial.end))
+        return;
+    if (trial.iteration < rows.max_iterations[row])
+    {
+        trial.decision = Trial::Decision::Try;
+        trial.next = middle;
+        return;
+    }
+    trial.decision = Trial::Decision::GiveUp;
+    context.emit(row, "resolution.gave_up", Severity::Warning,
+                 "the time of impact is known only to " + std::to_string(length / trial.step) + " of the step after " +
+                     std::to_string(trial.iteration) + " trials; allow more max_iterations or a larger time_tolerance",
+                 {trial.begin, trial.end});
+}
+
+}  // namespace plab::resolution

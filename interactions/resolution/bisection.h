@@ -1,0 +1,29 @@
+/// Resolution/*: when, within a step that ends in an overlap, did the bodies meet.
+#pragma once
+
+#include "plab/collision.h"
+#include "plab/context.h"
+#include "plab/schema.h"
+
+namespace plab::resolution
+{
+
+/// No location: an impact is answered at the end of the step in which it is seen.
+struct NoneRows
+{
+    void describe(Schema&) {}
+};
+void accept_end(const StepContext& context, Row row, const NoneRows& rows, Trial& trial);
+
+/// Halves the bracket [begin, end]: begin is clear, end overlaps. After n trials its length is h 2^-n.
+struct BisectionRows
+{
+    Column<double> time_tolerance;        // s
+    Column<std::int64_t> max_iterations;  // trials
+
+    void describe(Schema& schema);
+};
+/// Phase::Locate. One type rewinds the whole world for each trial (the paper's), the other only the touched group.
+void bisect(const StepContext& context, Row row, const BisectionRows& rows, Trial& trial);
+
+}  // namespace plab::resolution

@@ -1,0 +1,64 @@
+#include "contact_point.h"
+
+namespace plab::response
+{
+
+ContactPoint::ContactPoint(const Contact& contact, const Bodies& bodies)
+    : a_(contact.a.index), b_(contact.b.index), point_(contact.point), n_(contact.normal)
+{
+    t1_ = any_perpendicular(n_);
+    t2_ = cross(n_, t1_);
+    add_body(bodies, a_);
+    add_body(bodies, b_);
+    const double turning = K_(2, 2);
+    for (int i = 0; i < 3; ++i) K_(i, i) += inverse_mass_;
+    // What rounding leaves of r x n is squared here, so it stays far below this.
+    central_ = turning <= 1e-20 * inverse_mass_;
+}
+
+/// K += -[r] I^-1 [r]; the mass is added last, so that the turning part is known by itself.
+void ContactPoint::add_body(const Bodies& bodies, std::uint32_t body)
+{
+    if (!bodies.dynamic(body))
+        return;
+    inverse_mass_ += bodies.inverse_mass[body];
+    const Mat3 inverse_inertia = bodies.inverse_inertia_W(body);
+    const Vec3 r = point_ - bodies.position[body];
+    const Vec3 lever[3] = {cross(r, t1_), cross(r, t2_), cross(r, n_)};
+    for (int i = 0; i < 3; ++i)
+    {
+        const Vec3 spin = inverse_inertia * lever[i];
+        for (int j = i; j < 3; ++j)
+        {
+            K_(i, j) += dot(lever[j], spin);
+            K_(j, i) = K_(i, j);
+        }
+    }
+}
+
+Vec3 ContactPoint::velocity(const Bodies& bodies) const
+{
+    return to_contact(bodies.velocity_at(b_, point_) - bodies.velocity_at(a_, point_));
+}
+
+void ContactPoint::apply(Bodies& bodies, const Vec3& j, double normal_velocity) const
+{
+    const double v_a = dot(n_, bodies.velocity[a_]), v_b = dot(n_, bodies.velocity[b_]);
+    const Vec3 j_W = to_world(j);
+    bodies.apply_impulse(a_, -j_W, point_);
+    bodies.apply_impulse(b_, j_W, point_);
+    if (!central_)
+        return;
+    const auto set_normal = [&](std::uint32_t body, double v)
+    {
+        if (!bodies.dynamic(body))
+            return;
+        Vec3& velocity = bodies.velocity[body];
+        velocity = (velocity - n_ * dot(n_, velocity)) + n_ * v;
+    };
+    const double of_a = bodies.inverse_mass[a_] / inverse_mass_, of_b = bodies.inverse_mass[b_] / inverse_mass_;
+    set_normal(a_, of_b * v_a + of_a * (v_b - normal_velocity));
+    set_normal(b_, of_a * v_b + of_b * (v_a + normal_velocity));
+}
+
+}  // namespace plab::response

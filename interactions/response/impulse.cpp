@@ -1,0 +1,66 @@
+#include "impulse.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::response
+{
+
+void respond_none(const StepContext&, Row, const NoneRows&, const Bodies& bodies, Impact& impact)
+{
+    for (Contact& c : impact.contacts)
+    {
+        const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
+        c.impulse = {}, c.resting = true;
+        c.slip = length(u - c.normal * dot(c.normal, u));
+    }
+    impact.iterations = 0, impact.residual = 0, impact.converged = true;
+}
+
+void ImpulseRows::describe(Schema& s)
+{
+    s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise")
+        .or_else(0)
+        .not_negative();
+    s.param(restitution, "restitution", unit::one,
+            "share of the approach speed that an impact gives back, where no Material/Pair says otherwise")
+        .or_else(0)
+        .not_negative()
+        .at_most(1);
+    s.param(rest_height, "rest_height", unit::metre,
+            "a bounce that would rise less than this does not happen: the contact rests")
+        .or_else(1e-14)
+        .not_negative();
+    s.param(rest_speed, "rest_speed", unit::metre_per_second,
+            "a rebound up to this speed does not happen where no force presses together")
+        .or_else(1e-9)
+        .not_negative();
+    s.param(tolerance, "tolerance", unit::metre_per_second, "closing speed that may be left").or_else(1e-12).positive();
+    s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(500).positive();
+    s.output(residual, "residual", unit::metre_per_second, "largest closing speed left in this step")
+        .reported_as_error();
+    s.output(iterations, "iterations", unit::one, "sweeps and single impacts in this step");
+    s.scratch(workspace, "workspace", "working memory");
+}
+
+void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bodies, Impact& impact)
+{
+    Workspace& work = rows.workspace[row];
+    const ImpactSettings settings{rows.rest_height[row], rows.rest_speed[row], rows.tolerance[row],
+                                  static_cast<int>(std::min<std::int64_t>(rows.max_iterations[row], 1'000'000))};
+    if (impact.mode == ImpactMode::Impact)
+        respond_impact(settings, work, bodies, impact);
+    else
+        respond_rest(settings, work, bodies, impact);
+    for (std::size_t i = 0; i < impact.contacts.size(); ++i)
+    {
+        const Vec3 u = work.points[i].velocity(bodies);
+        impact.contacts[i].slip = std::hypot(u.x, u.y);
+    }
+    if (work.tick != context.tick)
+        rows.residual[row] = 0, rows.iterations[row] = 0, work.tick = context.tick;
+    rows.residual[row] = std::max(rows.residual[row], impact.residual);
+    rows.iterations[row] += impact.iterations;
+}
+
+}  // namespace plab::response

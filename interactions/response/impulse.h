@@ -1,0 +1,69 @@
+/// Response/*: what happens to bodies that touch.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cone_solver.h"
+#include "plab/collision.h"
+#include "plab/context.h"
+#include "plab/schema.h"
+
+namespace plab::response
+{
+
+/// A sensor: contacts are seen and reported, and bodies pass through one another.
+struct NoneRows
+{
+    void describe(Schema&) {}
+};
+/// Phase::Respond. Contacts come out as resting, without impulse: nothing that has to be located again.
+void respond_none(const StepContext& context, Row row, const NoneRows& rows, const Bodies& bodies, Impact& impact);
+
+/// The contacts between two bodies: answered together.
+struct Patch
+{
+    std::uint32_t first = 0, end = 0;  ///< in Workspace::order
+    std::uint64_t id = 0;              ///< smallest contact id
+};
+
+/// Working memory of one response, kept warm.
+struct Workspace
+{
+    std::vector<std::uint32_t> order;  ///< contacts by pair of bodies, then id
+    std::vector<Patch> patches;        ///< by id
+    std::vector<ContactPoint> points;  ///< per contact
+    std::vector<ConeContact> cones;
+    std::vector<Vec3> before;  ///< m/s, contact velocities ahead of an impact
+    Tick tick = -1;            ///< whose outputs are being summed
+};
+
+struct ImpulseRows
+{
+    Column<double> friction, restitution;  // 1
+    Column<double> rest_height;            // m
+    Column<double> rest_speed;             // m/s
+    Column<double> tolerance;              // m/s
+    Column<std::int64_t> max_iterations;
+    Column<double> residual;  // m/s
+    Column<std::int64_t> iterations;
+    Column<Workspace> workspace;
+
+    void describe(Schema& schema);
+};
+
+/// Phase::Respond.
+void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bodies, Impact& impact);
+
+/// When a contact that was hit does not leave again, and how hard to work.
+struct ImpactSettings
+{
+    double rest_height = 0, rest_speed = 0, tolerance = 0;
+    int max_iterations = 0;
+};
+/// Bodies meet: see README, "impacts".
+void respond_impact(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact);
+/// Contacts persist over dt: see README, "resting contacts".
+void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact);
+
+}  // namespace plab::response

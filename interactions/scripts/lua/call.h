@@ -1,0 +1,54 @@
+/// One entry of the host into a script: what it may see and change.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plab/context.h"
+#include "plab/ref.h"
+#include "plab/tables.h"
+#include "plab/value.h"
+#include "plab/vector.h"
+
+namespace plab::scripts
+{
+
+enum class EntryPoint : std::uint8_t
+{
+    Load,   ///< the code as a whole, once
+    Drive,  ///< once per step
+    Force,  ///< at every solver stage; pure
+};
+
+struct Call
+{
+    EntryPoint entry = EntryPoint::Load;
+    const StepContext* context = nullptr;
+    Row row = 0;
+    const Bodies* bodies = nullptr;  ///< null while loading
+    const Shafts* shafts = nullptr;
+    Ref driver, driven;
+    const RefList* between = nullptr;
+    const Entries* parameters = nullptr;
+    const Entries* state = nullptr;
+    Entries* writable_state = nullptr;      ///< Drive only; the same as `state`
+    std::int64_t* random_state = nullptr;   ///< Drive only
+};
+
+/// A force that a call asks for. Applied when the call has succeeded, so a failing call adds nothing.
+struct Action
+{
+    enum class Kind : std::uint8_t
+    {
+        Force,
+        ForceAt,
+        Torque,
+        ShaftTorque,
+    };
+    Kind kind = Kind::Force;
+    Ref on;
+    Vec3 value;  ///< N or N m, W; ShaftTorque: x
+    Vec3 at;     ///< m, W; ForceAt
+};
+
+}  // namespace plab::scripts

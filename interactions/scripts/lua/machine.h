@@ -1,0 +1,74 @@
+/// A Lua state in a sandbox: the code of one script, and nothing that would have to be saved.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "lua/call.h"
+#include "plab/result.h"
+
+namespace plab::scripts
+{
+
+struct Session;
+
+struct Limits
+{
+    std::int64_t instructions = 0;  ///< per call
+    std::size_t memory = 0;         ///< bytes
+};
+
+/// Why a call was ended.
+struct Failure
+{
+    std::string kind;     ///< of the event: "script.error", "script.over_budget", "script.out_of_memory"
+    std::string message;  ///< "code:3: ..."
+    Tick tick = 0;
+    double time = 0;         ///< s
+    bool reported = false;   ///< its event is out
+    bool booked = false;     ///< the component's quarantine says so too
+};
+
+/// Runs on one thread at a time; two machines share nothing. After a failure it does nothing until loaded again.
+class Machine
+{
+public:
+    explicit Machine(const Limits& limits);
+    ~Machine();
+    Machine(const Machine&) = delete;
+    Machine& operator=(const Machine&) = delete;
+
+    /// Forgets everything, runs `code` once and freezes what it made. The error reads "line 3: ...".
+    Result<void> load(const std::string& code, const Call& call);
+    bool has_drive() const;
+    bool has_force() const;
+
+    /// Calls drive(step). False: see failure(); state, random numbers and queued changes are then as before.
+    bool drive(const Call& call);
+    /// Calls force(t, state). False: see failure(); there are no actions then.
+    bool force(const Call& call);
+    std::span<const Action> actions() const;
+
+    const std::optional<Failure>& failure() const { return failure_; }
+    void fail(const Call& call, std::string kind, std::string message);
+    void mark_reported() { failure_->reported = true; }
+    void mark_booked() { failure_->booked = true; }
+
+    /// The most instructions that one call took since this was last asked.
+    std::int64_t take_instructions();
+    std::size_t memory_used() const;
+
+private:
+    bool run(int function, int arguments, const Call& call);
+    bool bind(const Call& call);
+    void undo(const Call& call, std::size_t changes, std::int64_t random_state);
+
+    std::unique_ptr<Session> session_;
+    Entries state_before_;
+    std::optional<Failure> failure_;
+    std::int64_t most_instructions_ = 0;
+};
+
+}  // namespace plab::scripts

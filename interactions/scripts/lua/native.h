@@ -1,0 +1,115 @@
+/// The functions and objects that scripts can use, by file. Each open_ function adds to the table on top of the stack.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "lua/session.h"
+#include "plab/vector.h"
+
+namespace plab::scripts
+{
+
+struct NativeFunction
+{
+    const char* name;
+    lua_CFunction call;
+};
+
+void add_functions(lua_State* lua, std::span<const NativeFunction> functions);
+
+/// base.cpp: pcall, xpcall, error, assert, select, type, tostring, tonumber, ipairs, pairs
+void open_base(lua_State* lua);
+/// effects.cpp: set, emit, print
+void open_effects(lua_State* lua);
+/// math_library.cpp, string_library.cpp, table_library.cpp: each leaves its library as one read-only field.
+void open_math(lua_State* lua);
+void open_string(lua_State* lua);
+void open_table(lua_State* lua);
+/// vectors.cpp: vec, and the metatables of vectors and rotations
+void open_vectors(lua_State* lua);
+/// participants.cpp: the metatable of driver, driven, between[i]
+void open_participants(lua_State* lua);
+/// records.cpp: state, parameters, and step in the registry
+void open_records(lua_State* lua);
+
+// Objects: every userdata of a machine starts with its tag, so that a wrong argument is noticed at no cost.
+
+enum class Tag : std::uint32_t
+{
+    Vector,
+    Rotation,
+    Participant,
+    State,
+    Parameters,
+    Step,
+};
+
+struct Object
+{
+    Tag tag;
+};
+
+/// Pushes a new object without metatable.
+template <class T>
+T& push_object(lua_State* lua, Tag tag)
+{
+    T* object = new (lua_newuserdatauv(lua, sizeof(T), 0)) T;
+    object->tag = tag;
+    return *object;
+}
+/// The object at `index`, or null if there is none of that tag.
+template <class T>
+T* to_object(lua_State* lua, int index, Tag tag)
+{
+    auto* object = static_cast<Object*>(lua_touserdata(lua, index));
+    return object && object->tag == tag ? static_cast<T*>(object) : nullptr;
+}
+
+void push_vector(lua_State* lua, const Vec3& v);
+const Vec3* to_vector(lua_State* lua, int index);
+const Vec3& check_vector(lua_State* lua, int argument);
+void push_rotation(lua_State* lua, const Quat& q);
+
+/// Makes driver, driven and between those of the call. Needs some stack; raises an error when out of memory.
+void bind_participants(lua_State* lua, const Call& call);
+
+/// Like luaL_typename, with the names of our own objects.
+const char* type_name(lua_State* lua, int index);
+
+/// Pushes a text; raises an error where it would be too long.
+void push_text(lua_State* lua, std::string_view text);
+/// The text at `argument`, which is charged for.
+std::string_view check_text(lua_State* lua, int argument);
+
+/// A text in the making, on the C++ stack: no call allocates for it.
+class Text
+{
+public:
+    void append(std::string_view part)
+    {
+        wanted_ += part.size();
+        if (wanted_ <= kLongestText)
+            part.copy(bytes_ + wanted_ - part.size(), part.size());
+    }
+    void append(char c) { append(std::string_view(&c, 1)); }
+    bool fits() const { return wanted_ <= kLongestText; }
+    std::size_t wanted() const { return wanted_; }
+    std::string_view view() const { return {bytes_, fits() ? wanted_ : 0}; }
+
+private:
+    std::size_t wanted_ = 0;  // bytes, whether they fitted or not
+    char bytes_[kLongestText];
+};
+
+/// Pushes the text and charges for it; raises an error where it is too long.
+void push_text(lua_State* lua, const Text& text);
+
+/// Appends what tostring() shows; no addresses.
+void append_shown(lua_State* lua, int index, Text& out);
+
+/// Whether the bytes are UTF-8: what goes out as JSON or on the bus must be.
+bool is_utf8(std::string_view text);
+
+}  // namespace plab::scripts

@@ -1,0 +1,253 @@
+// driver, driven and between[i]: what a script reads of the host tables, and the forces that it adds.
+#include <cmath>
+#include <cstdio>
+#include <new>
+
+#include "lua/freeze.h"
+#include "lua/native.h"
+
+namespace plab::scripts
+{
+namespace
+{
+
+/// The same object for as long as the machine lives; only `ref` follows the role.
+struct ParticipantObject : Object
+{
+    int place = 0;  // 0: driver, -1: driven, i: between[i]
+    Ref ref;
+};
+
+constexpr int kDriverPlace = 0, kDrivenPlace = -1;
+
+struct RoleName
+{
+    explicit RoleName(int place)
+    {
+        if (place > 0)
+            std::snprintf(text, sizeof text, "between[%d]", place);
+        else
+            std::snprintf(text, sizeof text, "%s", place == kDriverPlace ? "driver" : "driven");
+    }
+    char text[24];
+};
+
+/// Where the participant can be read. Host tables only grow while a script lives, so a bad index is a host's mistake
+/// or a participant that is gone.
+const Call& readable(lua_State* lua, const ParticipantObject& p)
+{
+    const Call& call = running_call(lua, "participants");
+    const std::size_t size = p.ref.facet == Facet::Body ? call.bodies->size() : call.shafts->size();
+    if (p.ref.index >= size)
+        luaL_error(lua, "%s has no participant", RoleName(p.place).text);
+    return call;
+}
+
+int push_shaft_field(lua_State* lua, const Shafts& shafts, std::uint32_t i, std::string_view name)
+{
+    if (name == "angle")
+        return lua_pushnumber(lua, shafts.angle[i]), 1;
+    if (name == "speed")
+        return lua_pushnumber(lua, shafts.speed[i]), 1;
+    if (name == "inertia")
+        return lua_pushnumber(lua, shafts.inertia[i]), 1;
+    return 0;
+}
+
+int push_body_field(lua_State* lua, const Bodies& bodies, std::uint32_t i, std::string_view name)
+{
+    if (name == "position")
+        return push_vector(lua, bodies.position[i]), 1;
+    if (name == "velocity")
+        return push_vector(lua, bodies.velocity[i]), 1;
+    if (name == "angular_velocity")
+        return push_vector(lua, bodies.angular_velocity[i]), 1;
+    if (name == "orientation")
+        return push_rotation(lua, bodies.orientation[i]), 1;
+    if (name == "mass")
+        return lua_pushnumber(lua, bodies.mass[i]), 1;
+    return 0;
+}
+
+int participant_index(lua_State* lua)
+{
+    const auto& p = *static_cast<ParticipantObject*>(lua_touserdata(lua, 1));
+    if (lua_type(lua, 2) == LUA_TSTRING)
+    {
+        std::size_t n = 0;
+        const char* s = lua_tolstring(lua, 2, &n);
+        const std::string_view name(s, n);
+        if (!name.starts_with("add_"))
+        {
+            const Call& call = readable(lua, p);
+            if (p.ref.facet == Facet::Shaft ? push_shaft_field(lua, *call.shafts, p.ref.index, name)
+                                            : push_body_field(lua, *call.bodies, p.ref.index, name))
+                return 1;
+        }
+        lua_pushvalue(lua, 2);
+        if (lua_rawget(lua, lua_upvalueindex(1)) != LUA_TNIL)
+            return 1;
+    }
+    return luaL_error(lua, "%s has no '%s'; a shaft has angle, speed, inertia, a body has position, velocity, "
+                      "angular_velocity, orientation, mass", RoleName(p.place).text,
+                      lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
+}
+
+int refuse_assignment(lua_State* lua)
+{
+    return luaL_error(lua, "participants are read-only: add forces in force(t, state), or change parameters by set()");
+}
+
+/// The participant at argument 1, if this call may add forces to it.
+const ParticipantObject& check_target(lua_State* lua)
+{
+    const auto* p = to_object<ParticipantObject>(lua, 1, Tag::Participant);
+    if (!p)
+        luaL_typeerror(lua, 1, "participant");
+    const Call& call = readable(lua, *p);
+    if (call.entry != EntryPoint::Force)
+        luaL_error(lua, "forces are added in force(t, state), not in drive");
+    if (p->place == kDriverPlace)
+        luaL_error(lua, "driver is only read: forces are added to driven and between");
+    return *p;
+}
+
+const ParticipantObject& check_body_target(lua_State* lua)
+{
+    const ParticipantObject& p = check_target(lua);
+    if (p.ref.facet != Facet::Body)
+        luaL_error(lua, "%s is a shaft: it takes add_torque(number)", RoleName(p.place).text);
+    return p;
+}
+
+const Vec3& check_finite(lua_State* lua, const ParticipantObject& p, int argument, const char* what)
+{
+    const Vec3& v = check_vector(lua, argument);
+    if (!is_finite(v))
+        luaL_error(lua, "%s on %s is not finite", what, RoleName(p.place).text);
+    return v;
+}
+
+int act(lua_State* lua, const Action& action)
+{
+    session_of(lua).actions.push_back(action);
+    return 0;
+}
+
+int add_force(lua_State* lua)
+{
+    charge(lua, 1);
+    const ParticipantObject& p = check_body_target(lua);
+    return act(lua, {Action::Kind::Force, p.ref, check_finite(lua, p, 2, "force"), {}});
+}
+
+int add_force_at(lua_State* lua)
+{
+    charge(lua, 1);
+    const ParticipantObject& p = check_body_target(lua);
+    const Vec3& force = check_finite(lua, p, 2, "force");
+    return act(lua, {Action::Kind::ForceAt, p.ref, force, check_finite(lua, p, 3, "point of the force")});
+}
+
+int add_torque(lua_State* lua)
+{
+    charge(lua, 1);
+    const ParticipantObject& p = check_target(lua);
+    if (p.ref.facet == Facet::Body)
+        return act(lua, {Action::Kind::Torque, p.ref, check_finite(lua, p, 2, "torque"), {}});
+    const double torque = luaL_checknumber(lua, 2);
+    if (!std::isfinite(torque))
+        return luaL_error(lua, "torque on %s is not finite", RoleName(p.place).text);
+    return act(lua, {Action::Kind::ShaftTorque, p.ref, {torque, 0, 0}, {}});
+}
+
+constexpr NativeFunction kMethods[] = {
+    {"add_force", add_force}, {"add_force_at", add_force_at}, {"add_torque", add_torque}};
+
+/// The global `name` is the object in `slot`, or nil without participant.
+void bind_one(lua_State* lua, int slot, const char* name, Ref ref)
+{
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, kGlobals);
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, slot);
+    static_cast<ParticipantObject*>(lua_touserdata(lua, -1))->ref = ref;
+    if (!ref.valid())
+    {
+        lua_pop(lua, 1);
+        lua_pushnil(lua);
+    }
+    lua_setfield(lua, -2, name);
+    lua_pop(lua, 1);
+}
+
+void push_participant(lua_State* lua, int place, Ref ref)
+{
+    auto& p = push_object<ParticipantObject>(lua, Tag::Participant);
+    p.place = place, p.ref = ref;
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, kParticipantMeta);
+    lua_setmetatable(lua, -2);
+}
+
+void bind_list(lua_State* lua, const RefList& members)
+{
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, kBetween);
+    const auto before = static_cast<int>(lua_rawlen(lua, -1)), after = static_cast<int>(members.size());
+    for (int i = 1; i <= after; ++i)
+    {
+        const Ref ref = members[static_cast<std::size_t>(i - 1)];
+        if (lua_rawgeti(lua, -1, i) != LUA_TNIL)
+            static_cast<ParticipantObject*>(lua_touserdata(lua, -1))->ref = ref;
+        else
+        {
+            push_participant(lua, i, ref);
+            lua_rawseti(lua, -3, i);
+        }
+        lua_pop(lua, 1);
+    }
+    for (int i = before; i > after; --i)
+    {
+        lua_rawgeti(lua, -1, i);
+        static_cast<ParticipantObject*>(lua_touserdata(lua, -1))->ref = {};
+        lua_pop(lua, 1);
+        lua_pushnil(lua);
+        lua_rawseti(lua, -2, i);
+    }
+    lua_pop(lua, 1);
+}
+
+}  // namespace
+
+void bind_participants(lua_State* lua, const Call& call)
+{
+    Session& session = session_of(lua);
+    bind_one(lua, kDriver, "driver", call.driver);
+    bind_one(lua, kDriven, "driven", call.driven);
+    bind_list(lua, *call.between);
+    session.driver = call.driver, session.driven = call.driven, session.between = *call.between;
+}
+
+void open_participants(lua_State* lua)
+{
+    lua_newtable(lua);
+    lua_newtable(lua);
+    add_functions(lua, kMethods);
+    lua_pushcclosure(lua, participant_index, 1);
+    lua_setfield(lua, -2, "__index");
+    lua_pushcfunction(lua, refuse_assignment);
+    lua_setfield(lua, -2, "__newindex");
+    lua_pushliteral(lua, "participant");
+    lua_setfield(lua, -2, "__name");
+    lua_rawseti(lua, LUA_REGISTRYINDEX, kParticipantMeta);
+
+    push_participant(lua, kDriverPlace, {});
+    lua_rawseti(lua, LUA_REGISTRYINDEX, kDriver);
+    push_participant(lua, kDrivenPlace, {});
+    lua_rawseti(lua, LUA_REGISTRYINDEX, kDriven);
+
+    lua_newtable(lua);
+    freeze_table(lua, -1);
+    push_content(lua, lua_gettop(lua));
+    lua_rawseti(lua, LUA_REGISTRYINDEX, kBetween);
+    lua_setfield(lua, -2, "between");
+}
+
+}  // namespace plab::scripts

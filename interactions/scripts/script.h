@@ -1,0 +1,52 @@
+/// Script/Lua: an interaction written in Lua.
+///
+///   drive(step)      once per step: may change its declared state, set parameters, emit events
+///   force(t, state)  at every solver stage: adds forces (N) and torques (N m) to driven and between; pure
+///
+/// All that lives across calls is in the columns below. The machine is built from them by Prepare and holds nothing that
+/// would have to be saved (see README.md).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "lua/machine.h"
+#include "plab/context.h"
+#include "plab/result.h"
+#include "plab/schema.h"
+#include "plab/tables.h"
+#include "plab/wrenches.h"
+
+namespace plab::scripts
+{
+
+struct ScriptRows
+{
+    Column<std::string> code;
+    Column<Entries> parameters;
+    Column<std::int64_t> instruction_budget;  // per call
+    Column<std::int64_t> memory_limit;        // bytes
+
+    Column<Entries> state;
+    Column<std::int64_t> random_state;  // 0: not used yet
+    Column<bool> quarantined;
+
+    Column<std::int64_t> instructions_used;  // most of one call in the step
+    Column<std::int64_t> memory_used;        // bytes at the end of the step
+
+    Column<Ref> driver, driven;
+    Column<RefList> between;
+    Column<std::unique_ptr<Machine>> machine;
+
+    void describe(Schema& schema);
+};
+
+/// Builds the machine anew. On an error the old one stays.
+Result<void> prepare(const StepContext& context, Row row, ScriptRows& rows);
+void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodies& bodies, const Shafts& shafts);
+void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
+           Wrenches& wrenches);
+/// Books what force could not: outputs, and the quarantine of a script that failed in it.
+void finish(const StepContext& context, Rows which, ScriptRows& rows);
+
+}  // namespace plab::scripts

@@ -1,0 +1,22 @@
+/// From XML text to the blueprint tree. The language is described in server/docs/blueprint.md.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "blueprint/foreign.h"
+#include "blueprint/xgl.h"
+#include "model/blueprint.h"
+
+namespace plab::blueprint
+{
+
+/// Reads a whole scene (<plab>) or a fragment for a request (<plab> or a single <component>). Errors are collected as
+/// long as the XML is well-formed; `file_name` is what their places name. Never throws, whatever `text` holds.
+Result<model::Blueprint> read_blueprint(std::string_view text, const std::string& file_name,
+                                        const ForeignHandlers& handlers = xgl_handlers(), const XmlLimits& limits = {});
+
+Result<model::Blueprint> read_blueprint_file(const std::string& path, const ForeignHandlers& handlers = xgl_handlers(),
+                                             const XmlLimits& limits = {});
+
+}  // namespace plab::blueprint

@@ -1,0 +1,156 @@
+#include <algorithm>
+
+#include "blueprint/writer.h"
+#include "model/values.h"
+
+namespace plab::blueprint
+{
+namespace
+{
+
+constexpr std::string_view kTypeNames[] = {"",         "truth value", "whole number",    "number", "vector", "rotation",
+                                           "symmetric matrix", "text", "list of numbers", "list of whole numbers", "entries", "opaque"};
+
+/// A cell of a table: one line, no bars.
+std::string cell(std::string_view text)
+{
+    std::string out;
+    for (const char c : text)
+        if (c == '|')
+            out += "\\|";
+        else
+            out += c == '\n' ? ' ' : c;
+    return out;
+}
+
+std::string row(std::initializer_list<std::string> cells)
+{
+    std::string out = "|";
+    for (const std::string& c : cells) out += " " + cell(c) + " |";
+    return out + "\n";
+}
+
+std::string words_of(const Rule& rule)
+{
+    switch (rule.kind)
+    {
+        case Rule::Kind::AtLeast: return "at least " + model::format_real(rule.bound);
+        case Rule::Kind::MoreThan: return rule.bound == 0 ? "positive" : "more than " + model::format_real(rule.bound);
+        case Rule::Kind::AtMost: return "at most " + model::format_real(rule.bound);
+        case Rule::Kind::NonZero: return "not zero";
+        case Rule::Kind::UnitLength: return "a direction";
+        case Rule::Kind::OneOf: break;
+    }
+    std::string out = "one of";
+    for (const std::string& option : rule.options) out += (&option == &rule.options.front() ? " " : ", ") + option;
+    return out;
+}
+
+std::string rules_of(const Field& field)
+{
+    std::string out;
+    for (const Rule& rule : field.rules) out += (out.empty() ? "" : ", ") + words_of(rule);
+    if (field.may_be_infinite) out += std::string(out.empty() ? "" : ", ") + "may be infinite";
+    return out;
+}
+
+std::string_view name_of_kind(FieldKind kind)
+{
+    constexpr std::string_view names[] = {"param", "state", "output", "scratch"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+std::string default_of(const Field& field)
+{
+    if (field.kind == FieldKind::Output) return "";
+    if (field.required) return "required";
+    const std::string text = model::format_value(field.fallback);
+    return text.empty() ? "empty" : "`" + text + "`";
+}
+
+std::string fields_of(const Schema& schema)
+{
+    std::string rows;
+    for (const Field& f : schema.fields())
+        if (f.kind != FieldKind::Scratch)
+            rows += row({"`" + f.name + "`", std::string(name_of_kind(f.kind)), std::string(kTypeNames[static_cast<std::size_t>(f.type)]),
+                         std::string(f.unit.symbol), default_of(f), rules_of(f), f.doc});
+    if (rows.empty()) return {};
+    return "\n| field | kind | type | unit | default | rule | meaning |\n|---|---|---|---|---|---|---|\n" + rows;
+}
+
+std::string takers_of(const Role& role)
+{
+    constexpr std::string_view names[] = {"component", "body", "shaft", "shape"};
+    std::string out;
+    for (const Facet f : role.facets) out += (out.empty() ? "" : " or ") + std::string(names[static_cast<std::size_t>(f)]);
+    return role.family.empty() ? out : out + " `" + role.family + "...`";
+}
+
+std::string arity_of(const Role& role)
+{
+    if (role.many) return role.min == 0 ? "any number" : std::to_string(role.min) + " or more";
+    return role.min == 0 ? "0 or 1" : "1";
+}
+
+std::string roles_of(const Schema& schema)
+{
+    std::string rows;
+    for (const Role& r : schema.roles())
+    {
+        std::string meaning = r.doc;
+        if (!r.default_type.empty()) meaning += "; by default a `" + r.default_type + "`";
+        if (r.exclusive) meaning += "; no second component may act on it so";
+        rows += row({"`" + r.name + "`", takers_of(r), arity_of(r), r.writes ? "acts on it" : "reads it", meaning});
+    }
+    if (rows.empty()) return {};
+    return "\n| role | takes | how many | access | meaning |\n|---|---|---|---|---|\n" + rows;
+}
+
+std::string commands_of(const TypeInfo& info)
+{
+    std::string rows;
+    for (const CommandInfo& c : info.commands)
+        rows += row({"`" + c.name + "`", std::string(name_of(stage_of(c.phase))), std::string(name_of(c.phase)), c.doc});
+    if (rows.empty()) return {};
+    return "\n| command | stage | phase | meaning |\n|---|---|---|---|\n" + rows;
+}
+
+std::string facts_of(const TypeInfo& info)
+{
+    std::string out;
+    const auto fact = [&](std::string_view name, const std::string& value)
+    {
+        if (!value.empty()) out += "- " + std::string(name) + ": " + value + "\n";
+    };
+    fact("exchangeable within", "`" + info.family + "`");
+    fact("order of convergence", info.order > 0 ? std::to_string(info.order) : "");
+    fact("cost", info.cost);
+    fact("limits", info.limits);
+    fact("source", info.source);
+    return out;
+}
+
+}  // namespace
+
+std::string write_reference(model::TypeSource& types)
+{
+    std::string out = "# Component types\n\nGenerated from the types' own declarations. Values are in SI units and radians.\n";
+    std::string kind;
+    for (const std::string& name : types.names())
+    {
+        if (const std::string its = name.substr(0, name.find('/')); its != kind) out += "\n## " + (kind = its) + "\n";
+        out += "\n### " + name + "\n\n";
+        const auto type = types.require(name);
+        if (!type)
+        {
+            out += "Cannot be loaded: " + type.error().text() + "\n";
+            continue;
+        }
+        const model::ComponentType& t = **type;
+        out += t.info.doc + "\n\n" + facts_of(t.info) + roles_of(t.schema) + fields_of(t.schema) + commands_of(t.info);
+    }
+    return out;
+}
+
+}  // namespace plab::blueprint

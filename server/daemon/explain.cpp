@@ -1,0 +1,101 @@
+#include "daemon/explain.h"
+
+#include <map>
+
+#include "simulation/step_tree.h"
+
+namespace plab::daemon
+{
+namespace
+{
+
+std::string plugins_text(const plugins::PluginLibrary& library)
+{
+    std::string out = "plugins loaded\n";
+    for (const plugins::PluginInfo& p : library.loaded()) out += "  " + p.name + "  " + p.path + "\n";
+    std::map<std::string, std::string> unused;
+    for (const std::string& type : library.names())
+    {
+        bool loaded = false;
+        for (const plugins::PluginInfo& p : library.loaded())
+            for (const std::string& t : p.types) loaded = loaded || t == type;
+        if (!loaded) unused[type.substr(0, type.find('/'))] += " " + type;
+    }
+    out += "types left out: the blueprint names none of these\n";
+    for (const auto& [kind, types] : unused) out += "  " + kind + ":" + types + "\n";
+    return out;
+}
+
+std::string step_text(const simulation::Stepper& stepper)
+{
+    std::string out = "the step\n";
+    for (const simulation::StepNode& node : simulation::kStepTree)
+    {
+        const bool needed = (stepper.*node.needed)();
+        out += std::string("  ") + (needed ? "runs      " : "left out  ") + std::string(name_of(node.stage)) + "." + std::string(node.name) + ": " +
+               std::string(node.what) + "\n";
+    }
+    return out;
+}
+
+std::string groups_text(const simulation::Simulation& s)
+{
+    const simulation::Groups& groups = s.stepper().groups();
+    std::string out = "solver groups: " + std::to_string(groups.all.size()) + "\n";
+    std::size_t shown = 0;
+    for (const simulation::Group& g : groups.all)
+    {
+        if (++shown > 20)
+        {
+            out += "  ...\n";
+            break;
+        }
+        out += "  ";
+        for (const std::uint32_t b : g.bodies) out += s.world().id_of(Ref{Facet::Body, b}) + " ";
+        for (const std::uint32_t b : g.prescribed_bodies) out += s.world().id_of(Ref{Facet::Body, b}) + " ";
+        for (const std::uint32_t x : g.shafts) out += s.world().id_of(Ref{Facet::Shaft, x}) + " ";
+        for (const std::uint32_t x : g.prescribed_shafts) out += s.world().id_of(Ref{Facet::Shaft, x}) + " ";
+        if (g.bodies.empty() && g.shafts.empty())
+            out += "- prescribed motion, no solver";
+        else if (g.solver != kNoIndex)
+            out += "- " + s.world().type_of(g.solver)->info.name + " (" + s.world().id_of(g.solver) + ")";
+        if (g.mixed_solvers) out += ", members named different solvers: the one of the highest order was taken";
+        out += "\n";
+    }
+    for (const simulation::ShaftTree& t : s.stepper().graph().trees())
+        out += "constraint graph: " + std::to_string(t.count) + " shafts move with " + s.world().id_of(Ref{Facet::Shaft, t.root}) + ", one degree of freedom, " +
+               std::to_string(t.redundant) + " redundant couplings\n";
+    return out;
+}
+
+std::string collision_text(const simulation::Simulation& s)
+{
+    std::string out;
+    for (const simulation::Detector& d : s.stepper().detectors())
+    {
+        out += "collision " + s.world().id_of(d.component) + ": ";
+        out += d.resolution == kNoIndex ? "no resolution" : s.world().type_of(d.resolution)->info.name;
+        out += d.locates ? (d.local ? " (rewinds who is touched)" : " (rewinds the whole world)") : " (no rewinding)";
+        out += ", " + (d.response == kNoIndex ? std::string("no response") : s.world().type_of(d.response)->info.name);
+        out += d.responds ? "\n" : " (a sensor: nobody is pushed)\n";
+    }
+    if (out.empty()) out = "collision: none, so no memento is kept and no contact is looked for\n";
+    return out;
+}
+
+}  // namespace
+
+std::string explain(const simulation::Simulation& s, const plugins::PluginLibrary& library)
+{
+    std::size_t bodies = 0, shafts = 0;
+    for (const std::uint32_t i : s.world().in_id_order())
+    {
+        bodies += s.world().component(i).facet == Facet::Body ? 1 : 0;
+        shafts += s.world().component(i).facet == Facet::Shaft ? 1 : 0;
+    }
+    std::string out = "objects: " + std::to_string(bodies) + " bodies in space, " + std::to_string(shafts) + " shafts with one degree of freedom\n";
+    if (bodies == 0) out += "no 3-D state: no body is in the scene\n";
+    return out + plugins_text(library) + step_text(s.stepper()) + groups_text(s) + collision_text(s);
+}
+
+}  // namespace plab::daemon

@@ -1,0 +1,70 @@
+// plabd: the composition root. Nothing is decided here; everything is put together here.
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <csignal>
+
+#include "blueprint/reader.h"
+#include "blueprint/writer.h"
+#include "daemon/explain.h"
+#include "daemon/options.h"
+#include "daemon/runner.h"
+#include "model/compile.h"
+#include "plugins/library.h"
+
+namespace
+{
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+extern "C" void on_signal(int) { stop = true; }
+
+int fail(const plab::Errors& errors)
+{
+    for (const plab::Error& e : errors) std::fprintf(stderr, "%s\n", e.text().c_str());
+    return 1;
+}
+
+int carry_out(const plab::daemon::Options& options)
+{
+    plab::plugins::PluginLibrary library;
+    for (const plab::Error& e : library.problems()) spdlog::warn("{}", e.text());
+    if (options.task == plab::daemon::Task::Reference)
+    {
+        std::fputs(plab::blueprint::write_reference(library).c_str(), stdout);
+        return 0;
+    }
+    auto blueprint = plab::blueprint::read_blueprint_file(options.scene);
+    if (!blueprint) return fail(blueprint.errors());
+    auto scene = plab::model::compile(*blueprint, library);
+    if (!scene) return fail(scene.errors());
+    plab::simulation::Simulation simulation(library, options.threads);
+    if (auto loaded = simulation.load(*scene); !loaded) return fail(loaded.errors());
+    switch (options.task)
+    {
+        case plab::daemon::Task::Check: std::printf("%s: %zu components, no errors\n", options.scene.c_str(), scene->components.size()); return 0;
+        case plab::daemon::Task::Expand: std::fputs(plab::blueprint::write_long_form(*scene, library).c_str(), stdout); return 0;
+        case plab::daemon::Task::Explain: std::fputs(plab::daemon::explain(simulation, library).c_str(), stdout); return 0;
+        default: return plab::daemon::run(simulation, options, stop);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    plab::daemon::Options options;
+    if (const auto end = plab::daemon::parse_options(argc, argv, options))
+    {
+        std::fputs(end->text.c_str(), end->exit_code == 0 ? stdout : stderr);
+        return end->exit_code;
+    }
+    spdlog::set_default_logger(spdlog::stderr_color_mt("plabd"));
+    spdlog::set_pattern("%^%l%$ %v");
+    spdlog::set_level(spdlog::level::from_str(options.log_level));
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    return carry_out(options);
+}

@@ -1,0 +1,128 @@
+#include "daemon/options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+namespace plab::daemon
+{
+namespace
+{
+
+constexpr const char* kExamples = R"(Examples:
+  plabd scenes/fan_and_balloons.xml --until 10 --out end.json
+  plabd scenes/fan_and_balloons.xml --until 10 --trace run.csv --every 0.01
+  plabd scenes/fan_and_balloons.xml --until 10 --swap "600:contact.response=Response/None"
+  plabd scenes/fan_and_balloons.xml --until 10 --set "red.mass=0.02"
+  plabd --explain scenes/fan_and_balloons.xml
+
+Exit codes: 0 done, 1 failed (message on standard error), 2 wrong use.)";
+
+/// Takes "123:" off the front.
+std::optional<Tick> take_step(std::string_view& text)
+{
+    const std::size_t colon = text.find(':');
+    if (colon == std::string_view::npos) return {};
+    Tick step = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + colon, step);
+    if (error != std::errc() || end != text.data() + colon) return {};
+    text.remove_prefix(colon + 1);
+    return step;
+}
+
+std::optional<double> parse_rate(const std::string& text)
+{
+    if (text == "real") return 1.0;
+    if (text == "max") return 0.0;
+    double factor = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
+    if (error != std::errc() || end != text.data() + text.size() || !(factor > 0)) return {};
+    return factor;
+}
+
+}  // namespace
+
+Result<ScheduledOperation> parse_swap(const std::string& text)
+{
+    std::string_view rest = text;
+    ScheduledOperation out;
+    out.at = take_step(rest);
+    const std::size_t equal = rest.rfind('=');
+    if (equal == std::string_view::npos || equal == 0 || equal + 1 == rest.size())
+        return reason("--swap wants [STEP:]ID=TYPE, not '" + text + "'");
+    out.operation = simulation::SwapOperation{std::string(rest.substr(0, equal)), std::string(rest.substr(equal + 1)), {}};
+    return out;
+}
+
+Result<ScheduledOperation> parse_set(const std::string& text)
+{
+    std::string_view rest = text;
+    ScheduledOperation out;
+    out.at = take_step(rest);
+    const std::size_t equal = rest.find('=');
+    if (equal == std::string_view::npos) return reason("--set wants [STEP:]ID.name=value, not '" + text + "'");
+    const std::string_view target = rest.substr(0, equal);
+    const std::size_t dot = target.rfind('.');
+    if (dot == std::string_view::npos || dot == 0 || dot + 1 == target.size())
+        return reason("--set wants [STEP:]ID.name=value, not '" + text + "'");
+    out.operation = simulation::SetOperation{std::string(target.substr(0, dot)), std::string(target.substr(dot + 1)),
+                                             std::string(rest.substr(equal + 1))};
+    return out;
+}
+
+std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
+{
+    CLI::App app{"plabd: a simulation server for interacting objects", "plabd"};
+    app.footer(kExamples);
+    app.set_version_flag("--version", std::string("plabd ") + PLAB_VERSION);
+    app.add_option("scene", options.scene, "blueprint (XML)");
+    app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")->check(CLI::NonNegativeNumber);
+    app.add_option("--out", options.out, "write the end state as JSON to FILE (- is standard output)")->type_name("FILE");
+    app.add_option("--trace", options.trace, "write the course as CSV to FILE")->type_name("FILE");
+    app.add_option("--every", options.every, "simulated seconds between rows of --trace; default: each step")->check(CLI::NonNegativeNumber);
+    app.add_option("--threads", options.threads, "threads that step; the result is the same for any number")->check(CLI::Range(1, 256));
+    app.add_option("--log-level", options.log_level, "what goes to standard error")->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
+    app.add_flag("--table", options.table, "show a live table of the scene's course");
+    app.add_flag("--hashes", options.hashes, "print the state hash of each step");
+    std::string rate;
+    app.add_option("--rate", rate, "real, max, or a factor of real time; default: max with --until, else real");
+    std::vector<std::string> swaps, sets;
+    app.add_option("--swap", swaps, "[STEP:]ID=TYPE: exchange a component at a step boundary (may be repeated)")->take_all()->allow_extra_args(false);
+    app.add_option("--set", sets, "[STEP:]ID.name=value: set a parameter or state (may be repeated)")->take_all()->allow_extra_args(false);
+    bool check = false, expand = false, explain = false, reference = false;
+    app.add_flag("--check", check, "only check the blueprint");
+    app.add_flag("--expand", expand, "print the long form of the blueprint");
+    app.add_flag("--explain", explain, "print what is loaded, resolved and left out, and why");
+    app.add_flag("--reference", reference, "print the reference of all component types");
+    bool no_bus = false;
+    app.add_flag("--no-bus", no_bus, "do not join the bus (there is none in this version)");
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError& e)
+    {
+        std::ostringstream out, err;
+        const int code = app.exit(e, out, err);
+        return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
+    }
+    if (int(check) + int(expand) + int(explain) + int(reference) > 1)
+        return ParseEnd{2, "plabd: --check, --expand, --explain and --reference exclude one another\n"};
+    options.task = check ? Task::Check : expand ? Task::Expand : explain ? Task::Explain : reference ? Task::Reference : Task::Run;
+    if (options.scene.empty() && options.task != Task::Reference) return ParseEnd{2, "plabd: needs a scene; see plabd --help\n"};
+    if (!rate.empty())
+    {
+        const auto factor = parse_rate(rate);
+        if (!factor) return ParseEnd{2, "plabd: --rate is real, max or a positive factor, not '" + rate + "'\n"};
+        options.rate = *factor;
+    }
+    for (const auto& [texts, parse] : {std::pair(&swaps, &parse_swap), std::pair(&sets, &parse_set)})
+        for (const std::string& text : *texts)
+        {
+            auto parsed = parse(text);
+            if (!parsed) return ParseEnd{2, "plabd: " + parsed.error().reason + "\n"};
+            options.operations.push_back(*parsed);
+        }
+    return {};
+}
+
+}  // namespace plab::daemon

@@ -1,0 +1,59 @@
+/// The command line of plabd.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plab/result.h"
+#include "simulation/requests.h"
+
+namespace plab::daemon
+{
+
+enum class Task
+{
+    Run,
+    Check,      ///< load, build, and say whether it holds
+    Expand,     ///< print the long form
+    Explain,    ///< print what is loaded, resolved and left out, and why
+    Reference,  ///< print the manual of all types
+};
+
+/// --swap and --set: a request for a step.
+struct ScheduledOperation
+{
+    std::optional<Tick> at;
+    simulation::Operation operation;
+};
+
+struct Options
+{
+    Task task = Task::Run;
+    std::string scene;
+    double until = -1;          ///< s; < 0: until a signal
+    std::string out;            ///< JSON of the end state; "-" is standard output
+    std::string trace;          ///< CSV over time
+    double every = 0;           ///< s between trace rows; 0: each step
+    double rate = -1;           ///< 1: real time; 0: as fast as it goes; < 0: not given
+    int threads = 1;
+    bool table = false;
+    bool hashes = false;        ///< print the state hash of each step
+    std::string log_level = "info";
+    std::vector<ScheduledOperation> operations;
+};
+
+/// Fills options, or tells what to print and the exit code (0 after --help and --version, 2 for a wrong use).
+struct ParseEnd
+{
+    int exit_code = 0;
+    std::string text;
+};
+std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options);
+
+/// "120:contact.response=Response/None" or without the step.
+Result<ScheduledOperation> parse_swap(const std::string& text);
+/// "120:gear.velocity_factor=-0.25" or without the step.
+Result<ScheduledOperation> parse_set(const std::string& text);
+
+}  // namespace plab::daemon

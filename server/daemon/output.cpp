@@ -1,0 +1,214 @@
+#include "daemon/output.h"
+
+#include <cerrno>
+#include <cinttypes>
+#include <cmath>
+#include <cstring>
+
+#include "world/host_tables.h"
+
+namespace plab::daemon
+{
+namespace
+{
+
+std::string number(double v)
+{
+    if (!std::isfinite(v)) return "null";
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", v);
+    return text;
+}
+
+std::string quoted(const std::string& s)
+{
+    std::string out = "\"";
+    for (const char c : s)
+    {
+        if (c == '"' || c == '\\')
+            out += '\\', out += c;
+        else if (static_cast<unsigned char>(c) < 0x20)
+        {
+            char code[8];
+            std::snprintf(code, sizeof code, "\\u%04x", c);
+            out += code;
+        }
+        else
+            out += c;
+    }
+    return out + "\"";
+}
+
+std::string array(const Vec3& v) { return "[" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]"; }
+std::string array(const Quat& q) { return "[" + number(q.w) + ", " + number(q.x) + ", " + number(q.y) + ", " + number(q.z) + "]"; }
+
+bool is_object(const world::Component& c) { return c.facet == Facet::Body || c.facet == Facet::Shaft; }
+
+/// Interactions: what acts between objects; not shapes, solvers or groups.
+bool is_interaction(const world::World& world, std::uint32_t i)
+{
+    const world::Component& c = world.component(i);
+    return c.table != kNoIndex && c.facet == Facet::Component && world.type_of(i)->info.name.rfind("Solver/", 0) != 0;
+}
+
+std::string object_json(const world::World& world, std::uint32_t i)
+{
+    const world::Component& c = world.component(i);
+    const auto vec = [&](const char* name) { return array(std::get<Vec3>(world.get(i, name))); };
+    if (c.facet == Facet::Shaft)
+        return "{\"angle\": " + number(world.host().shafts.angle[c.host_index]) +
+               ", \"angular_velocity\": " + number(world.host().shafts.speed[c.host_index]) + "}";
+    const auto hosted = [&](const char* name) { return world::get_hosted(world.host(), Facet::Body, c.host_index, name); };
+    (void)vec;
+    return "{\"position\": " + array(std::get<Vec3>(hosted("position"))) + ", \"orientation\": " + array(std::get<Quat>(hosted("orientation"))) +
+           ", \"linear_velocity\": " + array(std::get<Vec3>(hosted("linear_velocity"))) +
+           ", \"angular_velocity\": " + array(std::get<Vec3>(hosted("angular_velocity"))) + "}";
+}
+
+/// A type's cost is measured per phase; an instance's share is by rows.
+double cost_per_step(const simulation::Simulation& s, std::uint32_t i)
+{
+    const auto& book = s.stepper().cost();
+    const world::Component& c = s.world().component(i);
+    if (book.steps == 0 || c.table >= book.by_table.size()) return 0;
+    double sum = 0, rows = 0;
+    for (const std::uint64_t ns : book.by_table[c.table]) sum += static_cast<double>(ns);
+    for (const std::uint32_t owner : s.world().tables()[c.table]->component_of_row()) rows += owner != kNoIndex ? 1 : 0;
+    return sum / rows / static_cast<double>(book.steps);
+}
+
+std::string interaction_json(const simulation::Simulation& s, std::uint32_t i)
+{
+    const world::World& world = s.world();
+    std::string out = "{\"type\": " + quoted(world.type_of(i)->info.name) + ", \"cost_ns_per_step\": " + number(cost_per_step(s, i)) +
+                      ", \"work\": " + number(s.stepper().work()[i]) + ", \"error\": " + number(s.error_of(i));
+    for (const Field& field : world.table_of(i).schema().fields())
+    {
+        if (field.kind != FieldKind::Output) continue;
+        const Value v = world.get(i, field.name);
+        if (const auto* d = std::get_if<double>(&v)) out += ", " + quoted(field.name) + ": " + number(*d);
+        if (const auto* n = std::get_if<std::int64_t>(&v)) out += ", " + quoted(field.name) + ": " + std::to_string(*n);
+    }
+    return out + (world.component(i).quarantined ? ", \"quarantined\": true}" : "}");
+}
+
+std::string hash_text(std::uint64_t h)
+{
+    char text[20];
+    std::snprintf(text, sizeof text, "%016" PRIx64, h);
+    return text;
+}
+
+}  // namespace
+
+std::string end_state_json(const simulation::Simulation& s)
+{
+    const world::World& world = s.world();
+    const simulation::Totals totals = s.totals();
+    std::string objects, interactions;
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        if (is_object(world.component(i)))
+            objects += (objects.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + object_json(world, i);
+        if (is_interaction(world, i))
+            interactions += (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + interaction_json(s, i);
+    }
+    const auto& cost = s.stepper().cost();
+    const double per_step = cost.steps == 0 ? 0 : static_cast<double>(cost.total) / static_cast<double>(cost.steps);
+    std::string out = "{\n  \"time\": " + number(s.time()) + ",\n  \"step\": " + std::to_string(s.tick());
+    out += ",\n  \"hash\": " + quoted(hash_text(s.state_hash()));
+    out += ",\n  \"energy\": " + number(totals.kinetic + totals.stored);
+    out += ",\n  \"momentum\": " + array(totals.momentum);
+    out += ",\n  \"angular_momentum\": " + array(totals.angular_momentum);
+    out += ",\n  \"shaft_momentum\": " + number(totals.shaft_momentum);
+    out += ",\n  \"ledger\": {\"kinetic\": " + number(totals.kinetic) + ", \"stored\": " + number(totals.stored) +
+           ", \"work\": " + number(totals.work) + ", \"kinetic_at_start\": " + number(s.kinetic_at_start()) +
+           ", \"unexplained\": " + number(totals.kinetic - s.kinetic_at_start() - totals.work) + "}";
+    out += ",\n  \"cost_ns_per_step\": " + number(per_step);
+    out += ",\n  \"objects\": {" + objects + "\n  },\n  \"interactions\": {" + interactions + "\n  }\n}\n";
+    return out;
+}
+
+Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simulation::Simulation& s, double every)
+{
+    std::unique_ptr<Trace> trace(new Trace);
+    trace->file_.reset(std::fopen(file.c_str(), "w"));
+    if (!trace->file_) return reason("cannot write " + file + ": " + std::strerror(errno));
+    trace->every_ = every;
+    std::string header = "time,step,hash,energy,kinetic,momentum_x,momentum_y,momentum_z";
+    for (const std::uint32_t i : s.world().in_id_order())
+    {
+        const world::Component& c = s.world().component(i);
+        if (!is_object(c)) continue;
+        trace->objects_.push_back(c.id);
+        const char* const shaft[] = {"angle", "angular_velocity"};
+        const char* const body[] = {"position.x", "position.y", "position.z", "orientation.w", "orientation.x", "orientation.y", "orientation.z",
+                                    "linear_velocity.x", "linear_velocity.y", "linear_velocity.z",
+                                    "angular_velocity.x", "angular_velocity.y", "angular_velocity.z"};
+        if (c.facet == Facet::Shaft)
+            for (const char* name : shaft) header += "," + c.id + "." + name;
+        else
+            for (const char* name : body) header += "," + c.id + "." + name;
+    }
+    std::fprintf(trace->file_.get(), "%s\n", header.c_str());
+    return trace;
+}
+
+void Trace::sample(const simulation::Simulation& s, bool last)
+{
+    if (s.tick() == last_ || (!last && s.time() < next_ * (1 - 1e-12))) return;
+    last_ = s.tick();
+    while (every_ > 0 && next_ <= s.time() * (1 + 1e-12)) next_ += every_;
+    const simulation::Totals t = s.totals();
+    std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + hash_text(s.state_hash()) + "," + number(t.kinetic + t.stored) + "," +
+                      number(t.kinetic) + "," + number(t.momentum.x) + "," + number(t.momentum.y) + "," + number(t.momentum.z);
+    for (const std::string& id : objects_)
+    {
+        const std::uint32_t i = s.world().find(id);
+        if (i == kNoIndex)
+            continue;
+        const world::Component& c = s.world().component(i);
+        if (c.facet == Facet::Shaft)
+        {
+            row += "," + number(s.world().host().shafts.angle[c.host_index]) + "," + number(s.world().host().shafts.speed[c.host_index]);
+            continue;
+        }
+        const auto hosted = [&](const char* name) { return world::get_hosted(s.world().host(), Facet::Body, c.host_index, name); };
+        const auto add = [&](const Vec3& v) { row += "," + number(v.x) + "," + number(v.y) + "," + number(v.z); };
+        const Quat q = std::get<Quat>(hosted("orientation"));
+        add(std::get<Vec3>(hosted("position")));
+        row += "," + number(q.w) + "," + number(q.x) + "," + number(q.y) + "," + number(q.z);
+        add(std::get<Vec3>(hosted("linear_velocity")));
+        add(std::get<Vec3>(hosted("angular_velocity")));
+    }
+    std::fprintf(file_.get(), "%s\n", row.c_str());
+}
+
+std::string table_text(const simulation::Simulation& s)
+{
+    const world::World& world = s.world();
+    char line[256];
+    std::snprintf(line, sizeof line, "t = %9.4f s   step %" PRId64 "   energy %.6g J\n", s.time(), s.tick(), s.totals().kinetic + s.totals().stored);
+    std::string out = line;
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        const world::Component& c = world.component(i);
+        if (c.facet == Facet::Shaft)
+            std::snprintf(line, sizeof line, "  %-24.24s %10.3f rad  %10.4f rad/s\n", c.id.c_str(), world.host().shafts.angle[c.host_index],
+                          world.host().shafts.speed[c.host_index]);
+        else if (c.facet == Facet::Body && world.host().bodies.motion[c.host_index] != Motion::Static)
+        {
+            const Vec3 p = world.host().bodies.pose(c.host_index).p, v = world.host().bodies.velocity[c.host_index];
+            std::snprintf(line, sizeof line, "  %-24.24s (%8.4f %8.4f %8.4f) m  (%8.4f %8.4f %8.4f) m/s\n", c.id.c_str(), p.x, p.y, p.z, v.x, v.y, v.z);
+        }
+        else if (is_interaction(world, i))
+            std::snprintf(line, sizeof line, "  %-24.24s %-34.34s %8.0f ns/step  error %.2e\n", c.id.c_str(), world.type_of(i)->info.name.c_str(),
+                          cost_per_step(s, i), s.error_of(i));
+        else
+            continue;
+        out += line;
+    }
+    return out;
+}
+
+}  // namespace plab::daemon

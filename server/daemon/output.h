@@ -1,0 +1,41 @@
+/// What plabd writes: the end state as JSON, the course as CSV, a live table.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "simulation/simulation.h"
+
+namespace plab::daemon
+{
+
+/// The state of the scene as JSON; numbers with 17 significant digits. Keys are documented in server/docs/output.md.
+std::string end_state_json(const simulation::Simulation& simulation);
+
+/// Rows of the same figures over time.
+class Trace
+{
+public:
+    /// Writes the header. Columns are those of the objects that the scene has now.
+    static Result<std::unique_ptr<Trace>> open(const std::string& file, const simulation::Simulation& simulation, double every);
+    /// A row if the time for one has come; always if `last`.
+    void sample(const simulation::Simulation& simulation, bool last = false);
+
+private:
+    Trace() = default;
+    struct Closer
+    {
+        void operator()(std::FILE* f) const { std::fclose(f); }
+    };
+    std::unique_ptr<std::FILE, Closer> file_;
+    std::vector<std::string> objects_;
+    double every_ = 0;
+    double next_ = 0;
+    Tick last_ = -1;
+};
+
+/// A few lines for people: time, objects, interactions.
+std::string table_text(const simulation::Simulation& simulation);
+
+}  // namespace plab::daemon

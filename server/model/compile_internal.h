@@ -1,0 +1,245 @@
+/// What the passes of compile() share. Order of the passes: compile.cpp. Nobody outside this folder includes this.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "model/compile.h"
+
+namespace plab::model::detail
+{
+
+inline constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+/// Complaints of all passes. Hash tables below are only looked up in, never walked, so no order of theirs shows.
+class Report
+{
+public:
+    explicit Report(std::size_t most) : most_(most) {}
+    void add(const SourceLocation& where, std::string element, std::string why) { add({where, std::move(element), std::move(why)}, {}); }
+    /// A complaint about an id that nobody has: the nearest ids are looked up for those that are shown in the end.
+    void add_unknown_id(const SourceLocation& where, std::string element, std::string why, std::string wanted)
+    {
+        add({where, std::move(element), std::move(why)}, std::move(wanted));
+    }
+    bool empty() const { return complaints_.empty(); }
+    /// Sorted by place, cut to the limit; `ids` are those that exist.
+    Errors finish(const std::vector<std::string>& ids, const std::string& file);
+
+private:
+    struct Complaint
+    {
+        Error error;
+        std::string wanted_id;
+    };
+    void add(Error error, std::string wanted);
+
+    std::size_t most_;
+    std::size_t dropped_ = 0;
+    std::vector<Complaint> complaints_;
+    std::unordered_set<std::string> seen_;  // one complaint per place and reason: a repetition has it in each cell
+};
+
+using Names = std::unordered_set<std::string>;
+
+/// One cell of a <repeat>: what its ids and positions become.
+struct Cell
+{
+    const Names* components = nullptr;  ///< ids that the repeat defines
+    const Names* commands = nullptr;
+    std::string suffix;                 ///< ".3.0"
+    Vec3 offset;                        ///< m
+};
+
+/// An id as it reads in a cell; outside of repeats as written.
+inline std::string component_id(const Cell* cell, const std::string& id)
+{
+    return cell && cell->components->contains(id) ? id + cell->suffix : id;
+}
+inline std::string command_id(const Cell* cell, const std::string& id)
+{
+    return cell && cell->commands->contains(id) ? id + cell->suffix : id;
+}
+
+struct Reference
+{
+    std::string id;
+    SourceLocation where;
+};
+
+struct GivenField
+{
+    std::size_t index = 0;  ///< in the schema
+    Value value;
+    SourceLocation where;
+};
+
+struct GivenRole
+{
+    bool given = false;
+    bool everyone = false;
+    bool may_be_type = false;  ///< one word of a short form: an id, or the type of a part to make
+    bool unresolved = false;   ///< complained about already
+    std::vector<Reference> references;
+    std::vector<std::size_t> members;  ///< drafts, in id order
+    SourceLocation where;
+};
+
+/// A dotted attribute ("response.restitution"), until the part that it is for is known.
+struct GivenPart
+{
+    std::size_t role = 0;
+    std::string name;
+    const TextNode* text = nullptr;
+};
+
+/// A component on its way. Those of the existing scene come first and only stand to be referred to.
+struct Draft
+{
+    std::string id;
+    std::string name;
+    std::string type_name;
+    const ComponentNode* node = nullptr;       ///< null if generated or existing
+    const ComponentSpec* existing = nullptr;
+    const ComponentType* type = nullptr;
+    const Cell* cell = nullptr;
+    bool broken = false;                       ///< complained about already: no complaints that follow from it
+    bool generated = false;
+    bool parts_formed = false;
+    std::size_t parent = kNone;
+    std::vector<std::size_t> children;
+    std::size_t alias = kNone;                 ///< draft that it shares
+    std::vector<std::size_t> group;            ///< drafts that its comprefs name
+    std::vector<GivenField> fields;
+    std::vector<GivenRole> roles;              ///< one per role of the schema
+    std::vector<GivenPart> parts;
+    bool explicit_commands = false;
+    std::set<int> commands;                    ///< selected, as indices of info.commands
+    SourceLocation where;
+};
+
+/// A command where it is defined.
+struct Command
+{
+    const CommandNode* node = nullptr;
+    std::size_t owner = kNone;  ///< draft
+    const Cell* cell = nullptr;
+    bool in_stage = false;
+    std::size_t anonymous = kNone;  ///< the component that it makes (the paper's figure 7)
+    bool parameters_applied = false;
+};
+
+/// Finds drafts by id and by what a role accepts.
+class Directory
+{
+public:
+    std::deque<Draft> drafts;  // addresses stay while parts are added
+    std::unordered_map<std::string, std::size_t> index;
+
+    std::size_t find(const std::string& id) const;
+    /// Through aliases to the component that is meant; kNone where they go round in a circle.
+    std::size_t follow(std::size_t i) const;
+    /// Typed components inside a group or below a component, aliases followed, itself left out; each once.
+    std::vector<std::size_t> inside(std::size_t group) const;
+};
+
+struct Participants
+{
+    std::vector<std::size_t> members;
+    std::string why;        ///< reason of a failure
+    bool unknown = false;   ///< failed because nobody has the id
+    bool broken = false;    ///< stands for something that was complained about already
+};
+
+/// Whether a component of this type may take this role.
+bool accepts(const Role& role, const ComponentType& type);
+/// "a body or a shaft", "a component of type Response/...".
+std::string describe_wanted(const Role& role);
+/// Whom `written` stands for in `role`.
+Participants find_participants(const Directory& directory, const std::string& written, const Role& role);
+
+/// The state of one compile().
+struct Compilation
+{
+    Compilation(const Blueprint& b, TypeSource& t, const SceneSpec* e, const CompileLimits& l)
+        : blueprint(&b), types(&t), existing(e), limits(l), report(l.errors)
+    {
+    }
+
+    const Blueprint* blueprint;
+    TypeSource* types;
+    const SceneSpec* existing;
+    CompileLimits limits;
+    Report report;
+
+    SceneSettings settings;
+    SourceLocation solver_place;
+    bool solver_broken = false;
+    Directory directory;
+    std::deque<Cell> cells;
+    std::deque<Names> repeated_names;
+    std::vector<Command> commands;  ///< document order
+    std::unordered_map<std::string, std::size_t> command_index;
+    std::unordered_map<std::string, Result<const ComponentType*>> loaded;
+    std::vector<std::string> type_names;  ///< sorted; asked for once
+
+    Draft& draft(std::size_t i) { return directory.drafts[i]; }
+    /// "red (State/RigidBody)", for messages.
+    std::string element(std::size_t i) const;
+    bool is_type_name(const std::string& name);
+    /// The type, loaded at most once.
+    const Result<const ComponentType*>& require(const std::string& type);
+    void complain(std::size_t i, const SourceLocation& where, std::string why) { report.add(where, element(i), std::move(why)); }
+};
+
+/// Adds a draft; enters its id, refusing empty, ill-formed and used ones.
+std::size_t add_draft(Compilation& c, Draft draft);
+/// Loads the draft's type and sizes its roles; complains and marks it as broken if there is none.
+void bind_type(Compilation& c, std::size_t i);
+
+/// Gives a field, a role or (dotted) a part's field its value; complains.
+void give(Compilation& c, std::size_t i, const std::string& name, const TextNode& text, const Cell* cell);
+/// The same for a cmdparam: "SetVelocityFactor".
+void give_by_setter(Compilation& c, std::size_t i, const TextNode& text, const Cell* cell);
+/// The component that a command acts on, or kNone after a complaint.
+std::size_t subject_of(Compilation& c, const Command& command);
+/// As written, for a <cmdref> that stands for the subject; empty if the command has none.
+std::string written_subject(Compilation& c, const Command& command);
+std::string command_element(const Command& command);
+
+/// An exported command by name or unique prefix; stage: only those of that stage count for a prefix.
+struct CommandMatch
+{
+    int index = -1;
+    std::string why;
+};
+CommandMatch match_command(const ComponentType& type, const std::string& written, const Stage* stage);
+
+/// Circles of a directed graph, as paths of nodes; none if there is none, and not all if there are many.
+std::vector<std::vector<std::size_t>> find_circles(const std::vector<std::vector<std::size_t>>& edges);
+
+// The passes, in order.
+void read_settings(Compilation& c);
+void declare_existing(Compilation& c);
+void declare_components(Compilation& c);
+void settle_solver(Compilation& c);
+void link_references(Compilation& c);
+void collect_commands(Compilation& c);
+void gather_fields(Compilation& c);
+/// Twice: before parts are formed for the subjects that are there, after it for the parts.
+void apply_command_parameters(Compilation& c, bool parts_are_formed);
+void form_parts(Compilation& c);
+void resolve_roles(Compilation& c);
+void check_roles(Compilation& c);
+void finish_fields(Compilation& c);
+void select_commands(Compilation& c);
+SceneSpec assemble(Compilation& c);
+
+}  // namespace plab::model::detail

@@ -1,0 +1,22 @@
+/// Single numbers as authors write them, whatever the process's locale says.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "plab/result.h"
+
+namespace plab::model
+{
+
+/// Whether a word stands where a number is meant (else a unit begins there): a sign, a digit, a point, nan, inf.
+bool looks_like_number(std::string_view word);
+
+/// "0.5", "-1e3", "1/240", "inf". Infinity is the caller's to refuse. Refused here: NaN, hexadecimal, commas, trailing text.
+Result<double> parse_real(std::string_view word);
+
+/// A whole number of 64 bits.
+Result<std::int64_t> parse_integer(std::string_view word);
+Result<std::uint64_t> parse_unsigned(std::string_view word);
+
+}  // namespace plab::model

@@ -1,0 +1,21 @@
+/// State/Kinematic: a body that moves with the velocity it is given, whatever pushes it: x' = v, q' = w q / 2.
+#pragma once
+
+#include "body_columns.h"
+
+namespace plab::bodies
+{
+
+struct KinematicRows
+{
+    BodyColumns body;
+    VelocityColumns velocity;
+    Column<Ref> solver;
+
+    void describe(Schema& schema);
+};
+
+void prepare_kinematic(const StepContext& context, Row row, const KinematicRows& kinematics, Bodies& bodies,
+                       Materials& materials);
+
+}  // namespace plab::bodies

@@ -1,0 +1,23 @@
+/// Material/Pair: how two materials meet. Friction: |f_t| <= friction f_n; restitution: v_n' = -restitution v_n.
+#pragma once
+
+#include <string>
+
+#include "plab/registrar.h"
+
+namespace plab::bodies
+{
+
+struct MaterialPairRows
+{
+    Column<std::string> a, b;
+    Column<double> friction;     ///< Coulomb's coefficient
+    Column<double> restitution;  ///< Newton's coefficient, 0 to 1
+
+    void describe(Schema& schema);
+};
+
+/// Refuses a pair that has a law already, in either order.
+Result<void> connect_material_pair(Row row, const MaterialPairRows& pairs, Materials& materials);
+
+}  // namespace plab::bodies

@@ -1,0 +1,90 @@
+#include "mesh.h"
+
+#include "volume_integration.h"
+
+namespace plab::shapes
+{
+namespace
+{
+
+Result<std::vector<Vec3>> vertices_of(const Reals& numbers)
+{
+    if (numbers.empty() || numbers.size() % 3 != 0)
+        return reason("vertices must be triples x y z, not " + std::to_string(numbers.size()) + " numbers");
+    std::vector<Vec3> out;
+    out.reserve(numbers.size() / 3);
+    for (std::size_t i = 0; i < numbers.size(); i += 3)
+    {
+        out.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+        if (!is_finite(out.back()))
+            return reason("vertex " + std::to_string(i / 3) + " must be finite");
+    }
+    return out;
+}
+
+Result<std::vector<std::uint32_t>> triangles_of(const Integers& numbers, std::size_t vertex_count)
+{
+    if (numbers.empty() || numbers.size() % 3 != 0)
+        return reason("triangles must be triples of vertex numbers, not " + std::to_string(numbers.size()) +
+                      " numbers");
+    std::vector<std::uint32_t> out;
+    out.reserve(numbers.size());
+    for (const std::int64_t n : numbers)
+    {
+        if (n < 0 || static_cast<std::uint64_t>(n) >= vertex_count)
+            return reason("triangle " + std::to_string(out.size() / 3) + " names vertex " + std::to_string(n) +
+                          "; vertices are numbered from 0 to " + std::to_string(vertex_count - 1));
+        out.push_back(static_cast<std::uint32_t>(n));
+    }
+    return out;
+}
+
+}  // namespace
+
+void MeshRows::describe(Schema& schema)
+{
+    shape.describe(schema);
+    schema.param(vertices, "vertices", unit::metre, "x y z of each vertex, in the shape's frame");
+    schema.param(triangles, "triangles", unit::one,
+                 "three vertex numbers (from 0) per triangle, counter-clockwise seen from outside");
+    schema
+        .param(hull_collides, "hull_collides", unit::one,
+               "the mesh is drawn and integrated as given; it collides as its convex hull (true) or not at all (false)")
+        .or_else(true);
+}
+
+Result<void> prepare_mesh(const StepContext& context, Row row, const MeshRows& meshes, Shapes& shapes)
+{
+    auto vertices = vertices_of(meshes.vertices[row]);
+    if (!vertices)
+        return vertices.error();
+    auto triangles = triangles_of(meshes.triangles[row], vertices->size());
+    if (!triangles)
+        return triangles.error();
+
+    Geometry geometry;
+    geometry.kind = GeometryKind::Mesh;
+    geometry.pose = meshes.shape.pose(row);
+    geometry.vertices = vertices.take();
+    geometry.triangles = triangles.take();
+    geometry.hull_collides = meshes.hull_collides[row];
+    shapes.geometry[context.facet_of_row[row]] = std::move(geometry);
+    return {};
+}
+
+Result<void> measure_mesh(Row row, const MeshRows& meshes, MassProperties& solid)
+{
+    const auto vertices = vertices_of(meshes.vertices[row]);
+    if (!vertices)
+        return vertices.error();
+    const auto triangles = triangles_of(meshes.triangles[row], vertices->size());
+    if (!triangles)
+        return triangles.error();
+    const auto solid_S = solid_mesh(*vertices, *triangles);
+    if (!solid_S)
+        return solid_S.error();
+    solid = posed(*solid_S, meshes.shape.pose(row));
+    return {};
+}
+
+}  // namespace plab::shapes

@@ -1,0 +1,42 @@
+#include "plab/plugin.h"
+
+#include "box.h"
+#include "mesh.h"
+#include "placed.h"
+#include "plane.h"
+#include "sphere.h"
+
+namespace
+{
+
+template <auto Prepare, auto Measure, class Table>
+void add_shape(plab::Registrar& registrar, std::string name, std::string doc, std::string measured)
+{
+    registrar.component<Table>(std::move(name), std::move(doc))
+        .facet(plab::Facet::Shape)
+        .family("Shape")
+        .template command<Prepare>(plab::Phase::Prepare, "Shape/Prepare", "hands the geometry to the host")
+        .template command<Measure>(plab::Phase::Measure, "Shape/VolumeIntegration", std::move(measured))
+        .host_command(plab::Phase::Draw, "Shape/Draw", "shows the shape to viewers")
+        .source(
+            "B. Mirtich, Fast and accurate computation of polyhedral mass properties, J. Graphics Tools 1(2), 1996; "
+            "F. Tonon, Explicit exact formulas for the 3-D tetrahedron inertia tensor, J. Math. Stat. 1(1), 2004");
+}
+
+}  // namespace
+
+PLAB_PLUGIN("shapes", registrar)
+{
+    using namespace plab::shapes;
+    add_shape<prepare_sphere, measure_sphere, SphereRows>(registrar, "Shape/Sphere", "a ball",
+                                                          "volume, centre and inertia, in closed form");
+    add_shape<prepare_box, measure_box, BoxRows>(registrar, "Shape/Box", "a cuboid",
+                                                 "volume, centre and inertia, in closed form");
+    add_shape<prepare_plane, measure_plane, PlaneRows>(
+        registrar, "Shape/Plane", "a half space below z = 0 of its frame", "refused: a plane has no volume");
+    add_shape<prepare_mesh, measure_mesh, MeshRows>(
+        registrar, "Shape/Mesh", "triangles; drawn and integrated as given, collides as its convex hull or not at all",
+        "volume, centre and inertia, exact for closed triangle meshes");
+    add_shape<prepare_placed, measure_placed, PlacedRows>(registrar, "Shape/Placed", "another shape at another pose",
+                                                          "those of the referred shape, moved");
+}

@@ -1,0 +1,29 @@
+/// Mass properties of solids of density 1 kg/m^3: closed forms for primitives, exact integrals for meshes.
+///
+/// Frames: S the shape's, B its body's. Inertia is about the solid's own centre of mass.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plab/result.h"
+#include "plab/tables.h"
+
+namespace plab::shapes
+{
+
+/// m = 4/3 pi r^3, I = 2/5 m r^2. radius in m.
+MassProperties solid_sphere(double radius);
+
+/// m = 8 a b c, I_xx = m (b^2 + c^2) / 3, ... ; half extents (a, b, c) in m.
+MassProperties solid_box(const Vec3& half_extents);
+
+/// The solid inside closed triangles (index triples, counter-clockwise seen from outside). Refuses what encloses no
+/// definite volume: an open, non-manifold, inconsistently wound, inside-out or flat mesh. Does not look for
+/// self-intersection: parts that overlap count twice.
+Result<MassProperties> solid_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles);
+
+/// The same solid, seen from B: centre X_BS c, inertia R I R^T.
+MassProperties posed(const MassProperties& solid_S, const Pose& X_BS);
+
+}  // namespace plab::shapes

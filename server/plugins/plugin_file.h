@@ -1,0 +1,38 @@
+/// One plugin file: opening it, checking its stamp, letting it register its types. plugin_file.cpp is the only file
+/// that sees dlfcn.h.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "plab/plugin.h"
+
+namespace plab::plugins
+{
+
+/// Unloads the library. Whatever holds its code or data (types, tables, declarations) must be gone before.
+struct LibraryCloser
+{
+    void operator()(void* library) const;
+};
+using LibraryHandle = std::unique_ptr<void, LibraryCloser>;
+
+struct OpenPlugin
+{
+    LibraryHandle library;  ///< first: goes last
+    std::string path;
+    std::string name;
+    Registrar registrar;    ///< the types that it declared
+};
+
+/// Loads the plugin at `path`. It is refused, with a reason that names the file, unless it was built against this SDK:
+/// the stamp is read before anything else in it is touched.
+Result<OpenPlugin> open_plugin(const std::string& path);
+
+/// Why a plugin with this stamp cannot be used; empty if it can.
+std::string why_not_usable(const PluginStamp& stamp);
+
+/// The folder "lib/plab" beside the folder of this program; empty if the system does not tell.
+std::string installed_plugin_directory();
+
+}  // namespace plab::plugins

@@ -1,0 +1,224 @@
+// Contacts inside a step: looking for them, standing contacts as time stepping, impulses.
+#include <algorithm>
+#include <cmath>
+
+#include "plab/rotation.h"
+#include "simulation/stepper.h"
+
+namespace plab::simulation
+{
+
+void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
+                     std::vector<FoundContact>& out)
+{
+    world::Table& table = *world_.tables()[detector.table];
+    StepContext context;
+    context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    ContactCollector sink(world_, out);
+    sink.look_for(index, standing, only_standing);
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&detector.row, 1);
+    call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
+    call.contacts = &sink;
+    (void)detector.command->run(call, table.rows());
+}
+
+void Stepper::detect_all(std::vector<FoundContact>& out)
+{
+    out.clear();
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        standing_.clear();
+        for (const PairState& p : cache_.pairs())
+            if (p.resting && p.detector == detectors_[d].component) standing_.push_back({p.a, p.b, p.normal * -kStandingMargin});
+        detect(detectors_[d], d, standing_, false, out);
+    }
+    sort_contacts(out, world_);
+}
+
+void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out)
+{
+    const auto member = [&](Ref r) {
+        const std::uint32_t g = groups_.of(r);
+        return g != kNoIndex && std::binary_search(groups.begin(), groups.end(), g);
+    };
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        standing_.clear();
+        for (const PairState& p : cache_.pairs())
+            if (p.resting && p.detector == detectors_[d].component && (member(p.a) || member(p.b)))
+                standing_.push_back({p.a, p.b, p.normal * -kStandingMargin});
+        if (!standing_.empty()) detect(detectors_[d], d, standing_, true, out);
+    }
+    sort_contacts(out, world_);
+    for (FoundContact& f : out)
+    {
+        f.contact.resting = true;
+        PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_);
+        const KnownContact& known = cache_.contact_of(*pair, f.contact.feature);
+        f.contact.id = known.id, f.contact.impulse = known.impulse;
+        fill_material(f);
+    }
+}
+
+void Stepper::fill_material(FoundContact& f) const
+{
+    const world::HostTables& host = world_.host();
+    const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
+    if (const SurfaceLaw* law = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr)
+    {
+        f.contact.friction = law->friction, f.contact.restitution = law->restitution;
+        return;
+    }
+    const std::uint32_t response = detectors_[f.detector].response;
+    if (response == kNoIndex) return;
+    const Row row = world_.component(response).row;
+    const auto number = [&](const char* name) {
+        const Field* field = world_.table_of(response).schema().find_field(name);
+        const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
+        return column ? (*column)[row] : 0.0;
+    };
+    f.contact.friction = number("friction"), f.contact.restitution = number("restitution");
+}
+
+double Stepper::normal_velocity(const Contact& c) const
+{
+    const Bodies& bodies = world_.host().bodies;
+    return dot(bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point), c.normal);
+}
+
+double Stepper::kinetic_energy(const std::vector<FoundContact>& contacts) const
+{
+    const Bodies& bodies = world_.host().bodies;
+    counted_.clear();
+    for (const FoundContact& f : contacts) counted_.push_back(f.contact.a.index), counted_.push_back(f.contact.b.index);
+    std::sort(counted_.begin(), counted_.end());
+    counted_.erase(std::unique(counted_.begin(), counted_.end()), counted_.end());
+    double sum = 0;
+    for (const std::uint32_t b : counted_) sum += bodies.kinetic_energy(b);
+    return sum;
+}
+
+void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book)
+{
+    // Each detector's own response answers for its contacts. Several of them take turns until nobody changes anything.
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        if (!detectors_[d].responds) continue;
+        impact_contacts_.clear();
+        for (const FoundContact& f : contacts)
+            if (f.detector == d) impact_contacts_.push_back(f.contact);
+        if (impact_contacts_.empty()) continue;
+        const std::uint32_t response = detectors_[d].response;
+        world::Table& table = world_.table_of(response);
+        const world::Component& c = world_.component(response);
+        StepContext context;
+        context.time = frame_.start_time, context.dt = dt, context.tick = frame_.tick, context.events = this;
+        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+        Impact impact;
+        impact.mode = mode, impact.dt = dt, impact.contacts = impact_contacts_;
+        PhaseCall call;
+        call.context = &context, call.rows = Rows(&c.row, 1);
+        call.bodies = &world_.host().bodies, call.impact = &impact;
+        const double before = book.work ? kinetic_energy(contacts) : 0.0;
+        for (const CommandInfo& command : table.type().info.commands)
+            if (command.phase == Phase::Respond && command.run) (void)command.run(call, table.rows());
+        if (book.work) (*book.work)[response] += book.sign * (kinetic_energy(contacts) - before);
+        report_.worst_residual = std::max(report_.worst_residual, impact.residual);
+        std::size_t next = 0;
+        for (FoundContact& f : contacts)
+            if (f.detector == d) f.contact = impact_contacts_[next++];
+    }
+}
+
+void Stepper::advance_contacts(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+                               WorkBook book, bool trial)
+{
+    islands_.reset(groups_.all.size());
+    for (const PairState& p : cache_.pairs())
+        if (p.resting && groups_.of(p.a) != kNoIndex && groups_.of(p.b) != kNoIndex) islands_.join(groups_.of(p.a), groups_.of(p.b));
+    // Islands in the order of their first group; members keep their order.
+    contact_groups_.assign(groups.begin(), groups.end());
+    done_.assign(groups_.all.size(), 0);
+    for (const std::uint32_t first : contact_groups_)
+    {
+        if (done_[first]) continue;
+        island_.clear();
+        for (const std::uint32_t g : contact_groups_)
+            if (!done_[g] && islands_.find(g) == islands_.find(first)) done_[g] = 1, island_.push_back(g);
+        std::sort(island_.begin(), island_.end());
+        advance_island(island_, shadows, from, to, book, trial);
+    }
+}
+
+/// Time stepping with one-sided contacts: speeds first, impulses that keep contacts from closing, then positions with
+/// the mean of old and new speeds, so that a body that slides at constant deceleration is exact.
+void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
+                             WorkBook book, bool trial)
+{
+    const double h = to - from;
+    Bodies& bodies = world_.host().bodies;
+    Shafts& shafts = world_.host().shafts;
+    GroupSystem& system = system_for(island, shadows);
+    touching_.clear();
+    touching_pairs_of(island, touching_);
+    system.begin(from, to, book, trial ? nullptr : this);
+    system.evaluate_here();
+
+    old_velocity_.clear(), old_spin_.clear();
+    const auto members = system.bodies();
+    for (std::size_t i = 0; i < members.size(); ++i)
+    {
+        const std::uint32_t b = members[i];
+        old_velocity_.push_back(bodies.velocity[b]), old_spin_.push_back(bodies.angular_velocity[b]);
+        bodies.velocity[b] += system.acceleration(i) * h;
+        bodies.angular_momentum[b] += system.torque(i) * h;
+        bodies.refresh_spin(b);
+    }
+    respond(touching_, ImpactMode::Rest, h, book);
+    if (!trial) keep_impulses(touching_);
+    for (std::size_t i = 0; i < members.size(); ++i)
+    {
+        const std::uint32_t b = members[i];
+        bodies.position[b] += (old_velocity_[i] + bodies.velocity[b]) * (0.5 * h);
+        const Vec3 turn_W = (old_spin_[i] + bodies.angular_velocity[b]) * (0.5 * h);
+        bodies.orientation[b] = normalized(exp_rotation(turn_W) * bodies.orientation[b]);
+        bodies.refresh_spin(b);
+    }
+    system.move_shafts(h, shafts);
+    system.move_prescribed();
+}
+
+void Stepper::keep_impulses(const std::vector<FoundContact>& contacts)
+{
+    for (const FoundContact& f : contacts)
+        if (PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_))
+        {
+            cache_.contact_of(*pair, f.contact.feature).impulse = f.contact.impulse;
+            pair->normal = f.contact.normal;
+        }
+}
+
+void Stepper::correct_positions()
+{
+    // What time stepping leaves in overlap is moved apart along the normal, by inverse mass; speeds stay as they are.
+    Bodies& bodies = world_.host().bodies;
+    for (std::size_t i = 0; i < found_.size();)
+    {
+        std::size_t deepest = i, end = i;
+        for (; end < found_.size() && same_pair(found_[end], found_[i]); ++end)
+            if (found_[end].contact.depth > found_[deepest].contact.depth) deepest = end;
+        const Contact& c = found_[deepest].contact;
+        const PairState* pair = cache_.find(detectors_[found_[i].detector].component, c.a, c.b, world_);
+        const double wa = bodies.inverse_mass[c.a.index], wb = bodies.inverse_mass[c.b.index];
+        if (pair && pair->resting && c.depth > kStandingMargin && wa + wb > 0)
+        {
+            bodies.position[c.a.index] -= c.normal * (c.depth * wa / (wa + wb));
+            bodies.position[c.b.index] += c.normal * (c.depth * wb / (wa + wb));
+        }
+        i = end;
+    }
+}
+
+}  // namespace plab::simulation

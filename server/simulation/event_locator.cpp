@@ -1,0 +1,296 @@
+#include "simulation/event_locator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::simulation
+{
+namespace
+{
+/// Events in one step of one world before the rest of them is answered at its end, and said so.
+constexpr int kMostEvents = 20000;
+}  // namespace
+
+bool EventLocator::acts(const Detector& detector, const PairState* pair, bool approaching) const
+{
+    if (pair && pair->resting) return false;
+    // A sensor only wants the time of the first touch.
+    if (!detector.responds) return !pair;
+    if (!detector.locates) return approaching;
+    return approaching || !(pair && pair->overlapping);
+}
+
+void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t begin, std::size_t end)
+{
+    const FoundContact& first = found[begin];
+    const Detector& detector = s_->detectors_[first.detector];
+    bool overlaps = false, approaching = false;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+        overlaps = overlaps || found[i].contact.depth > 0;
+        approaching = approaching || (found[i].contact.depth > 0 && s_->normal_velocity(found[i].contact) < 0);
+    }
+    const PairState* pair = s_->cache_.find(detector.component, first.contact.a, first.contact.b, s_->world_);
+    if (!overlaps || !acts(detector, pair, approaching)) return;
+    const auto same = [&](const Candidate& c) { return c.detector == first.detector && c.a == first.contact.a && c.b == first.contact.b; };
+    if (std::any_of(candidates_.begin(), candidates_.end(), same)) return;
+    Candidate c;
+    c.detector = first.detector, c.a = first.contact.a, c.b = first.contact.b;
+    c.at_end = !detector.locates;
+    c.contacts.assign(found.begin() + static_cast<std::ptrdiff_t>(begin), found.begin() + static_cast<std::ptrdiff_t>(end));
+    candidates_.push_back(std::move(c));
+}
+
+void EventLocator::collect(const std::vector<FoundContact>& found)
+{
+    for (std::size_t i = 0; i < found.size();)
+    {
+        std::size_t end = i;
+        while (end < found.size() && Stepper::same_pair(found[end], found[i])) ++end;
+        consider(found, i, end);
+        i = end;
+    }
+}
+
+void EventLocator::close_over_resting_pairs()
+{
+    // Whatever rests on a member goes with it: an impact passes through standing contacts.
+    for (bool grown = true; grown;)
+    {
+        grown = false;
+        for (const PairState& p : s_->cache_.pairs())
+        {
+            const std::uint32_t ga = s_->groups_.of(p.a), gb = s_->groups_.of(p.b);
+            if (!p.resting || ga == kNoIndex || gb == kNoIndex || in_scope_[ga] == in_scope_[gb]) continue;
+            in_scope_[ga] = in_scope_[gb] = 1;
+            grown = true;
+        }
+    }
+}
+
+void EventLocator::scope_of(const Candidate& candidate)
+{
+    const std::size_t groups = s_->groups_.all.size();
+    in_scope_.assign(groups, s_->detectors_[candidate.detector].local ? 0 : 1);
+    for (const Ref r : {candidate.a, candidate.b})
+        if (const std::uint32_t g = s_->groups_.of(r); g != kNoIndex) in_scope_[g] = 1;
+    close_over_resting_pairs();
+    scope_.clear();
+    for (std::uint32_t g = 0; g < groups; ++g)
+        if (in_scope_[g]) scope_.push_back(g);
+}
+
+double EventLocator::begin_of_scope() const
+{
+    double begin = 0;
+    for (const std::uint32_t g : scope_) begin = std::max(begin, s_->segment_begin_[g]);
+    return begin;
+}
+
+void EventLocator::advance_scope(double time, WorkBook book, bool trial)
+{
+    // Pieces that began together advance together; usually all of them did.
+    bool together = true;
+    for (const std::uint32_t g : scope_) together = together && s_->segment_begin_[g] == s_->segment_begin_[scope_.front()];
+    for (const std::uint32_t g : scope_) s_->rewind(g);
+    if (together)
+        s_->advance(scope_, s_->segment_begin_[scope_.front()], time, book, trial);
+    else
+        for (const std::uint32_t& g : scope_) s_->advance(std::span(&g, 1), s_->segment_begin_[g], time, book, trial);
+}
+
+bool EventLocator::overlaps_at(Candidate& candidate, double time)
+{
+    advance_scope(time, {}, true);
+    ++s_->report_.trials;
+    const StandingPair pair{candidate.a, candidate.b, {}};
+    seen_.clear();
+    s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
+    std::erase_if(seen_, [](const FoundContact& f) { return f.contact.depth <= 0; });
+    if (seen_.empty()) return false;
+    sort_contacts(seen_, s_->world_);
+    candidate.contacts = seen_;
+    return true;
+}
+
+void EventLocator::bracket(Candidate& candidate, Trial& trial)
+{
+    const world::Component& c = s_->world_.component(s_->detectors_[candidate.detector].resolution);
+    world::Table& table = s_->world_.table_of(s_->detectors_[candidate.detector].resolution);
+    StepContext context;
+    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick, context.events = s_;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&c.row, 1), call.trial = &trial;
+    for (;; ++trial.iteration)
+    {
+        for (const CommandInfo& command : table.type().info.commands)
+            if (command.phase == Phase::Locate && command.run) (void)command.run(call, table.rows());
+        if (trial.decision != Trial::Decision::Try) return;
+        (overlaps_at(candidate, trial.next) ? trial.end : trial.begin) = trial.next;
+    }
+}
+
+void EventLocator::locate(Candidate& candidate)
+{
+    candidate.located = true;
+    candidate.time = s_->frame_.step;
+    if (candidate.at_end) return;
+    scope_of(candidate);
+    Trial trial;
+    trial.begin = begin_of_scope(), trial.end = trial.step = s_->frame_.step;
+    for (const FoundContact& f : candidate.contacts) trial.depth = std::max(trial.depth, f.contact.depth);
+    const PairState* pair = s_->cache_.find(s_->detectors_[candidate.detector].component, candidate.a, candidate.b, s_->world_);
+    const bool overlapping_before = pair && pair->overlapping;
+    if (!overlapping_before && !overlaps_at(candidate, trial.begin))
+    {
+        bracket(candidate, trial);
+        candidate.time = trial.begin;
+    }
+    else
+    {
+        candidate.time = trial.begin;  // nothing to bracket: it is answered where the piece begins
+        candidate.stuck = true;
+    }
+    for (const std::uint32_t g : scope_) s_->restore_end(g);
+}
+
+void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts)
+{
+    // Normal acceleration of the contact points under the forces alone; it tells bouncing from coming to rest.
+    GroupSystem& system = s_->system_for(scope_, {});
+    const double at = contacts.empty() ? 0.0 : begin_of_scope();
+    system.begin(at, s_->frame_.step, {}, nullptr);
+    system.evaluate_here();
+    const Bodies& bodies = s_->world_.host().bodies;
+    const auto acceleration = [&](std::uint32_t body, const Vec3& p) -> Vec3 {
+        const auto members = system.bodies();
+        const auto found = std::find(members.begin(), members.end(), body);
+        if (found == members.end()) return {};
+        const auto i = static_cast<std::size_t>(found - members.begin());
+        const Vec3 w = bodies.angular_velocity[body], r = p - bodies.position[body];
+        const Vec3 spin_up = bodies.inverse_inertia_W(body) * (system.torque(i) - cross(w, bodies.angular_momentum[body]));
+        return system.acceleration(i) + cross(spin_up, r) + cross(w, cross(w, r));
+    };
+    for (FoundContact& f : contacts)
+        f.contact.normal_acceleration =
+            dot(acceleration(f.contact.b.index, f.contact.point) - acceleration(f.contact.a.index, f.contact.point), f.contact.normal);
+}
+
+void EventLocator::announce_rest(const FoundContact& f, PairState& pair, double time)
+{
+    if (!f.contact.resting || pair.resting) return;
+    pair.resting = true;
+    Event e = s_->contact_event("contact.rest", pair, time);
+    e.values = {f.contact.point.x, f.contact.point.y, f.contact.point.z};
+    s_->emit(std::move(e));
+}
+
+void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>& contacts, double time)
+{
+    const Detector& detector = s_->detectors_[candidate.detector];
+    bool added = false;
+    PairState& pair = s_->cache_.get_or_add(detector.component, candidate.a, candidate.b, s_->world_, s_->frame_.tick, added);
+    pair.overlapping = !detector.responds || candidate.at_end;
+    if (added) s_->emit(s_->contact_event("contact.begin", pair, time));
+    for (const FoundContact& f : contacts)
+    {
+        if (f.detector != candidate.detector || f.contact.a != candidate.a || f.contact.b != candidate.b) continue;
+        pair.normal = f.contact.normal;
+        (void)s_->cache_.contact_of(pair, f.contact.feature);
+        if (!detector.responds) continue;
+        Event e = s_->contact_event("contact.impact", pair, time);
+        const Contact& c = f.contact;
+        e.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.impulse.x, c.impulse.y, c.impulse.z};
+        s_->emit(std::move(e));
+        announce_rest(f, pair, time);
+    }
+}
+
+void EventLocator::answer(Candidate& candidate)
+{
+    const double time = s_->frame_.start_time + candidate.time;
+    impact_ = candidate.contacts;
+    if (s_->detectors_[candidate.detector].responds)
+    {
+        const std::size_t own = impact_.size();
+        seen_.clear();
+        s_->touching_pairs_of(scope_, seen_);
+        for (FoundContact& f : seen_)
+            if (!(f.contact.a == candidate.a && f.contact.b == candidate.b)) f.contact.impulse = {}, impact_.push_back(f);
+        for (std::size_t i = 0; i < own; ++i) s_->fill_material(impact_[i]), impact_[i].contact.impulse = {};
+        rate_of_approach(impact_);
+        s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
+        // Overlapping from the start and not parted by the response: it stands, whatever the response says.
+        for (std::size_t i = 0; i < own; ++i)
+            if (candidate.stuck && s_->normal_velocity(impact_[i].contact) <= 0) impact_[i].contact.resting = true;
+    }
+    record(candidate, impact_, time);
+    ++s_->report_.events;
+}
+
+bool EventLocator::process(Candidate& candidate)
+{
+    scope_of(candidate);
+    if (!s_->detectors_[candidate.detector].responds)
+    {
+        // A sensor disturbs nobody: the time is known, nothing goes back.
+        record(candidate, candidate.contacts, s_->frame_.start_time + candidate.time);
+        return false;
+    }
+    if (candidate.at_end)
+    {
+        // Answered where the step ends: nobody goes back, only speeds change.
+        answer(candidate);
+        for (const std::uint32_t g : scope_) s_->save_end(g);
+        return false;
+    }
+    // What the pieces booked up to the end of the step is taken back, then booked again in two parts.
+    advance_scope(s_->frame_.step, {&s_->work_, -1}, true);
+    advance_scope(candidate.time, {&s_->work_, 1}, true);
+    for (const std::uint32_t g : scope_) s_->segment_begin_[g] = candidate.time;
+    s_->report_.rewinds += static_cast<int>(scope_.size());
+    answer(candidate);
+    for (const std::uint32_t g : scope_) s_->save_segment(g);
+    if (candidate.time < s_->frame_.step) s_->advance(scope_, candidate.time, s_->frame_.step, {&s_->work_, 1}, false);
+    for (const std::uint32_t g : scope_) s_->save_end(g);
+    return true;
+}
+
+void EventLocator::look_again(std::vector<FoundContact>& found)
+{
+    // Only pairs with a member that went back can have changed; the rest of what was known stands.
+    const auto touched = [&](Ref r) { const std::uint32_t g = s_->groups_.of(r); return g != kNoIndex && in_scope_[g]; };
+    const auto stale = [&](Ref a, Ref b) { return touched(a) || touched(b); };
+    std::erase_if(candidates_, [&](const Candidate& c) { return stale(c.a, c.b); });
+    s_->detect_all(found);
+    collect(found);
+}
+
+void EventLocator::run(std::vector<FoundContact>& found)
+{
+    s_->detect_all(found);
+    candidates_.clear();
+    collect(found);
+    for (int events = 0; !candidates_.empty(); ++events)
+    {
+        if (events == kMostEvents)
+        {
+            Event e;
+            e.time = s_->frame_.start_time, e.kind = "contact.too_many", e.severity = Severity::Warning;
+            e.component = s_->detectors_[candidates_.front().detector].component;
+            e.message = "more than " + std::to_string(kMostEvents) + " events in one step; the rest waits for the next one";
+            s_->emit(std::move(e));
+            return;
+        }
+        for (Candidate& c : candidates_)
+            if (!c.located) locate(c);
+        const auto first = std::min_element(candidates_.begin(), candidates_.end(),
+                                            [](const Candidate& x, const Candidate& y) { return x.time < y.time; });
+        Candidate chosen = std::move(*first);
+        candidates_.erase(first);
+        if (process(chosen)) look_again(found);
+    }
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,120 @@
+/// The equations of motion of some groups, as a solver sees them, over the world's host tables.
+///
+/// Coordinates start at zero at the beginning of an advance and are mapped onto the tables at every evaluation
+/// (sdk/plab/dynamics.h), so that forces always read poses and velocities of the stage. Prescribed members follow their
+/// closed form from the start of the step, whatever pieces the step is cut into.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "simulation/groups.h"
+#include "simulation/shaft_coupling.h"
+
+namespace plab::simulation
+{
+
+/// What a step shares with all of its parts; owned by the stepper.
+struct StepFrame
+{
+    world::World* world = nullptr;
+    const Schedule* schedule = nullptr;
+    const Groups* groups = nullptr;
+    ConstraintGraph* graph = nullptr;
+    const world::MotionMemento* start = nullptr;  ///< at the start of the step
+    double start_time = 0;                        ///< s
+    double step = 0;                              ///< s
+    Tick tick = 0;
+    std::uint64_t seed = 0;
+};
+
+/// Where the work of force components goes while an advance is booked.
+struct WorkBook
+{
+    std::vector<double>* work = nullptr;  ///< J by component; null: a trial
+    double sign = 1;                      ///< -1 takes back what a rewound piece had booked
+};
+
+class GroupSystem final : public DynamicSystem
+{
+public:
+    /// Takes the groups as members, and `shadows`: groups whose state the members' forces read, and that are advanced
+    /// along for that reason only; their work is not booked. Keeps its memory from use to use.
+    void configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows = {});
+    /// The present step's frame, after configure(): the world's structure must be the same.
+    void set_frame(const StepFrame& frame) { frame_ = frame; }
+    /// Starts an advance from `from` to `to` (s since the start of the step) at the tables' present state.
+    void begin(double from, double to, WorkBook book, EventSink* events);
+    /// Puts the solver's result into the tables. False if something is not finite any more.
+    bool finish();
+    /// Only forces: adds them up at the present state and returns accelerations in the rates (for contact steps).
+    void evaluate_here() { evaluate(0, 1); }
+
+    /// For contact steps, after evaluate_here: shafts by the mean of old and new speeds, prescribed members to the end.
+    void move_shafts(double h, Shafts& shafts);
+    void move_prescribed() { scatter_prescribed(from_ + context_.dt); }
+
+    bool empty() const { return bodies_.empty() && shafts_.empty() && prescribed_bodies_.empty() && prescribed_shafts_.empty(); }
+    bool needs_solver() const { return !bodies_.empty() || !shafts_.empty(); }
+    std::span<const std::uint32_t> bodies() const { return bodies_; }
+    std::span<const std::uint32_t> shafts() const { return shafts_; }
+    const StepContext& context() const { return context_; }
+    /// Speed rates of a member body after evaluate: dv/dt (m/s^2) and dL/dt (N m).
+    Vec3 acceleration(std::size_t member) const { return get(speed_rates_, 6 * member); }
+    Vec3 torque(std::size_t member) const { return get(speed_rates_, 6 * member + 3); }
+    /// The first member whose state is not finite, after finish() said so.
+    Ref not_finite() const { return not_finite_; }
+    const ShaftCoupling& coupling() const { return coupling_; }
+
+    std::span<double> coordinates() override { return coordinates_; }
+    std::span<double> speeds() override { return speeds_; }
+    std::span<const double> coordinate_rates() const override { return coordinate_rates_; }
+    std::span<const double> speed_rates() const override { return speed_rates_; }
+    void evaluate(double t, double weight) override;
+    void evaluate_kinematics() override;
+    std::span<double> workspace(int i) override;
+
+private:
+    static Vec3 get(const std::vector<double>& v, std::size_t i) { return {v[i], v[i + 1], v[i + 2]}; }
+    static void put(std::vector<double>& v, std::size_t i, const Vec3& a) { v[i] = a.x, v[i + 1] = a.y, v[i + 2] = a.z; }
+    void collect_members(std::span<const std::uint32_t> groups, bool accounted);
+    void filter_rows(Phase phase);
+    void scatter(double t);
+    void scatter_prescribed(double since_step_start);
+    void clear_wrenches();
+    void run_forces(double weight);
+    void rates_of_bodies();
+    void rates_of_shafts(double weight);
+
+    struct Selected
+    {
+        const Block* block;
+        std::vector<Row> rows;
+    };
+
+    StepFrame frame_;
+    std::vector<std::uint32_t> bodies_, shafts_, prescribed_bodies_, prescribed_shafts_;
+    std::vector<std::uint32_t> roots_;  ///< shafts that carry coordinates
+    std::array<std::vector<Selected>, 2> selected_;  ///< forces, couplings
+    std::array<std::size_t, 2> selected_count_{};
+    std::vector<BlockRow> merged_;
+    std::vector<std::uint32_t> groups_;
+    std::vector<std::uint8_t> active_bodies_, active_shafts_, accounted_bodies_, accounted_shafts_;
+    bool has_shadows_ = false;
+
+    StepContext context_;
+    double from_ = 0;
+    WorkBook book_;
+    Wrenches wrenches_;
+    std::vector<double> power_;
+    ShaftCoupling coupling_;
+
+    std::vector<double> coordinates_, speeds_, coordinate_rates_, speed_rates_;
+    std::array<std::vector<double>, 32> workspace_;
+    std::vector<Vec3> start_position_;
+    std::vector<Quat> start_orientation_;
+    std::vector<double> start_angle_;
+    Ref not_finite_;
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,143 @@
+/// What can be asked of a running scene, and what is answered. The bus carries the same.
+///
+/// Names and values only: what a request does not name stays as it is. The operations of one request are one
+/// transaction: all of them take effect at one step boundary, or none does.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "model/scene.h"
+#include "plab/context.h"
+
+namespace plab::simulation
+{
+
+/// A value as text (parsed by the field's own rules, units allowed) or as it is.
+using GivenValue = std::variant<std::string, Value>;
+
+struct NamedValue
+{
+    std::string name;
+    GivenValue value;
+};
+
+/// Adds compiled components; their ids must be new.
+struct AddOperation
+{
+    model::SceneSpec fragment;
+};
+/// Removes a component, or an object with all that is in it. Refused while others refer to it.
+struct RemoveOperation
+{
+    std::string id;
+};
+/// Exchanges a component for another type of its family; `values` are parameters of the new one.
+struct SwapOperation
+{
+    std::string id;
+    std::string type;
+    std::vector<NamedValue> values;
+};
+/// Sets one parameter or state.
+struct SetOperation
+{
+    std::string id;
+    std::string name;
+    GivenValue value;
+};
+/// An impulse: N s at a point in W (default: centre of mass) for a body; x in N m s about its axle for a shaft.
+struct PushOperation
+{
+    std::string id;
+    Vec3 impulse;
+    std::optional<Vec3> point;
+};
+struct PauseOperation
+{
+};
+struct ResumeOperation
+{
+};
+/// Makes that many steps although paused, then pauses.
+struct StepOperation
+{
+    std::int64_t steps = 1;
+};
+/// Real-time factor that the clock aims at; 0: as fast as it goes.
+struct RateOperation
+{
+    double factor = 1;
+};
+/// Back to the scene as it was loaded; a new run begins.
+struct ResetOperation
+{
+};
+struct LoadOperation
+{
+    model::SceneSpec scene;
+};
+/// A new step length from this step on.
+struct StepLengthOperation
+{
+    model::StepLength dt;
+};
+
+using Operation = std::variant<AddOperation, RemoveOperation, SwapOperation, SetOperation, PushOperation, PauseOperation, ResumeOperation,
+                               StepOperation, RateOperation, ResetOperation, LoadOperation, StepLengthOperation>;
+
+struct Request
+{
+    std::uint64_t id = 0;
+    std::vector<Operation> operations;
+    std::optional<Tick> at;                ///< takes effect before this step; one that has passed is refused as late
+    std::optional<std::uint64_t> revision; ///< refused if structural requests came between
+};
+
+enum class Fate : std::uint8_t
+{
+    Kept,       ///< carried over, same bits
+    Converted,  ///< carried over in another type
+    Given,      ///< by the request
+    Fresh,      ///< the new type's default
+    Lost,       ///< the new type has no such field
+};
+
+struct FieldFate
+{
+    std::string field;
+    Fate fate = Fate::Kept;
+};
+
+/// Energy, momentum and error over the first step after a swap, beside what the old component would have given.
+struct StepOutcome
+{
+    double energy = 0;            ///< J, kinetic and stored, at the end of the step
+    Vec3 momentum;                ///< N s
+    double error = 0;             ///< largest reported error of the component
+    double cost_ns = 0;           ///< of the whole step
+};
+
+struct SwapReport
+{
+    std::string id, from, to;
+    std::vector<FieldFate> fields;
+    double energy_before = 0;     ///< J, at the boundary
+    StepOutcome with_old, with_new;
+};
+
+struct Reply
+{
+    std::uint64_t request = 0;
+    bool done = false;
+    bool late = false;            ///< refused: the named step has passed
+    Errors errors;                ///< why it was refused; nothing has changed then
+    Tick step = 0;                ///< boundary at which it took effect
+    double pause_ns = 0;          ///< how long it held the loop up
+    std::uint64_t revision = 0;   ///< afterwards
+    std::vector<SwapReport> swaps;
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,223 @@
+#include "simulation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/transaction.h"
+
+namespace plab::simulation
+{
+
+Simulation::Simulation(model::TypeSource& types, int threads) : types_(&types), threads_(threads) {}
+Simulation::~Simulation() = default;
+
+Result<Simulation::Live> Simulation::build(const model::SceneSpec& scene)
+{
+    Live live;
+    live.world = std::make_unique<world::World>(*types_);
+    live.world->scene().settings = scene.settings;
+    live.world->scene().file = scene.file;
+    if (auto added = live.world->add(scene); !added) return added.errors();
+    live.stepper = std::make_unique<Stepper>(*live.world, threads_);
+    if (auto built = live.stepper->rebuild(); !built)
+    {
+        Errors errors = built.errors();
+        for (Error& e : errors)
+            if (e.where.file.empty()) e.where.file = scene.file;
+        return errors;
+    }
+    return live;
+}
+
+void Simulation::begin_run(Live live, const model::SceneSpec& scene)
+{
+    stepper_ = std::move(live.stepper);
+    world_ = std::move(live.world);
+    stepper_->on_changes(&Simulation::apply_script_changes, this);
+    loaded_ = scene;
+    dt_ = scene.settings.dt;
+    tick_ = base_tick_ = 0;
+    base_time_ = 0;
+    events_.clear();
+    ++run_;
+    kinetic_at_start_ = totals().kinetic;
+}
+
+Result<void> Simulation::load(const model::SceneSpec& scene)
+{
+    auto live = build(scene);
+    if (!live) return live.errors();
+    begin_run(live.take(), scene);
+    revision_ = 0;
+    return {};
+}
+
+double Simulation::time_at(Tick tick) const
+{
+    // t = n dt in one rounding; after a change of dt, from the time at which it changed.
+    return base_tick_ == 0 ? dt_.at(tick) : base_time_ + dt_.at(tick - base_tick_);
+}
+
+void Simulation::post(Request request) { requests_.push_back(std::move(request)); }
+
+std::vector<Reply> Simulation::take_replies()
+{
+    std::vector<Reply> out;
+    out.swap(replies_);
+    return out;
+}
+
+Reply Simulation::carry_out(const Request& request)
+{
+    Reply reply;
+    reply.request = request.id, reply.step = tick_, reply.revision = revision_;
+    if (request.at && *request.at < tick_)
+    {
+        reply.late = true;
+        reply.errors = {reason("step " + std::to_string(*request.at) + " has passed, the next one is " + std::to_string(tick_))};
+        return reply;
+    }
+    if (request.revision && *request.revision != revision_)
+    {
+        reply.errors = {reason("the scene is at revision " + std::to_string(revision_) + ", not " + std::to_string(*request.revision))};
+        return reply;
+    }
+    return Transaction(*this, request).run();
+}
+
+void Simulation::apply_requests()
+{
+    std::deque<Request> later;
+    std::deque<Request> due;
+    for (Request& r : requests_) (r.at && *r.at > tick_ ? later : due).push_back(std::move(r));
+    requests_ = std::move(later);
+    for (const Request& r : due) replies_.push_back(carry_out(r));
+}
+
+bool Simulation::step()
+{
+    if (!requests_.empty()) apply_requests();
+    if (paused()) return false;
+    run_step(false);
+    ++tick_;
+    if (steps_left_ > 0) --steps_left_;
+    return true;
+}
+
+void Simulation::run_step(bool trial)
+{
+    changed_by_scripts_.clear();
+    const double start = time_at(tick_);
+    stepper_->step(tick_, start, time_at(tick_ + 1) - start);
+    if (trial) return;
+    events_ = stepper_->events();
+    freeze_lost_objects();
+    quarantine_failed();
+}
+
+void Simulation::freeze_lost_objects()
+{
+    if (stepper_->report().frozen.empty()) return;
+    for (const Ref ref : stepper_->report().frozen)
+    {
+        world::HostTables& host = world_->host();
+        if (ref.facet == Facet::Body) host.bodies.motion[ref.index] = Motion::Static;
+        if (ref.facet == Facet::Shaft) host.shafts.motion[ref.index] = Motion::Static;
+        world_->component(host.component_of(ref)).quarantined = true;
+    }
+    (void)stepper_->rebuild();  // fewer moving parts cannot contradict one another
+}
+
+void Simulation::quarantine_failed()
+{
+    bool any = false;
+    for (const Event& e : events_)
+    {
+        if (e.severity != Severity::Failure || e.component == kNoIndex) continue;
+        world::Component& c = world_->component(e.component);
+        const bool object = c.facet != Facet::Component;
+        any = any || (!c.quarantined && !object);
+        c.quarantined = true;
+    }
+    if (any) (void)stepper_->rebuild();
+}
+
+void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& changes)
+{
+    auto& s = *static_cast<Simulation*>(self);
+    bool structure = false;
+    for (const ParameterChange& change : changes)
+    {
+        const std::uint32_t i = s.world_->find(change.component);
+        Result<void> done = i == kNoIndex ? Result<void>(reason("no component has the id '" + change.component + "'")) : Result<void>();
+        const Value before = i == kNoIndex ? Value() : s.world_->get(i, change.name);
+        Value value = change.value;
+        if (const auto* number = std::get_if<double>(&value); number && std::holds_alternative<std::int64_t>(before))
+            value = static_cast<std::int64_t>(std::llround(*number));
+        if (done) done = s.world_->set(i, change.name, value);
+        if (done)
+            if (done = s.world_->prepare(i); !done) (void)s.world_->set(i, change.name, before), (void)s.world_->prepare(i);
+        if (done)
+        {
+            s.changed_by_scripts_.insert(i);
+            structure = structure || s.world_->type_of(i)->takes_part(Phase::Connect) || s.world_->component(i).facet != Facet::Component;
+            continue;
+        }
+        Event e;
+        e.time = s.time(), e.kind = "script.refused", e.severity = Severity::Warning, e.component = i;
+        e.message = "set " + change.component + "." + change.name + ": " + done.error().reason;
+        s.stepper_->emit(std::move(e));
+    }
+    if (structure) (void)s.stepper_->rebuild();
+}
+
+Totals Simulation::totals() const
+{
+    Totals t;
+    const world::HostTables& host = world_->host();
+    for (const std::uint32_t i : world_->in_id_order())
+    {
+        const world::Component& c = world_->component(i);
+        if (c.facet == Facet::Body && host.bodies.dynamic(c.host_index))
+        {
+            const std::uint32_t b = c.host_index;
+            t.kinetic += host.bodies.kinetic_energy(b);
+            const Vec3 p = host.bodies.velocity[b] * host.bodies.mass[b];
+            t.momentum += p;
+            t.angular_momentum += cross(host.bodies.position[b], p) + host.bodies.angular_momentum[b];
+        }
+        if (c.facet == Facet::Shaft && host.shafts.dynamic(c.host_index))
+        {
+            t.kinetic += host.shafts.kinetic_energy(c.host_index);
+            t.shaft_momentum += host.shafts.inertia[c.host_index] * host.shafts.speed[c.host_index];
+        }
+        t.work += stepper_->work()[i];
+    }
+    StoredEnergy stored;
+    PhaseCall call;
+    StepContext context;
+    context.time = time(), context.tick = tick_;
+    call.context = &context, call.stored = &stored;
+    call.bodies = &world_->host().bodies, call.shafts = &world_->host().shafts, call.shapes = &world_->host().shapes;
+    for (const Block& block : stepper_->schedule().of(Phase::Potential))
+    {
+        const world::Table& table = *world_->tables()[block.table];
+        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+        call.rows = block.rows;
+        (void)block.command->run(call, table.rows());
+    }
+    t.stored = stored.joule;
+    return t;
+}
+
+double Simulation::error_of(std::uint32_t component) const
+{
+    double worst = 0;
+    if (world_->component(component).table == kNoIndex) return worst;
+    for (const Field& field : world_->table_of(component).schema().fields())
+        if (const auto* column = field.is_error ? dynamic_cast<const Column<double>*>(field.column) : nullptr)
+            worst = std::max(worst, std::fabs((*column)[world_->component(component).row]));
+    return worst;
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,102 @@
+/// A scene that runs: world, step, requests, time.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <set>
+
+#include "simulation/requests.h"
+#include "simulation/stepper.h"
+
+namespace plab::simulation
+{
+
+/// Mechanical totals of the scene at one time.
+struct Totals
+{
+    double kinetic = 0;        ///< J
+    double stored = 0;         ///< J, of components that say so (Phase::Potential)
+    double work = 0;           ///< J, done by all interactions since the run began
+    Vec3 momentum;             ///< N s, of dynamic bodies
+    Vec3 angular_momentum;     ///< N m s about the origin of W, of dynamic bodies
+    double shaft_momentum = 0; ///< N m s, sum over shafts about their own axles
+};
+
+class Simulation
+{
+public:
+    explicit Simulation(model::TypeSource& types, int threads = 1);
+    ~Simulation();
+    Simulation(const Simulation&) = delete;
+    Simulation& operator=(const Simulation&) = delete;
+
+    /// Replaces whatever is there. On error what was there goes on.
+    Result<void> load(const model::SceneSpec& scene);
+
+    /// Queues a request for the boundary before the next step, or the step that it names.
+    void post(Request request);
+    /// Requests that are due take effect; then, unless paused, one step. False if paused.
+    bool step();
+    /// Answers since the last call, in order.
+    std::vector<Reply> take_replies();
+
+    Tick tick() const { return tick_; }
+    double time() const { return time_at(tick_); }
+    double dt() const { return dt_.seconds; }
+    bool paused() const { return paused_ && steps_left_ == 0; }
+    double rate() const { return rate_; }
+    std::uint64_t run() const { return run_; }
+    std::uint64_t revision() const { return revision_; }
+
+    const world::World& world() const { return *world_; }
+    world::World& world() { return *world_; }
+    const Stepper& stepper() const { return *stepper_; }
+    std::uint64_t state_hash() const { return stepper_->state_hash(); }
+    /// Events of the last step and of the requests before it.
+    const std::vector<Event>& events() const { return events_; }
+    Totals totals() const;
+    double kinetic_at_start() const { return kinetic_at_start_; }
+    /// The largest output of a component that is declared as its error; 0 if it has none.
+    double error_of(std::uint32_t component) const;
+
+private:
+    friend class Transaction;
+
+    struct Live
+    {
+        std::unique_ptr<world::World> world;
+        std::unique_ptr<Stepper> stepper;
+    };
+    Result<Live> build(const model::SceneSpec& scene);
+    void begin_run(Live live, const model::SceneSpec& scene);
+    void apply_requests();
+    Reply carry_out(const Request& request);
+    void run_step(bool trial);
+    void freeze_lost_objects();
+    void quarantine_failed();
+    double time_at(Tick tick) const;
+    static void apply_script_changes(void* self, std::vector<ParameterChange>& changes);
+
+    model::TypeSource* types_;
+    int threads_;
+    std::unique_ptr<world::World> world_;
+    std::unique_ptr<Stepper> stepper_;
+    model::SceneSpec loaded_;
+
+    Tick tick_ = 0;
+    model::StepLength dt_;
+    Tick base_tick_ = 0;      ///< where the present dt began
+    double base_time_ = 0;    ///< s
+    bool paused_ = false;
+    std::int64_t steps_left_ = 0;
+    double rate_ = 0;
+    double kinetic_at_start_ = 0;  ///< J
+    std::uint64_t run_ = 0, revision_ = 0;
+
+    std::deque<Request> requests_;
+    std::vector<Reply> replies_;
+    std::vector<Event> events_;
+    std::set<std::uint32_t> changed_by_scripts_;
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,185 @@
+/// One step of a world: the phases of step_tree.h, with rewinding to events inside the step.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "simulation/contacts.h"
+#include "simulation/shaft_reactions.h"
+#include "simulation/worker_pool.h"
+
+namespace plab::simulation
+{
+
+/// What a step did, beside moving the world.
+struct StepReport
+{
+    int events = 0;               ///< impacts located and answered
+    int trials = 0;               ///< trial advances made to locate them
+    int rewinds = 0;              ///< groups rewound
+    int resting_pairs = 0;
+    double worst_residual = 0;    ///< m/s, left over by contact responses
+    double coupling_residual = 0; ///< relative, left over by shaft couplings
+    double deepest = 0;           ///< m, overlap left at the end of the step
+    std::vector<Ref> frozen;      ///< objects whose state was not finite any more
+};
+
+/// CPU time by component type and phase, and per step; ns.
+struct CostBook
+{
+    std::vector<std::array<std::uint64_t, kPhaseCount>> by_table;  ///< index of the world's table
+    std::uint64_t steps = 0;
+    std::uint64_t total = 0;
+};
+
+class Stepper final : public EventSink
+{
+public:
+    Stepper(world::World& world, int threads);
+
+    /// To be called after any structural change and after changes of parameters: schedule, groups, constraint graph,
+    /// materials. On error (a contradictory graph) the world must be put back and rebuilt.
+    Result<void> rebuild();
+    /// Steps from tick to tick + 1. Times in s.
+    void step(Tick tick, double start_time, double dt);
+
+    const std::vector<Event>& events() const { return events_; }
+    const StepReport& report() const { return report_; }
+    const Schedule& schedule() const { return schedule_; }
+    const Groups& groups() const { return groups_; }
+    const ConstraintGraph& graph() const { return graph_; }
+    const std::vector<Detector>& detectors() const { return detectors_; }
+    ContactCache& contacts() { return cache_; }
+    const ContactCache& contacts() const { return cache_; }
+    const std::vector<FoundContact>& touching() const { return found_; }
+    std::vector<double>& work() { return work_; }  ///< J by component, since the run began
+    const std::vector<double>& work() const { return work_; }
+    CostBook& cost() { return cost_; }
+    const CostBook& cost() const { return cost_; }
+    std::vector<ParameterChange>& changes() { return changes_; }
+    std::uint64_t state_hash() const;
+    /// Where parameter changes of scripts go at the end of the drive phase.
+    using ApplyChanges = void (*)(void* owner, std::vector<ParameterChange>& changes);
+    void on_changes(ApplyChanges apply, void* owner) { apply_changes_ = apply, changes_owner_ = owner; }
+
+    void emit(Event event) override;
+
+    // The nodes of the step tree ---------------------------------------------------------------------------------------
+    void save_start();
+    void drive();
+    void couple_speeds();
+    void advance_all();
+    void locate_events();
+    void finish_contacts();
+    void finish();
+
+    bool anything_moves() const { return !groups_.all.empty(); }
+    bool anything_drives() const { return !schedule_.of(Phase::Drive).empty(); }
+    bool anything_couples() const { return !schedule_.of(Phase::Couple).empty() || !graph_.trees().empty(); }
+    bool anything_collides() const { return !detectors_.empty(); }
+    bool anything_finishes() const { return !schedule_.of(Phase::Finish).empty(); }
+
+private:
+    friend class EventLocator;
+
+    // stepper_build.cpp
+    void connect_materials(Errors& errors);
+    void connect_graph(Errors& errors);
+    Errors run_connect(const Block& block, PhaseCall call);
+    void plan_batches();
+
+    // advance.cpp. A trial emits no events and freezes nobody.
+    void advance_batches();
+    bool run_clusters(GroupSystem& system, const std::vector<std::uint32_t>& groups, WorkBook book);
+    void advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial);
+    void advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+                        WorkBook book, bool trial);
+    void advance_contacts(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+                          WorkBook book, bool trial);
+    bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, bool trial);
+    void split_by_contact(std::span<const std::uint32_t> groups);
+    void collect_shadows(std::span<const std::uint32_t> groups);
+    void rewind(std::uint32_t group);
+    void save_segment(std::uint32_t group);
+    void save_end(std::uint32_t group);
+    void restore_end(std::uint32_t group);
+    void freeze(GroupSystem& system);
+    GroupSystem& system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows);
+
+    // contact_step.cpp
+    void detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
+                std::vector<FoundContact>& out);
+    void detect_all(std::vector<FoundContact>& out);
+    void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out);
+    void fill_material(FoundContact& found) const;
+    void respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book);
+    void advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
+                        WorkBook book, bool trial);
+    void keep_impulses(const std::vector<FoundContact>& contacts);
+    static bool same_pair(const FoundContact& x, const FoundContact& y)
+    {
+        return x.detector == y.detector && x.contact.a == y.contact.a && x.contact.b == y.contact.b;
+    }
+    void correct_positions();
+    bool is_of_pair(const FoundContact& f, const PairState& pair) const;
+    std::size_t first_of_pair(const PairState& pair, std::size_t from) const;
+    void update_pair(PairState& pair, std::size_t begin, std::size_t end);
+    double normal_velocity(const Contact& c) const;
+    double kinetic_energy(const std::vector<FoundContact>& contacts) const;
+    Event contact_event(const char* kind, const PairState& pair, double time) const;
+
+    template <class Body>
+    void timed(const Block& block, Body body);
+
+    world::World& world_;
+    Schedule schedule_;
+    Groups groups_;
+    ConstraintGraph graph_;
+    ShaftTorques reactions_;
+    std::vector<Detector> detectors_;
+    ContactCache cache_;
+    WorkerPool workers_;
+
+    StepFrame frame_;
+    world::MotionMemento start_, segment_, end_;
+    std::vector<double> segment_begin_;  ///< s, by group: where its present smooth piece began
+    bool rewinds_possible_ = false;
+
+    std::vector<std::vector<std::uint32_t>> batches_;  ///< groups, by whole clusters
+    std::vector<std::unique_ptr<GroupSystem>> batch_systems_;
+    std::vector<std::uint8_t> batch_fine_;
+    std::vector<std::vector<double>> batch_work_;
+    bool batches_ready_ = false;
+
+    struct Cached
+    {
+        std::vector<std::uint32_t> groups, shadows;
+        std::unique_ptr<GroupSystem> system;
+    };
+    std::array<Cached, 4> cached_systems_;
+    std::size_t next_cached_ = 0;
+
+    // Working lists, kept warm.
+    std::vector<std::uint32_t> smooth_, in_contact_, shadows_, island_, island_all_, solvers_, same_solver_;
+    ShaftCoupling speed_coupling_;
+    std::vector<std::uint8_t> group_flags_;
+    std::vector<std::uint32_t> contact_groups_;
+    std::vector<std::uint8_t> done_;
+    mutable std::vector<std::uint32_t> counted_;
+    DisjointSets islands_;
+    std::vector<StandingPair> standing_;
+    std::vector<FoundContact> found_, touching_, redetected_;
+    std::vector<Contact> impact_contacts_;
+    std::vector<Vec3> old_velocity_, old_spin_;
+    std::vector<double> no_torque_;
+
+    std::vector<Event> events_;
+    std::vector<ParameterChange> changes_;
+    ApplyChanges apply_changes_ = nullptr;
+    void* changes_owner_ = nullptr;
+    std::vector<double> work_;
+    CostBook cost_;
+    StepReport report_;
+};
+
+}  // namespace plab::simulation

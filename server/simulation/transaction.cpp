@@ -1,0 +1,333 @@
+#include "simulation/transaction.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "model/compile.h"
+#include "model/values.h"
+
+namespace plab::simulation
+{
+
+std::vector<std::string> subtree_of(const model::SceneSpec& scene, const std::string& id)
+{
+    std::vector<std::string> out;
+    for (const model::ComponentSpec& c : scene.components)
+        if (c.parent == id)
+            for (std::string& inner : subtree_of(scene, c.id)) out.push_back(std::move(inner));
+    out.push_back(id);
+    return out;
+}
+
+Transaction::Transaction(Simulation& simulation, const Request& request) : s_(&simulation), request_(&request)
+{
+    reply_.request = request.id, reply_.step = simulation.tick_;
+}
+
+Transaction::State Transaction::capture() const
+{
+    return {s_->world_->backup(), s_->stepper_->contacts(), s_->stepper_->work(), s_->stepper_->cost()};
+}
+
+void Transaction::restore(const State& state, bool structure_changed)
+{
+    s_->world_->restore(state.world);
+    // Opaque parts (a script's chunk) are not in the backup: they are made again from what is.
+    for (const std::uint32_t i : prepared_)
+        if (i < s_->world_->components().size() && s_->world_->component(i).alive) (void)s_->world_->prepare(i);
+    for (const std::uint32_t i : s_->changed_by_scripts_) (void)s_->world_->prepare(i);
+    // Preparing rewrites host rows from parameters; what moved on since (a body's pose) is in the backup.
+    s_->world_->host() = state.world.host;
+    if (structure_changed) (void)s_->stepper_->rebuild();
+    s_->world_->host() = state.world.host;
+    s_->stepper_->contacts() = state.contacts;
+    s_->stepper_->work() = state.work;
+    s_->stepper_->cost() = state.cost;
+}
+
+Result<std::uint32_t> Transaction::find_typed(const std::string& id) const
+{
+    const std::uint32_t i = s_->world_->find(id);
+    if (i != kNoIndex && s_->world_->component(i).table != kNoIndex) return i;
+    // An object stands for the only State inside it, as in roles of the blueprint.
+    std::vector<std::uint32_t> states;
+    if (i != kNoIndex)
+        for (const std::string& inner : subtree_of(s_->world_->scene(), id))
+        {
+            const std::uint32_t k = s_->world_->find(inner);
+            const Facet facet = s_->world_->component(k).facet;
+            if (facet == Facet::Body || facet == Facet::Shaft) states.push_back(k);
+        }
+    if (states.size() == 1) return states.front();
+    std::vector<std::string> known;
+    for (const std::uint32_t k : s_->world_->in_id_order())
+        if (s_->world_->component(k).table != kNoIndex) known.push_back(s_->world_->id_of(k));
+    if (i != kNoIndex) return Error{{}, id, "is a group; name one of its components"};
+    return Error{{}, {}, "no component has the id '" + id + "'" + model::did_you_mean(id, known)};
+}
+
+Result<void> Transaction::apply(const Operation& operation)
+{
+    return std::visit(
+        [this](const auto& op) -> Result<void> {
+            using T = std::decay_t<decltype(op)>;
+            if constexpr (requires { this->apply_one(op); })
+                return apply_one(op);
+            else if constexpr (std::is_same_v<T, PauseOperation>)
+                s_->paused_ = true, s_->steps_left_ = 0;
+            else if constexpr (std::is_same_v<T, ResumeOperation>)
+                s_->paused_ = false, s_->steps_left_ = 0;
+            else if constexpr (std::is_same_v<T, StepOperation>)
+            {
+                if (op.steps < 1) return reason("needs at least one step, not " + std::to_string(op.steps));
+                s_->paused_ = true, s_->steps_left_ = op.steps;
+            }
+            else if constexpr (std::is_same_v<T, RateOperation>)
+            {
+                if (!(op.factor >= 0)) return reason("a rate is 0 (as fast as it goes) or a positive factor");
+                s_->rate_ = op.factor;
+            }
+            else if constexpr (std::is_same_v<T, StepLengthOperation>)
+            {
+                s_->base_time_ = s_->time(), s_->base_tick_ = s_->tick_;
+                s_->dt_ = op.dt;
+            }
+            else
+            {
+                const model::SceneSpec scene = [&] {
+                    if constexpr (std::is_same_v<T, LoadOperation>)
+                        return op.scene;
+                    else
+                        return s_->loaded_;
+                }();
+                return s_->load(scene);
+            }
+            return {};
+        },
+        operation);
+}
+
+Result<void> Transaction::apply_one(const AddOperation& op)
+{
+    structural_ = true;
+    return s_->world_->add(op.fragment);
+}
+
+Result<void> Transaction::apply_one(const RemoveOperation& op)
+{
+    structural_ = true;
+    const std::uint32_t top = s_->world_->find(op.id);
+    if (top == kNoIndex)
+    {
+        std::vector<std::string> known;
+        for (const std::uint32_t k : s_->world_->in_id_order()) known.push_back(s_->world_->id_of(k));
+        return Error{{}, {}, "no component has the id '" + op.id + "'" + model::did_you_mean(op.id, known)};
+    }
+    const std::vector<std::string> going = subtree_of(s_->world_->scene(), op.id);
+    Errors errors;
+    for (const std::string& id : going)
+        for (const std::uint32_t who : s_->world_->referrers(s_->world_->find(id)))
+            if (std::find(going.begin(), going.end(), s_->world_->id_of(who)) == going.end())
+                errors.push_back({{}, id, "is still used by '" + s_->world_->id_of(who) + "'"});
+    if (!errors.empty()) return errors;
+    for (const std::string& id : going) s_->world_->remove(s_->world_->find(id));
+    s_->world_->refresh_open_roles();
+    return {};
+}
+
+Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component, const SwapOperation& op, SwapReport& report)
+{
+    world::World& world = *s_->world_;
+    const model::ComponentType& old = *world.type_of(component);
+    const std::string element = op.id + " (" + old.info.name + ")";
+    auto found = world.types().require(op.type);
+    if (!found) return found.errors();
+    const model::ComponentType& type = **found;
+    if (const std::string why = type.why_not_exchangeable(old); !why.empty())
+        return Error{{}, element, "cannot be exchanged for " + op.type + ": " + why};
+
+    model::ComponentSpec spec = *world.scene().find(world.id_of(component));
+    spec.type = op.type;
+    spec.fields.clear();
+    std::vector<std::string> names;
+    Errors errors;
+    for (const Field& field : type.schema.fields())
+    {
+        if (field.kind != FieldKind::Param && field.kind != FieldKind::State) continue;
+        names.push_back(field.name);
+        const auto given = std::find_if(op.values.begin(), op.values.end(), [&](const NamedValue& v) { return v.name == field.name; });
+        const Field* before = old.schema.find_field(field.name);
+        const bool live = before && (before->kind == FieldKind::Param || before->kind == FieldKind::State);
+        Value value = live ? world.get(component, field.name) : Value();
+        Fate fate = live ? Fate::Kept : Fate::Fresh;
+        if (const auto* integer = std::get_if<std::int64_t>(&value); integer && field.type == FieldType::Real)
+            value = static_cast<double>(*integer), fate = Fate::Converted;
+        if (given != op.values.end())
+        {
+            fate = Fate::Given;
+            const auto* text = std::get_if<std::string>(&given->value);
+            auto parsed = text ? model::parse_value(*text, field) : Result<Value>(std::get<Value>(given->value));
+            if (!parsed)
+                errors.push_back({{}, element, field.name + ": " + parsed.error().reason});
+            else
+                value = *parsed;
+        }
+        if (type_of(value) != field.type)
+        {
+            fate = Fate::Fresh;
+            if (field.required) errors.push_back({{}, element, op.type + " needs " + field.name + ", which " + old.info.name + " does not have"});
+        }
+        else
+        {
+            // A value carried over keeps its bits; one that is given, or meets stricter rules, is checked.
+            Value checked = value;
+            if (auto fits = model::check_value(checked, field); !fits)
+                errors.push_back({{}, element, field.name + ": " + fits.error().reason});
+            spec.fields.push_back({field.name, fate == Fate::Kept ? value : checked, {}});
+        }
+        report.fields.push_back({field.name, fate});
+    }
+    for (const Field& field : old.schema.fields())
+        if ((field.kind == FieldKind::Param || field.kind == FieldKind::State) && !type.schema.find_field(field.name))
+            report.fields.push_back({field.name, Fate::Lost});
+    for (const NamedValue& v : op.values)
+        if (std::find(names.begin(), names.end(), v.name) == names.end())
+            errors.push_back({{}, element, op.type + " has no parameter '" + v.name + "'" + model::did_you_mean(v.name, names)});
+    if (!errors.empty()) return errors;
+    // A scene that selects commands keeps selecting the same ones where the new type has them.
+    if (spec.explicit_commands)
+        std::erase_if(spec.commands, [&](const std::string& c) { return type.find_command(c) < 0; });
+    return spec;
+}
+
+void Transaction::keep_motion(std::uint32_t component, const Bodies& before)
+{
+    // New mass properties may move the centre of mass or change what moves at all; pose and velocity of the frame that
+    // the author sees stay. Where nothing of that changed, no bit is touched.
+    const world::Component& c = s_->world_->component(component);
+    if (c.facet != Facet::Body) return;
+    const std::uint32_t b = c.host_index;
+    world::HostTables& host = s_->world_->host();
+    const Bodies& now = host.bodies;
+    if (now.motion[b] == before.motion[b] && now.center_B[b] == before.center_B[b] && now.inertia_B[b] == before.inertia_B[b]) return;
+    world::HostTables old = host;
+    old.bodies = before;
+    for (const char* name : {"orientation", "position", "angular_velocity", "linear_velocity"})
+        world::set_hosted(host, Facet::Body, b, name, world::get_hosted(old, Facet::Body, b, name));
+}
+
+Result<void> Transaction::exchange(std::uint32_t component, const model::ComponentSpec& spec)
+{
+    const Bodies before = s_->world_->host().bodies;
+    if (auto done = s_->world_->exchange(component, spec); !done) return done;
+    keep_motion(component, before);
+    return {};
+}
+
+Result<void> Transaction::apply_one(const SwapOperation& op)
+{
+    structural_ = true;
+    auto component = find_typed(op.id);
+    if (!component) return component.errors();
+    SwapReport report;
+    report.id = s_->world_->id_of(*component), report.from = s_->world_->type_of(*component)->info.name, report.to = op.type;
+    auto spec = spec_for_swap(*component, op, report);
+    if (!spec) return spec.errors();
+    if (auto done = exchange(*component, *spec); !done) return done;
+    reply_.swaps.push_back(std::move(report));
+    return {};
+}
+
+Result<void> Transaction::apply_one(const SetOperation& op)
+{
+    auto component = find_typed(op.id);
+    if (!component) return component.errors();
+    world::World& world = *s_->world_;
+    const model::ComponentType& type = *world.type_of(*component);
+    const std::string element = op.id + " (" + type.info.name + ")";
+    const std::size_t dot = op.name.find('.');
+    const Field* field = type.schema.find_field(dot == std::string::npos ? op.name : op.name.substr(0, dot));
+    if (!field)
+    {
+        std::vector<std::string> names;
+        for (const Field& f : type.schema.fields())
+            if (f.kind == FieldKind::Param || f.kind == FieldKind::State) names.push_back(f.name);
+        return Error{{}, element, "has no field '" + op.name + "'" + model::did_you_mean(op.name, names)};
+    }
+    auto value = new_value(*component, *field, op);
+    if (!value) return Error{{}, element, op.name + ": " + value.error().reason};
+    const Bodies before = world.host().bodies;
+    if (auto done = world.set(*component, field->name, *value); !done) return Error{{}, element, done.error().reason};
+    if (field->kind == FieldKind::State) return {};
+    prepared_.insert(*component);
+    if (auto done = world.prepare(*component); !done) return done;
+    keep_motion(*component, before);
+    return prepare_dependents(*component);
+}
+
+Result<void> Transaction::prepare_dependents(std::uint32_t component)
+{
+    // A shape's size is the mass of the bodies that wear it.
+    if (s_->world_->component(component).facet != Facet::Shape) return {};
+    for (const std::uint32_t who : s_->world_->referrers(component))
+    {
+        const Bodies before = s_->world_->host().bodies;
+        prepared_.insert(who);
+        if (auto done = s_->world_->prepare(who); !done) return done;
+        keep_motion(who, before);
+        if (auto done = prepare_dependents(who); !done) return done;
+    }
+    return {};
+}
+
+Result<Value> Transaction::new_value(std::uint32_t component, const Field& field, const SetOperation& op) const
+{
+    const auto* text = std::get_if<std::string>(&op.value);
+    const std::size_t dot = op.name.find('.');
+    if (dot == std::string::npos)
+    {
+        if (text) return model::parse_value(*text, field);
+        Value value = std::get<Value>(op.value);
+        if (const auto* integer = std::get_if<std::int64_t>(&value); integer && field.type == FieldType::Real)
+            value = static_cast<double>(*integer);
+        if (auto fits = model::check_value(value, field); !fits) return fits.errors();
+        return value;
+    }
+    if (field.type != FieldType::EntryList) return reason("'" + field.name + "' has no entries");
+    Value cell = s_->world_->get(component, field.name);
+    for (Entry& entry : std::get<Entries>(cell))
+    {
+        if (entry.name != op.name.substr(dot + 1)) continue;
+        Field as;
+        as.name = entry.name;
+        as.type = std::holds_alternative<bool>(entry.value) ? FieldType::Boolean
+                  : std::holds_alternative<double>(entry.value) ? FieldType::Real
+                                                                : FieldType::Text;
+        auto parsed = text ? model::parse_value(*text, as) : Result<Value>(std::get<Value>(op.value));
+        if (!parsed) return parsed;
+        if (type_of(*parsed) != as.type) return reason("has another type");
+        if (const auto* b = std::get_if<bool>(&*parsed)) entry.value = *b;
+        if (const auto* d = std::get_if<double>(&*parsed)) entry.value = *d;
+        if (const auto* s = std::get_if<std::string>(&*parsed)) entry.value = *s;
+        return cell;
+    }
+    return reason("there is no entry '" + op.name.substr(dot + 1) + "'");
+}
+
+Result<void> Transaction::apply_one(const PushOperation& op)
+{
+    auto component = find_typed(op.id);
+    if (!component) return component.errors();
+    const world::Component& c = s_->world_->component(*component);
+    world::HostTables& host = s_->world_->host();
+    if (!is_finite(op.impulse) || (op.point && !is_finite(*op.point))) return Error{{}, op.id, "an impulse must be finite"};
+    if (c.facet == Facet::Body && host.bodies.dynamic(c.host_index))
+        host.bodies.apply_impulse(c.host_index, op.impulse, op.point ? *op.point : host.bodies.position[c.host_index]);
+    else if (c.facet == Facet::Shaft && host.shafts.dynamic(c.host_index))
+        host.shafts.speed[c.host_index] += op.impulse.x * host.shafts.inverse_inertia[c.host_index];
+    else
+        return Error{{}, op.id, "does not move by forces, so it cannot be pushed"};
+    return {};
+}
+
+}  // namespace plab::simulation

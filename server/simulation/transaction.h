@@ -1,0 +1,68 @@
+/// One request carried out: all of its operations, or none.
+#pragma once
+
+#include <tuple>
+#include <vector>
+
+#include "simulation/simulation.h"
+
+namespace plab::simulation
+{
+
+/// Takes a full backup, applies operations one after the other, tries the first step with the result, and commits or
+/// brings everything back bit for bit.
+class Transaction
+{
+public:
+    Transaction(Simulation& simulation, const Request& request);
+    /// Applies, verifies and commits; on any error everything is as it was.
+    Reply run();
+
+private:
+    /// Everything that a step can change.
+    struct State
+    {
+        world::Backup world;
+        ContactCache contacts;
+        std::vector<double> work;
+        CostBook cost;
+    };
+    State capture() const;
+    void restore(const State& state, bool structure_changed);
+
+    Result<void> apply(const Operation& operation);
+    Result<void> apply_one(const AddOperation& op);
+    Result<void> apply_one(const RemoveOperation& op);
+    Result<void> apply_one(const SwapOperation& op);
+    Result<void> apply_one(const SetOperation& op);
+    Result<void> apply_one(const PushOperation& op);
+
+    Result<std::uint32_t> find_typed(const std::string& id) const;
+    Result<model::ComponentSpec> spec_for_swap(std::uint32_t component, const SwapOperation& op, SwapReport& report);
+    Result<void> exchange(std::uint32_t component, const model::ComponentSpec& spec);
+    Result<Value> new_value(std::uint32_t component, const Field& field, const SetOperation& op) const;
+    void keep_motion(std::uint32_t component, const Bodies& before);
+    Result<void> prepare_dependents(std::uint32_t component);
+
+    void run_on_scene(bool swaps);
+    /// One step with the old components, taken back: what a swap is measured against.
+    void compare_with_old(const State& before);
+    /// One step with the new ones, withheld and taken back; an error if something fails that did not fail before.
+    Result<void> try_new();
+    StepOutcome try_step(std::string& failure);
+
+    Simulation* s_;
+    const Request* request_;
+    Reply reply_;
+    std::set<std::uint32_t> prepared_;  ///< components whose opaque parts were rebuilt: again after a rollback
+    bool old_fails_ = false;
+    StepOutcome outcome_old_;
+    std::vector<double> old_errors_;
+    double energy_before_ = 0;
+    bool structural_ = false;
+};
+
+/// The ids of `id` and of all that is inside it, innermost first.
+std::vector<std::string> subtree_of(const model::SceneSpec& scene, const std::string& id);
+
+}  // namespace plab::simulation

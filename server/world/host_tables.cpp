@@ -1,0 +1,244 @@
+#include "world/host_tables.h"
+
+#include <cassert>
+
+namespace plab::world
+{
+namespace
+{
+
+template <class Grow>
+std::uint32_t take_row(std::vector<std::uint32_t>& free, std::vector<std::uint32_t>& owners, std::uint32_t component, Grow grow)
+{
+    std::uint32_t i = 0;
+    if (free.empty())
+    {
+        i = static_cast<std::uint32_t>(owners.size());
+        owners.push_back(component);
+        grow(owners.size());
+    }
+    else
+    {
+        i = free.back();
+        free.pop_back();
+        owners[i] = component;
+    }
+    return i;
+}
+
+void resize(Bodies& b, std::size_t n)
+{
+    b.motion.resize(n, Motion::Static), b.position.resize(n), b.orientation.resize(n), b.velocity.resize(n);
+    b.angular_velocity.resize(n), b.angular_momentum.resize(n), b.mass.resize(n), b.inverse_mass.resize(n);
+    b.inertia_B.resize(n), b.inverse_inertia_B.resize(n), b.center_B.resize(n), b.material.resize(n), b.shapes.resize(n);
+}
+
+void clear_row(Bodies& b, std::uint32_t i)
+{
+    b.motion[i] = Motion::Static, b.position[i] = {}, b.orientation[i] = {}, b.velocity[i] = {};
+    b.angular_velocity[i] = {}, b.angular_momentum[i] = {}, b.mass[i] = 0, b.inverse_mass[i] = 0;
+    b.inertia_B[i] = {}, b.inverse_inertia_B[i] = {}, b.center_B[i] = {}, b.material[i] = 0, b.shapes[i].clear();
+}
+
+void resize(Shafts& s, std::size_t n)
+{
+    s.motion.resize(n, Motion::Static), s.angle.resize(n), s.speed.resize(n), s.inertia.resize(n);
+    s.inverse_inertia.resize(n), s.axle.resize(n), s.shapes.resize(n);
+    s.root.resize(n), s.ratio.resize(n, 1.0), s.anchor.resize(n), s.root_anchor.resize(n);
+}
+
+void clear_row(Shafts& s, std::uint32_t i)
+{
+    s.motion[i] = Motion::Static, s.angle[i] = 0, s.speed[i] = 0, s.inertia[i] = 0, s.inverse_inertia[i] = 0;
+    s.axle[i] = {}, s.shapes[i].clear(), s.root[i] = i, s.ratio[i] = 1, s.anchor[i] = 0, s.root_anchor[i] = 0;
+}
+
+/// A body as its author sees it: the frame B, its origin's velocity, and the spin.
+struct BodyMotion
+{
+    Vec3 position;
+    Quat orientation;
+    Vec3 velocity;
+    Vec3 spin;
+};
+
+BodyMotion authored_motion(const Bodies& b, std::uint32_t i)
+{
+    BodyMotion m{b.position[i], b.orientation[i], b.velocity[i], b.angular_velocity[i]};
+    if (b.center_B[i] == Vec3{}) return m;
+    const Vec3 p_BC_W = rotate(b.orientation[i], b.center_B[i]);
+    m.position = b.position[i] - p_BC_W;
+    m.velocity = b.velocity[i] - cross(b.angular_velocity[i], p_BC_W);
+    return m;
+}
+
+void set_authored_motion(Bodies& b, std::uint32_t i, const BodyMotion& m)
+{
+    b.orientation[i] = m.orientation;
+    b.angular_velocity[i] = m.spin;
+    b.position[i] = m.position;
+    b.velocity[i] = m.velocity;
+    if (b.center_B[i] != Vec3{})
+    {
+        const Vec3 p_BC_W = rotate(m.orientation, b.center_B[i]);
+        b.position[i] += p_BC_W;
+        b.velocity[i] += cross(m.spin, p_BC_W);
+    }
+    if (b.dynamic(i)) b.refresh_momentum(i);
+}
+
+bool set_body(Bodies& b, std::uint32_t i, std::string_view name, const Value& value)
+{
+    BodyMotion m = authored_motion(b, i);
+    if (name == "position")
+        m.position = std::get<Vec3>(value);
+    else if (name == "orientation")
+        m.orientation = std::get<Quat>(value);
+    else if (name == "linear_velocity")
+        m.velocity = std::get<Vec3>(value);
+    else if (name == "angular_velocity")
+        m.spin = std::get<Vec3>(value);
+    else
+        return false;
+    // Only a turn changes the momentum of a body: moving it must not touch the last bit of its spin.
+    const Vec3 momentum = b.angular_momentum[i];
+    set_authored_motion(b, i, m);
+    if (name == "position" || name == "linear_velocity") b.angular_momentum[i] = momentum;
+    return true;
+}
+
+}  // namespace
+
+std::uint32_t HostTables::add(Facet facet, std::uint32_t component)
+{
+    std::uint32_t i = kNoIndex;
+    if (facet == Facet::Body)
+    {
+        i = take_row(free_bodies, component_of_body, component, [&](std::size_t n) { resize(bodies, n); });
+        clear_row(bodies, i);
+    }
+    if (facet == Facet::Shaft)
+    {
+        i = take_row(free_shafts, component_of_shaft, component, [&](std::size_t n) { resize(shafts, n); });
+        clear_row(shafts, i);
+    }
+    if (facet == Facet::Shape)
+    {
+        i = take_row(free_shapes, component_of_shape, component,
+                     [&](std::size_t n) { shapes.geometry.resize(n), shapes.solid.resize(n), shapes.unmeasurable.resize(n); });
+        shapes.geometry[i] = {}, shapes.solid[i] = {}, shapes.unmeasurable[i] = {};
+    }
+    return i;
+}
+
+void HostTables::remove(Facet facet, std::uint32_t index)
+{
+    if (facet == Facet::Body) clear_row(bodies, index), component_of_body[index] = kNoIndex, free_bodies.push_back(index);
+    if (facet == Facet::Shaft) clear_row(shafts, index), component_of_shaft[index] = kNoIndex, free_shafts.push_back(index);
+    if (facet == Facet::Shape)
+    {
+        shapes.geometry[index] = {}, shapes.solid[index] = {}, shapes.unmeasurable[index] = {};
+        component_of_shape[index] = kNoIndex, free_shapes.push_back(index);
+    }
+}
+
+std::uint32_t HostTables::component_of(Ref ref) const
+{
+    switch (ref.facet)
+    {
+        case Facet::Body: return component_of_body[ref.index];
+        case Facet::Shaft: return component_of_shaft[ref.index];
+        case Facet::Shape: return component_of_shape[ref.index];
+        case Facet::Component: break;
+    }
+    return ref.index;
+}
+
+Value get_hosted(const HostTables& t, Facet facet, std::uint32_t i, std::string_view name)
+{
+    if (facet == Facet::Shaft)
+    {
+        if (name == "angle") return t.shafts.angle[i];
+        if (name == "angular_velocity") return t.shafts.speed[i];
+    }
+    if (facet != Facet::Body) return {};
+    const BodyMotion m = authored_motion(t.bodies, i);
+    if (name == "position") return m.position;
+    if (name == "orientation") return m.orientation;
+    if (name == "linear_velocity") return m.velocity;
+    if (name == "angular_velocity") return m.spin;
+    return {};
+}
+
+bool set_hosted(HostTables& t, Facet facet, std::uint32_t i, std::string_view name, const Value& value)
+{
+    if (facet == Facet::Body) return set_body(t.bodies, i, name, value);
+    if (facet != Facet::Shaft) return false;
+    if (name == "angle")
+        t.shafts.angle[i] = std::get<double>(value);
+    else if (name == "angular_velocity")
+        t.shafts.speed[i] = std::get<double>(value);
+    else
+        return false;
+    return true;
+}
+
+void save_state(const HostTables& t, Ref ref, ByteWriter& out)
+{
+    const std::uint32_t i = ref.index;
+    if (ref.facet == Facet::Body)
+    {
+        write(out, t.bodies.position[i]);
+        write(out, t.bodies.orientation[i]);
+        write(out, t.bodies.velocity[i]);
+        write(out, t.bodies.angular_velocity[i]);
+        write(out, t.bodies.angular_momentum[i]);
+    }
+    if (ref.facet == Facet::Shaft)
+    {
+        write(out, t.shafts.angle[i]);
+        write(out, t.shafts.speed[i]);
+    }
+}
+
+void MotionMemento::save(const HostTables& t)
+{
+    position_ = t.bodies.position, velocity_ = t.bodies.velocity, orientation_ = t.bodies.orientation;
+    angular_velocity_ = t.bodies.angular_velocity, angular_momentum_ = t.bodies.angular_momentum;
+    angle_ = t.shafts.angle, speed_ = t.shafts.speed;
+    anchor_ = t.shafts.anchor, root_anchor_ = t.shafts.root_anchor;
+}
+
+void MotionMemento::restore(HostTables& t) const
+{
+    t.bodies.position = position_, t.bodies.velocity = velocity_, t.bodies.orientation = orientation_;
+    t.bodies.angular_velocity = angular_velocity_, t.bodies.angular_momentum = angular_momentum_;
+    t.shafts.angle = angle_, t.shafts.speed = speed_;
+    t.shafts.anchor = anchor_, t.shafts.root_anchor = root_anchor_;
+}
+
+void MotionMemento::save_body(const HostTables& t, std::uint32_t i)
+{
+    position_[i] = t.bodies.position[i], velocity_[i] = t.bodies.velocity[i], orientation_[i] = t.bodies.orientation[i];
+    angular_velocity_[i] = t.bodies.angular_velocity[i], angular_momentum_[i] = t.bodies.angular_momentum[i];
+}
+
+void MotionMemento::save_shaft(const HostTables& t, std::uint32_t i)
+{
+    angle_[i] = t.shafts.angle[i], speed_[i] = t.shafts.speed[i];
+    anchor_[i] = t.shafts.anchor[i], root_anchor_[i] = t.shafts.root_anchor[i];
+}
+
+void MotionMemento::restore_body(HostTables& t, std::uint32_t i) const
+{
+    t.bodies.position[i] = position_[i], t.bodies.velocity[i] = velocity_[i], t.bodies.orientation[i] = orientation_[i];
+    t.bodies.angular_velocity[i] = angular_velocity_[i], t.bodies.angular_momentum[i] = angular_momentum_[i];
+}
+
+void MotionMemento::restore_shaft(HostTables& t, std::uint32_t i) const
+{
+    t.shafts.angle[i] = angle_[i], t.shafts.speed[i] = speed_[i];
+    t.shafts.anchor[i] = anchor_[i], t.shafts.root_anchor[i] = root_anchor_[i];
+}
+
+}  // namespace plab::world

@@ -1,0 +1,55 @@
+/// The host's own tables of a world, as one value: copying it is a full backup.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "plab/bytes.h"
+#include "plab/tables.h"
+#include "plab/result.h"
+
+namespace plab::world
+{
+
+struct HostTables
+{
+    Bodies bodies;
+    Shafts shafts;
+    Shapes shapes;
+    Materials materials;
+    std::vector<std::uint32_t> free_bodies, free_shafts, free_shapes;
+    std::vector<std::uint32_t> component_of_body, component_of_shaft, component_of_shape;  ///< directory indices
+
+    /// A new row for a component with this facet; kNoIndex where the facet has no table.
+    std::uint32_t add(Facet facet, std::uint32_t component);
+    void remove(Facet facet, std::uint32_t index);
+    std::uint32_t component_of(Ref ref) const;
+};
+
+/// Fields that live in the host tables, by the names that the State types declare (notation.md).
+/// `index` is the host row. An unknown name or facet yields no value.
+Value get_hosted(const HostTables& tables, Facet facet, std::uint32_t index, std::string_view name);
+/// False if there is no such field. Angular momentum follows a changed velocity.
+bool set_hosted(HostTables& tables, Facet facet, std::uint32_t index, std::string_view name, const Value& value);
+
+/// Raw state of one host row: what a memento keeps and a hash reads.
+void save_state(const HostTables& tables, Ref ref, ByteWriter& out);
+
+/// The moving state of all bodies and shafts at one time; keeps its memory, so that saving is a copy of arrays.
+class MotionMemento
+{
+public:
+    void save(const HostTables& tables);
+    void restore(HostTables& tables) const;
+    void save_body(const HostTables& tables, std::uint32_t i);
+    void save_shaft(const HostTables& tables, std::uint32_t i);
+    void restore_body(HostTables& tables, std::uint32_t i) const;
+    void restore_shaft(HostTables& tables, std::uint32_t i) const;
+
+private:
+    std::vector<Vec3> position_, velocity_, angular_velocity_, angular_momentum_;
+    std::vector<Quat> orientation_;
+    std::vector<double> angle_, speed_, anchor_, root_anchor_;
+};
+
+}  // namespace plab::world

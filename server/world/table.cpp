@@ -1,0 +1,58 @@
+#include "world/table.h"
+
+namespace plab::world
+{
+
+Table::Table(const model::ComponentType& type) : type_(&type), storage_(type.info.make())
+{
+    storage_->describe(schema_);
+    columns_ = schema_.columns();
+}
+
+Row Table::add(std::uint32_t component, std::uint32_t host_index)
+{
+    Row row = 0;
+    if (free_.empty())
+    {
+        row = static_cast<Row>(component_of_row_.size());
+        component_of_row_.push_back(kNoIndex);
+        host_of_row_.push_back(kNoIndex);
+        for (ColumnBase* column : columns_) column->resize(component_of_row_.size());
+    }
+    else
+    {
+        row = free_.back();
+        free_.pop_back();
+    }
+    assign(row, component, host_index);
+    for (const Field& field : schema_.fields())
+        if (field.type != FieldType::Opaque && type_of(field.fallback) == field.type) field.column->set(row, field.fallback);
+    return row;
+}
+
+void Table::remove(Row row)
+{
+    for (ColumnBase* column : columns_) column->reset(row);
+    assign(row, kNoIndex, kNoIndex);
+    free_.push_back(row);
+}
+
+void Table::assign(Row row, std::uint32_t component, std::uint32_t host_index)
+{
+    component_of_row_[row] = component;
+    host_of_row_[row] = host_index;
+}
+
+void Table::save(Row row, unsigned kinds, ByteWriter& out) const
+{
+    for (const Field& field : schema_.fields())
+        if ((kinds & kind_bit(field.kind)) && !field.hosted) field.column->save(row, out);
+}
+
+void Table::load(Row row, unsigned kinds, ByteReader& in)
+{
+    for (const Field& field : schema_.fields())
+        if ((kinds & kind_bit(field.kind)) && !field.hosted) field.column->load(row, in);
+}
+
+}  // namespace plab::world

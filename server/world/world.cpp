@@ -1,0 +1,287 @@
+#include "world/world.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace plab::world
+{
+
+std::uint32_t World::insert(Component component)
+{
+    std::uint32_t i = static_cast<std::uint32_t>(components_.size());
+    if (free_components_.empty())
+        components_.emplace_back();
+    else
+    {
+        i = free_components_.back();
+        free_components_.pop_back();
+    }
+    component.alive = true;
+    index_of_id_[component.id] = i;
+    components_[i] = std::move(component);
+    return i;
+}
+
+void World::erase(std::uint32_t i)
+{
+    index_of_id_.erase(components_[i].id);
+    components_[i] = {};
+    free_components_.push_back(i);
+}
+
+void World::sort_by_id()
+{
+    in_id_order_.clear();
+    rank_.assign(components_.size(), kNoIndex);
+    // std::map iterates in byte-wise order of ids: the order that every phase, hash and listing uses.
+    for (const auto& [id, i] : index_of_id_)
+    {
+        rank_[i] = static_cast<std::uint32_t>(in_id_order_.size());
+        in_id_order_.push_back(i);
+    }
+}
+
+Result<std::uint32_t> World::table_for(const std::string& type_name)
+{
+    if (const auto found = table_of_type_.find(type_name); found != table_of_type_.end()) return found->second;
+    auto type = types_->require(type_name);
+    if (!type) return type.errors();
+    tables_.push_back(std::make_unique<Table>(**type));
+    const auto index = static_cast<std::uint32_t>(tables_.size() - 1);
+    table_of_type_[type_name] = index;
+    return index;
+}
+
+std::uint64_t World::enabled_commands(const model::ComponentType& type, const model::ComponentSpec& spec) const
+{
+    std::uint64_t mask = 0;
+    for (std::size_t i = 0; i < type.info.commands.size(); ++i)
+    {
+        const CommandInfo& command = type.info.commands[i];
+        const bool intrinsic = command.phase == Phase::Measure || command.phase == Phase::Prepare;
+        const bool listed = std::find(spec.commands.begin(), spec.commands.end(), command.name) != spec.commands.end();
+        // Connect contributes a coupling: it goes with whatever of the component was selected.
+        const bool connects = command.phase == Phase::Connect && !spec.commands.empty();
+        if (!spec.explicit_commands || intrinsic || listed || connects) mask |= 1ull << i;
+    }
+    return mask;
+}
+
+void World::fill_fields(Table& table, Row row, const model::ComponentSpec& spec)
+{
+    for (const model::FieldSpec& given : spec.fields)
+        if (const Field* field = table.schema().find_field(given.name)) field->column->set(row, given.value);
+}
+
+Result<std::uint32_t> World::create(const model::ComponentSpec& spec)
+{
+    Component c;
+    c.id = spec.id;
+    if (spec.type.empty()) return insert(std::move(c));
+    auto table_index = table_for(spec.type);
+    if (!table_index) return table_index.errors();
+    Table& table = *tables_[*table_index];
+    c.table = *table_index;
+    c.facet = table.type().info.facet;
+    c.commands = enabled_commands(table.type(), spec);
+    const std::uint32_t i = insert(std::move(c));
+    Component& placed = components_[i];
+    placed.host_index = host_.add(placed.facet, i);
+    placed.row = table.add(i, placed.host_index);
+    fill_fields(table, placed.row, spec);
+    return i;
+}
+
+std::vector<Ref> World::everyone_in(const Role& role) const
+{
+    std::vector<Ref> out;
+    for (const std::uint32_t i : in_id_order_)
+    {
+        const Component& c = components_[i];
+        if (c.table == kNoIndex || std::find(role.facets.begin(), role.facets.end(), c.facet) == role.facets.end()) continue;
+        if (c.facet == Facet::Component && tables_[c.table]->type().info.name.rfind(role.family, 0) != 0) continue;
+        out.push_back(c.ref(i));
+    }
+    return out;
+}
+
+void World::bind_role(const Role& role, Row row, const model::RoleSpec* spec)
+{
+    std::vector<Ref> refs;
+    if (spec && spec->everyone)
+        refs = everyone_in(role);
+    else if (spec)
+        for (const std::string& id : spec->members)
+            if (const std::uint32_t i = find(id); i != kNoIndex) refs.push_back(components_[i].ref(i));
+    if (role.one) (*role.one)[row] = refs.empty() ? Ref{} : refs.front();
+    if (role.many) (*role.many)[row] = std::move(refs);
+}
+
+void World::bind(std::uint32_t component, const model::ComponentSpec& spec)
+{
+    const Table& table = table_of(component);
+    for (const Role& role : table.schema().roles())
+    {
+        const auto given = std::find_if(spec.roles.begin(), spec.roles.end(),
+                                        [&](const model::RoleSpec& r) { return r.name == role.name; });
+        bind_role(role, components_[component].row, given == spec.roles.end() ? nullptr : &*given);
+    }
+}
+
+void World::initialize_motion(std::uint32_t component)
+{
+    const Component& c = components_[component];
+    if (c.host_index == kNoIndex) return;
+    for (const Field& field : table_of(component).schema().fields())
+        if (field.hosted) set_hosted(host_, c.facet, c.host_index, field.name, field.column->get(c.row));
+    if (c.facet == Facet::Shaft)
+    {
+        host_.shafts.root[c.host_index] = c.host_index;
+        host_.shafts.anchor[c.host_index] = host_.shafts.root_anchor[c.host_index] = host_.shafts.angle[c.host_index];
+    }
+}
+
+Result<void> World::add(const model::SceneSpec& scene)
+{
+    const Backup before = backup();
+    Errors errors;
+    struct Created
+    {
+        std::uint32_t component;
+        const model::ComponentSpec* spec;
+    };
+    std::vector<Created> created;
+    for (const model::ComponentSpec& spec : scene.components)
+    {
+        auto made = create(spec);
+        if (!made)
+        {
+            errors.insert(errors.end(), made.errors().begin(), made.errors().end());
+            continue;
+        }
+        created.push_back({*made, &spec});
+        scene_.components.push_back(spec);
+    }
+    sort_by_id();
+    for (const Created& c : created)
+        if (components_[c.component].table != kNoIndex) bind(c.component, *c.spec);
+    if (errors.empty())
+    {
+        std::sort(created.begin(), created.end(), [&](const Created& a, const Created& b) {
+            return std::pair(prepare_order(a.component), rank_[a.component]) < std::pair(prepare_order(b.component), rank_[b.component]);
+        });
+        for (const Created& c : created)
+        {
+            if (auto done = prepare(c.component); !done) errors.insert(errors.end(), done.errors().begin(), done.errors().end());
+            initialize_motion(c.component);
+        }
+        refresh_open_roles();
+    }
+    if (errors.empty()) return {};
+    restore(before);
+    return errors;
+}
+
+void World::refresh_open_roles()
+{
+    for (const model::ComponentSpec& spec : scene_.components)
+        for (const model::RoleSpec& role : spec.roles)
+            if (role.everyone)
+            {
+                const std::uint32_t i = find(spec.id);
+                bind_role(*table_of(i).schema().find_role(role.name), components_[i].row, &role);
+            }
+}
+
+void World::remove(std::uint32_t component)
+{
+    const Component c = components_[component];
+    std::erase_if(scene_.components, [&](const model::ComponentSpec& s) { return s.id == c.id; });
+    if (c.table != kNoIndex)
+    {
+        parked_.push_back({c.table, c.row, c.host_index, c.facet});
+        tables_[c.table]->assign(c.row, kNoIndex, kNoIndex);
+        if (c.facet == Facet::Body) host_.bodies.motion[c.host_index] = Motion::Static;
+        if (c.facet == Facet::Shaft) host_.shafts.motion[c.host_index] = Motion::Static;
+    }
+    erase(component);
+    sort_by_id();
+}
+
+Result<void> World::exchange(std::uint32_t component, const model::ComponentSpec& spec)
+{
+    auto table_index = table_for(spec.type);
+    if (!table_index) return table_index.errors();
+    Table& table = *tables_[*table_index];
+    const Component old = components_[component];
+    const HostTables host_before = host_;
+
+    Component next = old;
+    next.table = *table_index;
+    next.row = table.add(component, old.host_index);
+    next.commands = enabled_commands(table.type(), spec);
+    next.quarantined = false;
+    fill_fields(table, next.row, spec);
+    components_[component] = next;
+    bind(component, spec);
+    if (auto done = prepare(component); !done)
+    {
+        table.remove(next.row);
+        components_[component] = old;
+        host_ = host_before;
+        return done.errors();
+    }
+    parked_.push_back({old.table, old.row, kNoIndex, old.facet});
+    tables_[old.table]->assign(old.row, kNoIndex, kNoIndex);
+    for (model::ComponentSpec& s : scene_.components)
+        if (s.id == spec.id) s = spec;
+    return {};
+}
+
+void World::release_parked()
+{
+    for (const Parked& p : parked_)
+    {
+        tables_[p.table]->remove(p.row);
+        if (p.host_index != kNoIndex) host_.remove(p.facet, p.host_index);
+    }
+    parked_.clear();
+}
+
+Backup World::backup() const
+{
+    ByteWriter cells;
+    for (const Component& c : components_)
+        if (c.alive && c.table != kNoIndex) tables_[c.table]->save(c.row, kLiveKinds, cells);
+    return {components_, index_of_id_, free_components_, host_, scene_, cells.bytes()};
+}
+
+void World::restore(const Backup& b)
+{
+    // Rows that came since the backup go; rows that were parked since come back.
+    for (const Component& c : components_)
+        if (c.alive && c.table != kNoIndex) tables_[c.table]->assign(c.row, kNoIndex, kNoIndex);
+    std::vector<Component> newer = components_;
+    components_ = b.components;
+    index_of_id_ = b.index_of_id;
+    free_components_ = b.free_components;
+    host_ = b.host;
+    scene_ = b.scene;
+    ByteReader cells(b.cells);
+    for (std::uint32_t i = 0; i < components_.size(); ++i)
+    {
+        const Component& c = components_[i];
+        if (!c.alive || c.table == kNoIndex) continue;
+        tables_[c.table]->assign(c.row, i, c.host_index);
+        tables_[c.table]->load(c.row, kLiveKinds, cells);
+    }
+    for (const Component& c : newer)
+        if (c.alive && c.table != kNoIndex && tables_[c.table]->component_of_row()[c.row] == kNoIndex)
+            tables_[c.table]->remove(c.row);
+    std::erase_if(parked_, [&](const Parked& p) { return tables_[p.table]->component_of_row()[p.row] != kNoIndex; });
+    sort_by_id();
+    for (const model::ComponentSpec& spec : scene_.components)
+        if (const std::uint32_t i = find(spec.id); i != kNoIndex && components_[i].table != kNoIndex) bind(i, spec);
+}
+
+}  // namespace plab::world

@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <cstring>
+
+#include "world/world.h"
+
+namespace plab::world
+{
+
+std::uint32_t World::find(const std::string& id) const
+{
+    const auto found = index_of_id_.find(id);
+    return found == index_of_id_.end() ? kNoIndex : found->second;
+}
+
+const std::string& World::id_of(std::uint32_t component) const
+{
+    static const std::string nobody;
+    return component < components_.size() ? components_[component].id : nobody;
+}
+
+const model::ComponentType* World::type_of(std::uint32_t component) const
+{
+    const Component& c = components_[component];
+    return c.table == kNoIndex ? nullptr : &tables_[c.table]->type();
+}
+
+std::vector<Ref> World::participants(std::uint32_t component, const Role& role) const
+{
+    const Row row = components_[component].row;
+    if (role.many) return (*role.many)[row];
+    const Ref ref = (*role.one)[row];
+    return ref.valid() ? std::vector<Ref>{ref} : std::vector<Ref>{};
+}
+
+std::vector<std::uint32_t> World::referrers(std::uint32_t component) const
+{
+    std::vector<std::uint32_t> out;
+    for (const model::ComponentSpec& spec : scene_.components)
+        for (const model::RoleSpec& role : spec.roles)
+            if (!role.everyone && std::find(role.members.begin(), role.members.end(), components_[component].id) != role.members.end())
+            {
+                out.push_back(find(spec.id));
+                break;
+            }
+    return out;
+}
+
+Value World::get(std::uint32_t component, const std::string& name) const
+{
+    const Component& c = components_[component];
+    if (c.table == kNoIndex) return {};
+    const Table& table = *tables_[c.table];
+    if (const Field* field = table.schema().find_field(name))
+        return field->hosted ? get_hosted(host_, c.facet, c.host_index, name) : field->column->get(c.row);
+    const std::size_t dot = name.find('.');
+    const Field* record = dot == std::string::npos ? nullptr : table.schema().find_field(name.substr(0, dot));
+    if (!record || record->type != FieldType::EntryList) return {};
+    const Value cell = record->column->get(c.row);
+    for (const Entry& entry : std::get<Entries>(cell))
+        if (entry.name == name.substr(dot + 1)) return std::visit([](const auto& v) { return Value(v); }, entry.value);
+    return {};
+}
+
+Result<void> World::set(std::uint32_t component, const std::string& name, const Value& value)
+{
+    const Component& c = components_[component];
+    const Table& table = *tables_[c.table];
+    const Field* field = table.schema().find_field(name);
+    if (!field) return reason("has no field '" + name + "'");
+    if (field->kind == FieldKind::Output || field->kind == FieldKind::Scratch) return reason("'" + name + "' is computed, it cannot be set");
+    if (plab::type_of(value) != field->type) return reason("'" + name + "' has another type");
+    if (field->hosted)
+        set_hosted(host_, c.facet, c.host_index, name, value);
+    else
+        field->column->set(c.row, value);
+    return {};
+}
+
+int World::prepare_order(std::uint32_t component) const
+{
+    const Component& c = components_[component];
+    if (c.table == kNoIndex) return 0;
+    const bool refers_to_shape = std::any_of(tables_[c.table]->schema().roles().begin(), tables_[c.table]->schema().roles().end(),
+                                             [](const Role& r) { return r.facets == std::vector<Facet>{Facet::Shape}; });
+    if (c.facet == Facet::Shape) return refers_to_shape ? 2 : 1;
+    return c.facet == Facet::Component ? 4 : 3;
+}
+
+Result<void> World::run(std::uint32_t component, Phase phase)
+{
+    const Component& c = components_[component];
+    Table& table = *tables_[c.table];
+    StepContext context;
+    context.seed = scene_.settings.seed;
+    context.component_of_row = table.component_of_row();
+    context.facet_of_row = table.host_of_row();
+    PhaseCall call;
+    call.context = &context;
+    call.rows = Rows(&c.row, 1);
+    call.bodies = &host_.bodies, call.shafts = &host_.shafts, call.shapes = &host_.shapes, call.materials = &host_.materials;
+    if (phase == Phase::Measure) call.solid = &host_.shapes.solid[c.host_index];
+    for (const CommandInfo& command : table.type().info.commands)
+        if (command.phase == phase && command.run)
+            if (auto done = command.run(call, table.rows()); !done) return done;
+    return {};
+}
+
+Result<void> World::prepare(std::uint32_t component)
+{
+    const Component& c = components_[component];
+    if (c.table == kNoIndex) return {};
+    auto done = run(component, Phase::Prepare);
+    if (done && c.facet == Facet::Shape)
+    {
+        // A shape without a volume is fine to draw; only a body that needs its mass will complain.
+        const auto measured = run(component, Phase::Measure);
+        host_.shapes.unmeasurable[c.host_index] = measured ? std::string() : measured.error().reason;
+    }
+    if (done) return {};
+    Errors errors = done.errors();
+    const model::ComponentSpec* spec = scene_.find(c.id);
+    for (Error& e : errors)
+    {
+        if (e.element.empty()) e.element = c.id + " (" + tables_[c.table]->type().info.name + ")";
+        if (e.where.file.empty() && spec) e.where = spec->where;
+    }
+    return errors;
+}
+
+Result<void> World::prepare_all()
+{
+    std::vector<std::uint32_t> order = in_id_order_;
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return prepare_order(a) < prepare_order(b); });
+    Errors errors;
+    for (const std::uint32_t i : order)
+        if (auto done = prepare(i); !done) errors.insert(errors.end(), done.errors().begin(), done.errors().end());
+    if (errors.empty()) return {};
+    return errors;
+}
+
+void World::save_state(std::uint32_t component, ByteWriter& out) const
+{
+    const Component& c = components_[component];
+    if (c.table == kNoIndex) return;
+    tables_[c.table]->save(c.row, kStateKinds, out);
+    if (c.host_index != kNoIndex) plab::world::save_state(host_, c.ref(component), out);
+}
+
+std::uint64_t World::state_hash(std::uint64_t h) const
+{
+    ByteWriter bytes;
+    for (const std::uint32_t i : in_id_order_) save_state(i, bytes);
+    return hash_bytes(h, bytes.bytes());
+}
+
+std::uint64_t hash_bytes(std::uint64_t h, const std::vector<std::uint8_t>& bytes)
+{
+    constexpr std::uint64_t kPrime = 0x100000001b3ull;
+    std::size_t i = 0;
+    for (; i + 8 <= bytes.size(); i += 8)
+    {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + i, 8);
+        h = (h ^ word) * kPrime;
+        h ^= h >> 29;  // carries high bits down: a plain word-wise FNV would ignore many sign flips
+    }
+    for (; i < bytes.size(); ++i) h = (h ^ bytes[i]) * kPrime;
+    return h;
+}
+
+}  // namespace plab::world

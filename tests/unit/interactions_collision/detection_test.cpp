@@ -1,0 +1,319 @@
+// The detection component: who is looked at, in what order, and what a standing pair changes.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <tuple>
+
+#include "bodies.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+/// A cloud of spheres, boxes and hulls over a plane; `order` says in which order the bodies were made.
+struct Cloud
+{
+    Bodies bodies;
+    Shapes shapes;
+    std::vector<std::uint32_t> rank;  // place in the order of ids, by row
+
+    explicit Cloud(const std::vector<std::uint32_t>& order)
+    {
+        const std::uint32_t ball = add_shape(shapes, GeometryKind::Sphere, {0.4, 0, 0});
+        const std::uint32_t box = add_shape(shapes, GeometryKind::Box, {0.3, 0.4, 0.35});
+        const std::uint32_t plane = add_shape(shapes, GeometryKind::Plane);
+        shapes.geometry.push_back(
+            mesh_of({{-0.4, -0.4, -0.3}, {0.5, 0, -0.3}, {-0.4, 0.5, -0.2}, {0, 0, 0.6}, {0.1, 0.1, -0.5}}));
+        for (const std::uint32_t id : order)
+        {
+            std::uint64_t seed = 100 + id;
+            const std::uint32_t i =
+                add_body(bodies, id == 0 ? 0 : 1, {1, 1, 1}, id == 0 ? Vec3{} : random_vector(seed, 1.2), {},
+                         id == 0 ? Quat{} : random_rotation(seed));
+            bodies.shapes[i] = {{Facet::Shape, id == 0 ? plane : std::array{ball, box, 3u}[id % 3]}};
+            rank.push_back(id);
+        }
+    }
+    /// Contacts with rows replaced by ids, sorted as the host would.
+    std::vector<Contact> look(const char* space, bool stir) const
+    {
+        Detection d(space);
+        d.sink.rank = rank;
+        d.between_all(bodies);
+        auto& between = d.rows.between[0];
+        std::sort(between.begin(), between.end(), [&](Ref a, Ref b) { return rank[a.index] < rank[b.index]; });
+        if (stir)
+        {
+            Bodies moved = bodies;
+            for (std::uint32_t k = 0; k < 5; ++k)
+                for (std::uint32_t i = static_cast<std::uint32_t>(moved.size()); i-- > 1;)
+                {
+                    moved.position[i].x += (i + k) % 3 ? 0.7 : -0.9;
+                    if ((i + k) % 4 == 0)
+                        d.look(moved, shapes);
+                }
+        }
+        std::vector<Contact> out = d.look(bodies, shapes);
+        for (Contact& c : out) c.a.index = rank[c.a.index], c.b.index = rank[c.b.index];
+        std::sort(out.begin(), out.end(),
+                  [](const Contact& x, const Contact& y)
+                  { return std::tie(x.a, x.b, x.feature) < std::tie(y.a, y.b, y.feature); });
+        return out;
+    }
+};
+bool same(const std::vector<Contact>& x, const std::vector<Contact>& y)
+{
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                      [](const Contact& a, const Contact& b)
+                      {
+                          return a.a == b.a && a.b == b.b && a.feature == b.feature && a.point == b.point &&
+                                 a.normal == b.normal && a.depth == b.depth;
+                      });
+}
+
+/// A ball of radius 0.1 above a level plane.
+struct BallOnPlane
+{
+    Bodies bodies;
+    Shapes shapes;
+    Detection d;
+    explicit BallOnPlane(double height)
+    {
+        add_body(bodies, 0, {}, {});
+        add_sphere(bodies, 1, 0.1, {0, 0, height});
+        bodies.shapes[0] = {{Facet::Shape, add_shape(shapes, GeometryKind::Plane)}};
+        bodies.shapes[1] = {{Facet::Shape, add_shape(shapes, GeometryKind::Sphere, {0.1, 0, 0})}};
+        d.between_all(bodies);
+    }
+    const std::vector<Contact>& look(const StepContext& context = {}) { return d.look(bodies, shapes, context); }
+};
+
+struct Events final : EventSink
+{
+    std::vector<Event> all;
+    void emit(Event event) override { all.push_back(std::move(event)); }
+};
+}  // namespace
+
+TEST_CASE("no order of creation or of moves, and no kind of space, reaches the contacts")
+{
+    std::vector<std::uint32_t> order(40);
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto first = Cloud(order).look("simple", false);
+    CHECK(first.size() > 60);
+    CHECK(same(first, Cloud(order).look("simple", true)));
+    CHECK(same(first, Cloud(order).look("hash", true)));
+    CHECK(same(first, Cloud(order).look("sweep_and_prune", true)));
+    std::uint64_t seed = 17;
+    for (int i = 0; i < 5; ++i)
+    {
+        for (std::size_t k = order.size(); k-- > 1;) std::swap(order[k], order[next_random(seed) % (k + 1)]);
+        for (const char* space : {"simple", "hash", "sweep_and_prune"})
+        {
+            CHECK(same(first, Cloud(order).look(space, false)));
+            CHECK(same(first, Cloud(order).look(space, true)));
+        }
+    }
+}
+
+TEST_CASE("the spaces lose no pair: all of a brute-force search are found")
+{
+    std::uint64_t seed = 23;
+    Bodies bodies;
+    Shapes shapes;
+    const std::uint32_t small = add_shape(shapes, GeometryKind::Sphere, {0.02, 0, 0}),
+                        large = add_shape(shapes, GeometryKind::Sphere, {2, 0, 0});
+    for (std::uint32_t i = 0; i < 500; ++i)
+    {
+        add_sphere(bodies, 1, 1, random_vector(seed, 3));
+        bodies.shapes[i] = {{Facet::Shape, i % 50 ? small : large}};
+    }
+    std::size_t want = 0;
+    for (std::uint32_t i = 0; i < 500; ++i)
+        for (std::uint32_t j = i + 1; j < 500; ++j)
+            want += length(bodies.position[i] - bodies.position[j]) < (i % 50 ? 0.02 : 2.0) + (j % 50 ? 0.02 : 2.0);
+    for (const char* space : {"simple", "hash", "sweep_and_prune"})
+    {
+        Detection d(space);
+        d.between_all(bodies);
+        CHECK(d.look(bodies, shapes).size() == want);
+        CHECK(d.rows.pairs[0] >= static_cast<std::int64_t>(want));
+    }
+}
+
+TEST_CASE("depth is right to the last bit near the ground and to 1e-8 m ten thousand kilometres away")
+{
+    BallOnPlane ball(0.1 - 1e-15);
+    REQUIRE(ball.look().size() == 1);
+    CHECK(ball.look()[0].depth == 0.1 - (0.1 - 1e-15));
+    CHECK(ball.look()[0].normal == Vec3{0, 0, 1});
+    CHECK(ball.d.rows.penetration[0] == ball.look()[0].depth);
+    ball.bodies.position[1] = {1e7, 1e7, 0.1 - 1e-9};
+    REQUIRE(ball.look().size() == 1);
+    CHECK(std::fabs(ball.look()[0].depth - 1e-9) < 1e-16);
+}
+
+TEST_CASE("a standing pair is looked at closer by its shift, and its gap is told")
+{
+    BallOnPlane ball(0.1 + 3e-10);
+    CHECK(ball.look().empty());
+    ball.d.sink.pairs = {{body(0), body(1), {0, 0, -1e-9}}};
+    REQUIRE(ball.look().size() == 1);
+    CHECK(ball.look()[0].depth == doctest::Approx(-3e-10).epsilon(1e-6));
+    ball.bodies.position[1].z = 0.1 + 2e-9;
+    CHECK(ball.look().empty());
+    ball.bodies.position[1].z = 0.1 - 1e-6;
+    REQUIRE(ball.look().size() == 1);  // once, not twice
+    CHECK(ball.look()[0].depth == doctest::Approx(1e-6).epsilon(1e-9));
+    ball.d.sink.pairs = {{body(1), body(0), {0, 0, 1e-9}}};  // the other way round means the same
+    REQUIRE(ball.look().size() == 1);
+    CHECK(ball.look()[0].a == body(0));
+    CHECK(ball.look()[0].depth == doctest::Approx(1e-6).epsilon(1e-9));
+}
+
+TEST_CASE("a standing box keeps its four corners, with the same features, through rounding")
+{
+    Bodies bodies;
+    Shapes shapes;
+    add_body(bodies, 0, {}, {});
+    add_body(bodies, 1, {1, 1, 1}, {});
+    for (std::uint32_t i = 0; i < 2; ++i)
+        bodies.shapes[i] = {{Facet::Shape, add_shape(shapes, GeometryKind::Box, {0.5 + 0.5 * (1 - i), 0.5, 0.5})}};
+    Detection d;
+    d.between_all(bodies);
+    d.sink.pairs = {{body(0), body(1), {0, 0, -1e-9}}};
+    std::vector<std::uint32_t> first;
+    std::uint64_t seed = 31;
+    for (int i = 0; i < 200; ++i)
+    {
+        bodies.position[1] = Vec3{0.1, 0.2, 1} + random_vector(seed, 1e-12);
+        bodies.orientation[1] = normalized(
+            Quat{1, uniform(seed, -1e-12, 1e-12), uniform(seed, -1e-12, 1e-12), uniform(seed, -1e-12, 1e-12)});
+        std::vector<std::uint32_t> features;
+        for (const Contact& c : d.look(bodies, shapes)) features.push_back(c.feature);
+        REQUIRE(features.size() == 4);
+        if (first.empty())
+            first = features;
+        CHECK(features == first);
+    }
+}
+
+TEST_CASE("only pairs with an active body are looked at, and never two that nothing moves")
+{
+    BallOnPlane ball(0.05);
+    add_sphere(ball.bodies, 1, 0.1, {0.05, 0, 0.05});
+    add_body(ball.bodies, 0, {}, {0, 0, 0.02});
+    ball.bodies.shapes[2] = ball.bodies.shapes[3] = ball.bodies.shapes[1];
+    ball.d.between_all(ball.bodies);
+    CHECK(ball.look().size() == 5);  // 0-1 0-2 1-2 1-3 2-3, not 0-3
+    const std::vector<std::uint8_t> active{0, 0, 1, 0};
+    StepContext context;
+    context.active_bodies = active;
+    for (const Contact& c : ball.look(context)) CHECK((c.a == body(2) || c.b == body(2)));
+    CHECK(ball.look(context).size() == 3);
+    ball.bodies.motion[1] = Motion::Kinematic;
+    CHECK(ball.look().size() == 3);
+}
+
+TEST_CASE("`against` collides with `between` only")
+{
+    Bodies bodies;
+    Shapes shapes;
+    const std::uint32_t s = add_shape(shapes, GeometryKind::Sphere, {1, 0, 0});
+    for (std::uint32_t i = 0; i < 4; ++i)
+    {
+        add_sphere(bodies, 1, 1, {0.1 * i, 0, 0});
+        bodies.shapes[i] = {{Facet::Shape, s}};
+    }
+    Detection d;
+    d.rows.between[0] = {body(1)};
+    d.rows.against[0] = {body(0), body(1), body(2), body(3)};
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (const Contact& c : d.look(bodies, shapes)) pairs.emplace_back(c.a.index, c.b.index);
+    CHECK(pairs == std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {1, 2}, {1, 3}});
+    d.rows.between[0].clear();
+    CHECK(d.look(bodies, shapes).empty());
+}
+
+TEST_CASE("a change of shape, pose or membership is seen at the next look")
+{
+    BallOnPlane ball(0.15);
+    CHECK(ball.look().empty());
+    ball.shapes.geometry[1].size.x = 0.2;
+    CHECK(ball.look().size() == 1);
+    ball.shapes.geometry[1].pose.p = {0, 0, 0.1};
+    CHECK(ball.look().empty());
+    ball.shapes.geometry[1] = mesh_of(box_corners({0.2, 0.2, 0.2}));
+    CHECK(ball.look().size() == 4);
+    ball.shapes.geometry[1].vertices[0].z = -3;
+    CHECK(ball.look().size() > 0);
+    CHECK(ball.d.rows.penetration[0] == doctest::Approx(2.85));
+    ball.shapes.geometry[1].hull_collides = false;
+    CHECK(ball.look().empty());
+    ball.shapes.geometry[1].hull_collides = true;
+    ball.bodies.shapes[1].push_back(ball.bodies.shapes[1][0]);
+    const std::size_t twice = ball.look().size();
+    ball.bodies.shapes[1].pop_back();
+    CHECK(twice == 2 * ball.look().size());
+    detection::prepare(0, ball.d.rows);
+    CHECK(ball.look().size() * 2 == twice);
+    ball.d.rows.between[0].pop_back();
+    CHECK(ball.look().empty());
+}
+
+TEST_CASE("a plane tilts with its body, and a centre of mass beside the origin is minded")
+{
+    BallOnPlane ball(0.1);
+    const double angle = 0.3;
+    ball.bodies.orientation[0] = {std::cos(angle / 2), std::sin(angle / 2), 0, 0};
+    ball.bodies.center_B[1] = {0, 0, 0.05};
+    ball.bodies.position[1] = {0, -0.1 * std::sin(angle),
+                               0.1 * std::cos(angle) + 0.05};  // the ball's centre 0.05 below
+    ball.bodies.position[1] += rotate(ball.bodies.orientation[0], {0, 0, -1e-3});
+    REQUIRE(ball.look().size() == 1);
+    CHECK(ball.look()[0].depth == doctest::Approx(1e-3).epsilon(1e-12));
+    CHECK(length(ball.look()[0].normal - Vec3{0, -std::sin(angle), std::cos(angle)}) < 1e-15);
+}
+
+TEST_CASE("a mesh without volume is reported, once per build")
+{
+    BallOnPlane ball(0.05);
+    ball.shapes.geometry[1] = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}});
+    Events events;
+    StepContext context;
+    context.events = &events;
+    CHECK(ball.look(context).empty());
+    ball.look(context);
+    REQUIRE(events.all.size() == 1);
+    CHECK(events.all[0].message == "the shape does not collide: the vertices lie in a plane: their hull has no volume");
+    CHECK(events.all[0].a == Ref{Facet::Shape, 1});
+}
+
+TEST_CASE("two scenes in one process do not know of one another")
+{
+    BallOnPlane one(0.05), two(0.07);
+    const Contact alone = one.look()[0];
+    two.look();
+    const Contact together = one.look()[0];
+    CHECK(alone.depth == together.depth);
+    CHECK(two.look()[0].depth == doctest::Approx(0.03));
+}
+
+TEST_CASE("ten thousand bodies in a heap of cells")
+{
+    Bodies bodies;
+    Shapes shapes;
+    const std::uint32_t s = add_shape(shapes, GeometryKind::Sphere, {0.51, 0, 0});
+    for (std::uint32_t i = 0; i < 10000; ++i)
+    {
+        add_sphere(bodies, 1, 0.51, {static_cast<double>(i % 100), static_cast<double>(i / 100), 0});
+        bodies.shapes[i] = {{Facet::Shape, s}};
+    }
+    for (const char* space : {"hash", "sweep_and_prune"})
+    {
+        Detection d(space);
+        d.between_all(bodies);
+        CHECK(d.look(bodies, shapes).size() == 2 * 99 * 100);
+    }
+}

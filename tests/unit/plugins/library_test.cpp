@@ -1,0 +1,261 @@
+#include <doctest/doctest.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "plugins/library.h"
+
+using namespace plab;
+using plugins::PluginLibrary;
+namespace fs = std::filesystem;
+
+namespace
+{
+
+const std::string kSamples = SAMPLE_DIR;
+
+std::string sample(const std::string& flaw)
+{
+    return kSamples + "/sample_" + flaw + ".so";
+}
+
+/// A folder of plugins for one test.
+class Folder
+{
+public:
+    explicit Folder(const std::string& name) : path_(fs::temp_directory_path() / ("plab_library_test_" + std::to_string(getpid()) + "_" + name))
+    {
+        fs::remove_all(path_);
+        fs::create_directories(path_);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() { fs::remove_all(path_); }
+
+    std::string path() const { return fs::canonical(path_).string(); }
+    std::string file(const std::string& name) const { return path() + "/" + name; }
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
+    /// A manifest that lists `types`, and beside it the sample with this flaw.
+    void plugin(const std::string& name, const std::string& flaw, const std::string& types) const
+    {
+        write(name + ".manifest", "plab-manifest 1\n" + types);
+        if (!flaw.empty()) fs::copy_file(sample(flaw), path_ / (name + ".so"));
+    }
+
+private:
+    fs::path path_;
+};
+
+std::string refusal(PluginLibrary& library, const std::string& type)
+{
+    const auto result = library.require(type);
+    return result.ok() ? "accepted" : result.error().text();
+}
+
+std::string load_refusal(const std::string& flaw)
+{
+    PluginLibrary library(std::vector<std::string>{});
+    const auto result = library.load_plugin(sample(flaw));
+    CHECK(library.loaded().empty());
+    CHECK(library.names().empty());
+    return result.ok() ? "accepted" : result.error().text();
+}
+
+bool is_mapped(const std::string& path)
+{
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);)
+        if (line.find(path) != line.npos) return true;
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("a plugin is loaded when one of its types is asked for, not before")
+{
+    const Folder folder("demand");
+    folder.plugin("good", "none", "Sample/Good\nSample/Better\n");
+    PluginLibrary library({folder.path()});
+    CHECK(library.problems().empty());
+    CHECK(library.names() == std::vector<std::string>{"Sample/Better", "Sample/Good"});
+    CHECK(library.loaded().empty());
+    CHECK(!is_mapped(folder.file("good.so")));
+
+    const auto type = library.require("Sample/Good");
+    REQUIRE_MESSAGE(type.ok(), (type.ok() ? "" : type.error().text()));
+    CHECK((*type)->info.name == "Sample/Good");
+    CHECK((*type)->plugin == "sample");
+    REQUIRE((*type)->schema.find_field("value"));
+    CHECK((*type)->schema.find_field("value")->fallback == Value(2.0));
+    CHECK(is_mapped(folder.file("good.so")));
+    REQUIRE(library.loaded().size() == 1);
+    CHECK(library.loaded()[0].name == "sample");
+    CHECK(library.loaded()[0].path == folder.file("good.so"));
+    CHECK(library.loaded()[0].types == std::vector<std::string>{"Sample/Good", "Sample/Better"});
+
+    const auto same = library.require("Sample/Good");
+    CHECK(*same == *type);
+    CHECK(library.require("Sample/Better").ok());
+    CHECK(library.loaded().size() == 1);
+}
+
+TEST_CASE("a library that goes takes its plugins along, after their types")
+{
+    const Folder folder("gone");
+    folder.plugin("good", "none", "Sample/Good\n");
+    {
+        PluginLibrary library({folder.path()});
+        REQUIRE(library.require("Sample/Good").ok());
+        CHECK(is_mapped(folder.file("good.so")));
+    }
+    CHECK(!is_mapped(folder.file("good.so")));
+}
+
+TEST_CASE("unknown types: the nearest names of all manifests, and what could not be read")
+{
+    const Folder a("near_a"), b("near_b");
+    a.plugin("x", "", "Solver/RungeKutta4\n");
+    b.plugin("y", "", "Solver/SemiImplicitEuler\n");
+    PluginLibrary library({a.path(), b.path(), a.path() + "/../" + fs::path(a.path()).filename().string()});
+    CHECK(library.names().size() == 2);
+    CHECK(refusal(library, "Solver/RungeKuta4") == "unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
+    CHECK(refusal(library, "") == "unknown type ''");
+
+    PluginLibrary nowhere({a.file("missing")});
+    CHECK(refusal(nowhere, "A/B") == "unknown type 'A/B'; no plugins were found; plugin folder " + a.file("missing") +
+                                         " cannot be read: No such file or directory");
+}
+
+TEST_CASE("a type in two plugins is refused, naming both; the others can be had")
+{
+    const Folder folder("two");
+    folder.plugin("a", "none", "Sample/Good\nSample/Better\n");
+    folder.plugin("b", "none", "Sample/Good\n");
+    PluginLibrary library({folder.path()});
+    CHECK(refusal(library, "Sample/Good") == "type 'Sample/Good' is in two plugins, " + folder.file("a.so") + " and " +
+                                                 folder.file("b.so") + "; take one of them away");
+    CHECK(refusal(library, "Sample/Better") == "accepted");
+}
+
+TEST_CASE("bad manifests are problems, not the end")
+{
+    const Folder folder("bad");
+    folder.write("a.manifest", "plab-manifest 2\nA/B\n");
+    folder.write("b.manifest", "");
+    folder.write("c.manifest", "plab-manifest 1\nA/B\nno spaces please\n");
+    folder.write("d.manifest", "plab-manifest 1\nA/B\nC/D\nA/B\n");
+    folder.write("e.manifest", "plab-manifest 1\n\nE/F\n");
+    folder.write("not_a_manifest.txt", "A/B");
+    PluginLibrary library({folder.path()});
+    std::vector<std::string> problems;
+    for (const Error& e : library.problems()) problems.push_back(e.text());
+    CHECK(problems == std::vector<std::string>{
+                          folder.file("a.manifest") + ":1:1: is no manifest of this version: the first line must be 'plab-manifest 1'",
+                          folder.file("b.manifest") + ": cannot be read",
+                          folder.file("c.manifest") + ":3:1: is no type name; letters, digits, '_' and '/' are allowed",
+                          folder.file("d.manifest") + ": names A/B twice",
+                      });
+    CHECK(library.names() == std::vector<std::string>{"E/F"});
+    CHECK(refusal(library, "G/H").find("a.manifest:1:1") != std::string::npos);
+}
+
+TEST_CASE("a manifest without its plugin, and one that promises too much")
+{
+    const Folder folder("promise");
+    folder.plugin("missing", "", "Sample/Missing\n");
+    folder.plugin("liar", "none", "Sample/Good\nSample/Other\n");
+    PluginLibrary library({folder.path()});
+    const std::string missing = refusal(library, "Sample/Missing");
+    CHECK(missing.starts_with("plugin " + folder.file("missing.so") + ": cannot be loaded: "));
+    CHECK(refusal(library, "Sample/Missing") == missing);
+    CHECK(refusal(library, "Sample/Other") == "type 'Sample/Other' is in " + folder.file("liar.manifest") +
+                                                  ", but its plugin does not declare it; build the plugin again");
+    CHECK(refusal(library, "Sample/Good") == "accepted");
+}
+
+TEST_CASE("each mismatch of the stamp has its own words")
+{
+    const std::string again = "; build it again with this SDK";
+    CHECK(load_refusal("version") == "plugin " + sample("version") + ": was built for version 2 of the SDK, version 1 is needed" + again);
+    CHECK(load_refusal("size") == "plugin " + sample("size") + ": its stamp has " + std::to_string(sizeof(PluginStamp) + 8) + " bytes, " +
+                                      std::to_string(sizeof(PluginStamp)) + " are needed" + again);
+    CHECK(load_refusal("layout") == "plugin " + sample("layout") +
+                                        ": its structures are laid out differently: layout 42 (compiler " __VERSION__ "), " +
+                                        std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + again);
+    CHECK(load_refusal("name") == "plugin " + sample("name") + ": its stamp has no name");
+    CHECK(load_refusal("stamp") == "plugin " + sample("stamp") + ": is no pLab plugin: it has no symbol plab_plugin_stamp");
+    CHECK(load_refusal("entry") == "plugin " + sample("entry") + ": has no symbol plab_plugin_register");
+}
+
+TEST_CASE("plugins that fail while registering leave nothing behind")
+{
+    CHECK(load_refusal("throws") == "plugin " + sample("throws") + ": threw an exception while registering its types");
+    CHECK(load_refusal("empty") == "plugin " + sample("empty") + ": declares no types");
+    CHECK(load_refusal("twice") == "plugin " + sample("twice") + ": Sample/Good: is declared twice");
+}
+
+TEST_CASE("a failure is told each time, and the same types can come from a good plugin later")
+{
+    const Folder folder("again");
+    folder.plugin("twice", "twice", "Sample/Good\n");
+    PluginLibrary library({folder.path()});
+    const std::string first = refusal(library, "Sample/Good");
+    CHECK(first == "plugin " + folder.file("twice.so") + ": Sample/Good: is declared twice");
+    CHECK(refusal(library, "Sample/Good") == first);
+    CHECK(library.loaded().empty());
+    REQUIRE(library.load_plugin(sample("none")).ok());
+    CHECK(refusal(library, "Sample/Good") == "accepted");
+}
+
+TEST_CASE("load_plugin: twice is once; other plugins with the same types are refused; files that are no library")
+{
+    PluginLibrary library(std::vector<std::string>{});
+    const auto first = library.load_plugin(sample("none"));
+    REQUIRE(first.ok());
+    CHECK(first->types.size() == 2);
+    CHECK(library.load_plugin(kSamples + "/../" + fs::path(kSamples).filename().string() + "/sample_none.so").ok());
+    CHECK(library.loaded().size() == 1);
+    CHECK(library.names().size() == 2);
+
+    const Folder folder("copy");
+    folder.plugin("copy", "none", "Sample/Good\n");
+    const auto copy = library.load_plugin(folder.file("copy.so"));
+    REQUIRE(!copy.ok());
+    CHECK(copy.error().text() == "plugin " + folder.file("copy.so") + ": Sample/Good: is already declared by plugin 'sample'");
+    CHECK(library.loaded().size() == 1);
+
+    folder.write("text.so", "no library");
+    const auto text = library.load_plugin(folder.file("text.so"));
+    REQUIRE(!text.ok());
+    CHECK(text.error().text().starts_with("plugin " + folder.file("text.so") + ": cannot be loaded: "));
+}
+
+TEST_CASE("where plugins are looked for")
+{
+    unsetenv("PLAB_PLUGIN_PATH");
+    const auto installed = PluginLibrary::default_directories();
+    REQUIRE(installed.size() == 1);
+    CHECK(fs::path(installed[0]) == fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib" / "plab");
+    setenv("PLAB_PLUGIN_PATH", ":/a/b::/c:", 1);
+    CHECK(PluginLibrary::default_directories() == std::vector<std::string>{"/a/b", "/c"});
+    setenv("PLAB_PLUGIN_PATH", "", 1);
+    CHECK(PluginLibrary::default_directories() == installed);
+    unsetenv("PLAB_PLUGIN_PATH");
+}
+
+TEST_CASE("manifests are written sorted, whole or not at all, and read back")
+{
+    const Folder folder("write");
+    REQUIRE(plugins::write_manifest(folder.file("m.manifest"), {"B/C", "A/B"}).ok());
+    const auto back = plugins::read_manifest(folder.file("m.manifest"));
+    REQUIRE(back.ok());
+    CHECK(back->types == std::vector<std::string>{"A/B", "B/C"});
+    CHECK(back->plugin == folder.file("m.so"));
+    CHECK(!fs::exists(folder.file("m.manifest.tmp")));
+    const auto nowhere = plugins::write_manifest(folder.file("missing/m.manifest"), {"A/B"});
+    REQUIRE(!nowhere.ok());
+    CHECK(nowhere.error().text() == folder.file("missing/m.manifest.tmp") + ": cannot be written");
+}
