@@ -107,8 +107,9 @@ void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose&
         return;
     if (part.unbounded)
     {
-        const Vec3 n = rotate(X_WS.q, {0, 0, 1});
-        dGeomPlaneSetParams(part.geom.get(), n.x, n.y, n.z, dot(n, X_WS.p));
+        const Vec3 n = part.normal = rotate(X_WS.q, {0, 0, 1});
+        part.offset = dot(n, X_WS.p);
+        dGeomPlaneSetParams(part.geom.get(), n.x, n.y, n.z, part.offset);
         stale_ = true;
         return;
     }
@@ -127,6 +128,13 @@ void BroadPhase::note(void* self, dxGeom* a, dxGeom* b)
 {
     const std::uint32_t i = part_of(a), j = part_of(b);
     static_cast<BroadPhase*>(self)->near_.push_back(std::minmax(i, j));
+}
+
+bool BroadPhase::reaches(const Part& half_space, const Box& box)
+{
+    double lowest = 0;
+    for (int k = 0; k < 3; ++k) lowest += half_space.normal[k] * (half_space.normal[k] > 0 ? box.lower : box.upper)[k];
+    return lowest <= half_space.offset;
 }
 
 bool BroadPhase::overlap(const Part& a, const Part& b)

@@ -45,10 +45,13 @@ private:
         GeomHandle geom;  // null for what never touches
         std::uint32_t member = 0;
         bool unbounded = false;
+        Vec3 normal;        // of an unbounded one: the half-space normal . p <= offset
+        double offset = 0;  // m
         Box tight, wide;
     };
     static void note(void* self, dxGeom* a, dxGeom* b);
     static bool overlap(const Part& a, const Part& b);
+    static bool reaches(const Part& half_space, const Box& box);
     void widen(Part& part);
     void search();
     void fit_cells();

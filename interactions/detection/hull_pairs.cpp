@@ -194,7 +194,7 @@ Cut cut_edge(const Into& into, const Vec3& p, const Vec3& d)
 {
     constexpr double kAlong = 0.7;
     Cut cut;
-    for (std::size_t f = 0; f < into.hull.faces.size(); ++f)
+    for (std::size_t f = 0; f < into.hull.faces.size() && cut.begin < cut.end; ++f)
     {
         const Vec3& m = into.hull.normals[f];
         const double inside = into.hull.offsets[f] - dot(m, p), rate = dot(m, d);

@@ -72,8 +72,8 @@ bool is_before(const StepContext& context, EntryPoint entry, const Failure& fail
 }
 
 /// Whether the script can be called. A failure stands until it is booked as quarantine. Once the host has gone back to
-/// before it, or somebody has ended the quarantine, it never happened: the machine, which may hold what the failing call
-/// left, is built anew.
+/// before it, or somebody has ended the quarantine, it never happened: the machine, which may hold what the failing
+/// call left, is built anew.
 bool is_ready(const StepContext& context, const ScriptRows& rows, Row row, EntryPoint entry)
 {
     Machine& machine = *rows.machine[row];
@@ -104,10 +104,14 @@ void apply(const Action& action, Wrenches& wrenches)
 {
     switch (action.kind)
     {
-        case Action::Kind::Force: return wrenches.add_force(action.on, action.value);
-        case Action::Kind::ForceAt: return wrenches.add_force_at(action.on, action.value, action.at);
-        case Action::Kind::Torque: return wrenches.add_torque(action.on, action.value);
-        case Action::Kind::ShaftTorque: return wrenches.add_shaft_torque(action.on, action.value.x);
+        case Action::Kind::Force:
+            return wrenches.add_force(action.on, action.value);
+        case Action::Kind::ForceAt:
+            return wrenches.add_force_at(action.on, action.value, action.at);
+        case Action::Kind::Torque:
+            return wrenches.add_torque(action.on, action.value);
+        case Action::Kind::ShaftTorque:
+            return wrenches.add_shaft_torque(action.on, action.value.x);
     }
 }
 
@@ -164,6 +168,7 @@ void finish(const StepContext& context, Rows which, ScriptRows& rows)
 {
     for (const Row row : which)
     {
+        assert(rows.machine[row] && "Script/Prepare comes first");
         Machine& machine = *rows.machine[row];
         rows.instructions_used[row] = machine.take_instructions();
         rows.memory_used[row] = static_cast<std::int64_t>(machine.memory_used());

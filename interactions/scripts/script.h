@@ -3,8 +3,8 @@
 ///   drive(step)      once per step: may change its declared state, set parameters, emit events
 ///   force(t, state)  at every solver stage: adds forces (N) and torques (N m) to driven and between; pure
 ///
-/// All that lives across calls is in the columns below. The machine is built from them by Prepare and holds nothing that
-/// would have to be saved (see README.md).
+/// All that lives across calls is in the columns below. The machine is built from them by Prepare and holds nothing
+/// that would have to be saved (see README.md).
 #pragma once
 
 #include <memory>

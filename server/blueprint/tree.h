@@ -22,17 +22,21 @@ public:
     }
     void add(Error error)
     {
-        if (error.where.file.empty()) error.where.file = file_;
+        if (error.where.file.empty())
+            error.where.file = file_;
         if (errors_.size() < kMost)
             errors_.push_back(std::move(error));
         else
             ++omitted_;
     }
+    /// Whether further errors are only counted, so that their words need not be found.
+    bool full() const { return errors_.size() >= kMost; }
     bool any() const { return !errors_.empty(); }
     /// All errors; a last one tells how many are not shown.
     Errors take()
     {
-        if (omitted_ > 0) errors_.push_back({{file_, 0, 0}, {}, std::to_string(omitted_) + " more errors are not shown"});
+        if (omitted_ > 0)
+            errors_.push_back({{file_, 0, 0}, {}, std::to_string(omitted_) + " more errors are not shown"});
         return std::move(errors_);
     }
 

@@ -14,6 +14,9 @@
 namespace plab::blueprint
 {
 
+/// Characters (bytes) of an element's, attribute's or component's name.
+inline constexpr std::size_t kLongestName = 200;
+
 /// Line and column from 1, columns in characters; line 0: nowhere.
 struct Place
 {
@@ -39,7 +42,8 @@ struct XmlElement
     const std::string* find_attribute(std::string_view wanted) const
     {
         for (const XmlAttribute& a : attributes)
-            if (a.name == wanted) return &a.value;
+            if (a.name == wanted)
+                return &a.value;
         return nullptr;
     }
 };
@@ -50,9 +54,9 @@ struct XmlLimits
     std::size_t bytes = std::size_t{64} << 20;
     std::size_t depth = 64;
     std::size_t elements = 2'000'000;
-    std::size_t attributes = 64;                    ///< per element
-    std::size_t name = 200;                         ///< characters (bytes) of an element's or attribute's name
-    std::size_t text = std::size_t{16} << 20;       ///< bytes of one element's text or of one attribute's value
+    std::size_t attributes = 64;               ///< per element
+    std::size_t name = kLongestName;           ///< of elements and attributes
+    std::size_t text = std::size_t{16} << 20;  ///< bytes of one element's text or of one attribute's value
 };
 
 /// Receives a document piece by piece, so that no more than one element of the top level is held as a tree.

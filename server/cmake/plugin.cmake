@@ -8,6 +8,7 @@ function(plab_plugin name)
   set_target_properties(plugin_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${PLAB_PLUGIN_DIR})
   add_custom_command(TARGET plugin_${name} POST_BUILD
     COMMAND plab-manifest $<TARGET_FILE:plugin_${name}> ${PLAB_PLUGIN_DIR}/${name}.manifest VERBATIM)
+  plab_use_pch(plugin_${name})
   add_dependencies(plugin_${name} plab-manifest)
   set_property(GLOBAL APPEND PROPERTY PLAB_PLUGINS plugin_${name})
 endfunction()

@@ -83,6 +83,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     app.add_option("--log-level", options.log_level, "what goes to standard error")->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
     app.add_flag("--table", options.table, "show a live table of the scene's course");
     app.add_flag("--hashes", options.hashes, "print the state hash of each step");
+    app.add_flag("--maps", options.maps, "print the libraries that are mapped at the end of the run");
     std::string rate;
     app.add_option("--rate", rate, "real, max, or a factor of real time; default: max with --until, else real");
     std::vector<std::string> swaps, sets;

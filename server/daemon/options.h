@@ -38,6 +38,7 @@ struct Options
     double rate = -1;           ///< 1: real time; 0: as fast as it goes; < 0: not given
     int threads = 1;
     bool table = false;
+    bool maps = false;          ///< print the mapped libraries at the end
     bool hashes = false;        ///< print the state hash of each step
     std::string log_level = "info";
     std::vector<ScheduledOperation> operations;

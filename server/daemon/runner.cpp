@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <cinttypes>
+#include <fstream>
+#include <set>
 #include <thread>
 
 #include "daemon/output.h"
@@ -143,6 +145,16 @@ bool write_end_state(const simulation::Simulation& s, const std::string& file)
     return written && closed;
 }
 
+/// Shared objects of this process, a line each (Linux: /proc/self/maps).
+void print_mapped_libraries()
+{
+    std::ifstream maps("/proc/self/maps");
+    std::set<std::string> libraries;
+    for (std::string line; std::getline(maps, line);)
+        if (const std::size_t path = line.find('/'); path != std::string::npos && line.find(".so", path) != std::string::npos) libraries.insert(line.substr(path));
+    for (const std::string& library : libraries) std::printf("%s\n", library.c_str());
+}
+
 }  // namespace
 
 int run(simulation::Simulation& s, const Options& options, const std::atomic<bool>& stop)
@@ -178,6 +190,7 @@ int run(simulation::Simulation& s, const Options& options, const std::atomic<boo
     }
     table.show(s, true);
     if (trace) trace->sample(s, true);
+    if (options.maps) print_mapped_libraries();
     if (!options.out.empty()) fine = write_end_state(s, options.out) && fine;
     return fine ? 0 : 1;
 }

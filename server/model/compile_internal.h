@@ -23,7 +23,10 @@ class Report
 {
 public:
     explicit Report(std::size_t most) : most_(most) {}
-    void add(const SourceLocation& where, std::string element, std::string why) { add({where, std::move(element), std::move(why)}, {}); }
+    void add(const SourceLocation& where, std::string element, std::string why)
+    {
+        add({where, std::move(element), std::move(why)}, {});
+    }
     /// A complaint about an id that nobody has: the nearest ids are looked up for those that are shown in the end.
     void add_unknown_id(const SourceLocation& where, std::string element, std::string why, std::string wanted)
     {
@@ -54,8 +57,8 @@ struct Cell
 {
     const Names* components = nullptr;  ///< ids that the repeat defines
     const Names* commands = nullptr;
-    std::string suffix;                 ///< ".3.0"
-    Vec3 offset;                        ///< m
+    std::string suffix;  ///< ".3.0"
+    Vec3 offset;         ///< m
 };
 
 /// An id as it reads in a cell; outside of repeats as written.
@@ -106,22 +109,22 @@ struct Draft
     std::string id;
     std::string name;
     std::string type_name;
-    const ComponentNode* node = nullptr;       ///< null if generated or existing
+    const ComponentNode* node = nullptr;  ///< null if generated or existing
     const ComponentSpec* existing = nullptr;
     const ComponentType* type = nullptr;
     const Cell* cell = nullptr;
-    bool broken = false;                       ///< complained about already: no complaints that follow from it
+    bool broken = false;  ///< complained about already: no complaints that follow from it
     bool generated = false;
     bool parts_formed = false;
     std::size_t parent = kNone;
     std::vector<std::size_t> children;
-    std::size_t alias = kNone;                 ///< draft that it shares
-    std::vector<std::size_t> group;            ///< drafts that its comprefs name
+    std::size_t alias = kNone;       ///< draft that it shares
+    std::vector<std::size_t> group;  ///< drafts that its comprefs name
     std::vector<GivenField> fields;
-    std::vector<GivenRole> roles;              ///< one per role of the schema
+    std::vector<GivenRole> roles;  ///< one per role of the schema
     std::vector<GivenPart> parts;
     bool explicit_commands = false;
-    std::set<int> commands;                    ///< selected, as indices of info.commands
+    std::set<int> commands;  ///< selected, as indices of info.commands
     SourceLocation where;
 };
 
@@ -153,9 +156,9 @@ public:
 struct Participants
 {
     std::vector<std::size_t> members;
-    std::string why;        ///< reason of a failure
-    bool unknown = false;   ///< failed because nobody has the id
-    bool broken = false;    ///< stands for something that was complained about already
+    std::string why;       ///< reason of a failure
+    bool unknown = false;  ///< failed because nobody has the id
+    bool broken = false;   ///< stands for something that was complained about already
 };
 
 /// Whether a component of this type may take this role.
@@ -196,7 +199,10 @@ struct Compilation
     bool is_type_name(const std::string& name);
     /// The type, loaded at most once.
     const Result<const ComponentType*>& require(const std::string& type);
-    void complain(std::size_t i, const SourceLocation& where, std::string why) { report.add(where, element(i), std::move(why)); }
+    void complain(std::size_t i, const SourceLocation& where, std::string why)
+    {
+        report.add(where, element(i), std::move(why));
+    }
 };
 
 /// Adds a draft; enters its id, refusing empty, ill-formed and used ones.

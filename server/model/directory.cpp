@@ -19,7 +19,8 @@ std::size_t Directory::follow(std::size_t i) const
     // A chain without circle is no longer than there are drafts.
     for (std::size_t steps = 0; steps <= drafts.size(); ++steps)
     {
-        if (i == kNone || drafts[i].alias == kNone) return i;
+        if (i == kNone || drafts[i].alias == kNone)
+            return i;
         i = drafts[i].alias;
     }
     return kNone;
@@ -37,8 +38,10 @@ std::vector<std::size_t> Directory::inside(std::size_t group) const
         const auto enter = [&](std::size_t i)
         {
             i = follow(i);
-            if (i == kNone || !seen.insert(i).second) return;
-            if (!drafts[i].type_name.empty()) found.push_back(i);
+            if (i == kNone || !seen.insert(i).second)
+                return;
+            if (!drafts[i].type_name.empty())
+                found.push_back(i);
             open.push_back(i);
         };
         for (const std::size_t child : at.children) enter(child);
@@ -49,8 +52,10 @@ std::vector<std::size_t> Directory::inside(std::size_t group) const
 
 bool accepts(const Role& role, const ComponentType& type)
 {
-    return std::any_of(role.facets.begin(), role.facets.end(), [&](Facet facet)
-                       { return facet == Facet::Component ? type.info.name.starts_with(role.family) : facet == type.info.facet; });
+    return std::any_of(
+        role.facets.begin(), role.facets.end(),
+        [&](Facet facet)
+        { return facet == Facet::Component ? type.info.name.starts_with(role.family) : facet == type.info.facet; });
 }
 
 std::string describe_wanted(const Role& role)
@@ -60,7 +65,8 @@ std::string describe_wanted(const Role& role)
     {
         constexpr std::string_view words[] = {"a component", "a body", "a shaft", "a shape"};
         out += (out.empty() ? "" : " or ") + std::string(words[static_cast<int>(facet)]);
-        if (facet == Facet::Component && !role.family.empty()) out += " of type " + role.family + (role.family.ends_with('/') ? "..." : "/...");
+        if (facet == Facet::Component && !role.family.empty())
+            out += " of type " + role.family + (role.family.ends_with('/') ? "..." : "/...");
     }
     return out;
 }
@@ -71,8 +77,10 @@ namespace
 std::string describe(const Draft& draft)
 {
     constexpr std::string_view words[] = {"", ", a body", ", a shaft", ", a shape"};
-    if (!draft.type) return quoted(draft.id);
-    return quoted(draft.id) + " is " + draft.type->info.name + std::string(words[static_cast<int>(draft.type->info.facet)]);
+    if (!draft.type)
+        return quoted(draft.id);
+    return quoted(draft.id) + " is " + draft.type->info.name +
+           std::string(words[static_cast<int>(draft.type->info.facet)]);
 }
 
 /// What an object or a group gives to a role.
@@ -83,17 +91,19 @@ Participants find_inside(const Directory& directory, std::size_t group, const Ro
     {
         const Draft& d = directory.drafts[i];
         out.broken = out.broken || d.broken;
-        if (d.type && accepts(role, *d.type)) out.members.push_back(i);
+        if (d.type && accepts(role, *d.type))
+            out.members.push_back(i);
     }
     const std::string id = quoted(directory.drafts[group].id);
     if (out.members.empty() && !out.broken)
         out.why = "role " + role.name + " needs " + describe_wanted(role) + ", and " + id + " holds none";
-    if (!role.one || out.members.size() < 2) return out;
+    if (!role.one || out.members.size() < 2)
+        return out;
     std::vector<std::string> ids;
     for (const std::size_t i : out.members) ids.push_back(directory.drafts[i].id);
     std::sort(ids.begin(), ids.end());
-    out.why = "role " + role.name + " takes one participant, and " + id + " holds " + std::to_string(ids.size()) + " that fit (" +
-              quoted_list(ids) + "): name one of them";
+    out.why = "role " + role.name + " takes one participant, and " + id + " holds " + std::to_string(ids.size()) +
+              " that fit (" + quoted_list(ids) + "): name one of them";
     out.members.clear();
     return out;
 }
@@ -117,7 +127,8 @@ Participants find_participants(const Directory& directory, const std::string& wr
         return out;
     }
     const Draft& d = directory.drafts[i];
-    if (d.type_name.empty()) return find_inside(directory, i, role);
+    if (d.type_name.empty())
+        return find_inside(directory, i, role);
     if (d.type && accepts(role, *d.type))
         out.members.push_back(i);
     else
@@ -128,14 +139,20 @@ Participants find_participants(const Directory& directory, const std::string& wr
 std::vector<std::vector<std::size_t>> find_circles(const std::vector<std::vector<std::size_t>>& edges)
 {
     constexpr std::size_t kMostCircles = 100;
-    enum class Mark : unsigned char { New, OnPath, Done };
+    enum class Mark : unsigned char
+    {
+        New,
+        OnPath,
+        Done
+    };
     std::vector<Mark> marks(edges.size(), Mark::New);
     std::vector<std::size_t> next(edges.size(), 0);
     std::vector<std::vector<std::size_t>> circles;
     std::vector<std::size_t> path;  // depth first, without recursion: chains can be as long as the scene
     for (std::size_t start = 0; start < edges.size(); ++start)
     {
-        if (marks[start] != Mark::New) continue;
+        if (marks[start] != Mark::New)
+            continue;
         path.push_back(start);
         marks[start] = Mark::OnPath;
         while (!path.empty())
@@ -150,7 +167,8 @@ std::vector<std::vector<std::size_t>> find_circles(const std::vector<std::vector
             const std::size_t to = edges[at][next[at]++];
             if (marks[to] == Mark::OnPath && circles.size() < kMostCircles)
                 circles.emplace_back(std::find(path.begin(), path.end(), to), path.end());
-            if (marks[to] != Mark::New) continue;
+            if (marks[to] != Mark::New)
+                continue;
             marks[to] = Mark::OnPath;
             path.push_back(to);
         }

@@ -25,23 +25,24 @@ struct Symbol
 
 // The first of a dimension is the one without factor, where there is one.
 constexpr Symbol kSymbols[] = {
-    {"m", 1, 1, 0, {{1, 0, 0, 0}}},        {"cm", 1, 100, 0, {{1, 0, 0, 0}}},     {"mm", 1, 1000, 0, {{1, 0, 0, 0}}},
-    {"km", 1000, 1, 0, {{1, 0, 0, 0}}},    {"um", 1, 1e6, 0, {{1, 0, 0, 0}}},     {"kg", 1, 1, 0, {{0, 1, 0, 0}}},
-    {"g", 1, 1000, 0, {{0, 1, 0, 0}}},     {"mg", 1, 1e6, 0, {{0, 1, 0, 0}}},     {"t", 1000, 1, 0, {{0, 1, 0, 0}}},
-    {"s", 1, 1, 0, {{0, 0, 1, 0}}},        {"ms", 1, 1000, 0, {{0, 0, 1, 0}}},    {"us", 1, 1e6, 0, {{0, 0, 1, 0}}},
-    {"min", 60, 1, 0, {{0, 0, 1, 0}}},     {"h", 3600, 1, 0, {{0, 0, 1, 0}}},     {"rad", 1, 1, 0, {{0, 0, 0, 1}}},
-    {"deg", 1, 180, 1, {{0, 0, 0, 1}}},    {"rev", 2, 1, 1, {{0, 0, 0, 1}}},      {"turn", 2, 1, 1, {{0, 0, 0, 1}}},
-    {"mrad", 1, 1000, 0, {{0, 0, 0, 1}}},  {"Hz", 1, 1, 0, {{0, 0, -1, 0}}},      {"kHz", 1000, 1, 0, {{0, 0, -1, 0}}},
-    {"rpm", 1, 30, 1, {{0, 0, -1, 1}}},    {"N", 1, 1, 0, {{1, 1, -2, 0}}},       {"kN", 1000, 1, 0, {{1, 1, -2, 0}}},
-    {"mN", 1, 1000, 0, {{1, 1, -2, 0}}},   {"J", 1, 1, 0, {{2, 1, -2, 0}}},       {"kJ", 1000, 1, 0, {{2, 1, -2, 0}}},
-    {"W", 1, 1, 0, {{2, 1, -3, 0}}},       {"kW", 1000, 1, 0, {{2, 1, -3, 0}}},   {"Pa", 1, 1, 0, {{-1, 1, -2, 0}}},
+    {"m", 1, 1, 0, {{1, 0, 0, 0}}},        {"cm", 1, 100, 0, {{1, 0, 0, 0}}},    {"mm", 1, 1000, 0, {{1, 0, 0, 0}}},
+    {"km", 1000, 1, 0, {{1, 0, 0, 0}}},    {"um", 1, 1e6, 0, {{1, 0, 0, 0}}},    {"kg", 1, 1, 0, {{0, 1, 0, 0}}},
+    {"g", 1, 1000, 0, {{0, 1, 0, 0}}},     {"mg", 1, 1e6, 0, {{0, 1, 0, 0}}},    {"t", 1000, 1, 0, {{0, 1, 0, 0}}},
+    {"s", 1, 1, 0, {{0, 0, 1, 0}}},        {"ms", 1, 1000, 0, {{0, 0, 1, 0}}},   {"us", 1, 1e6, 0, {{0, 0, 1, 0}}},
+    {"min", 60, 1, 0, {{0, 0, 1, 0}}},     {"h", 3600, 1, 0, {{0, 0, 1, 0}}},    {"rad", 1, 1, 0, {{0, 0, 0, 1}}},
+    {"deg", 1, 180, 1, {{0, 0, 0, 1}}},    {"rev", 2, 1, 1, {{0, 0, 0, 1}}},     {"turn", 2, 1, 1, {{0, 0, 0, 1}}},
+    {"mrad", 1, 1000, 0, {{0, 0, 0, 1}}},  {"Hz", 1, 1, 0, {{0, 0, -1, 0}}},     {"kHz", 1000, 1, 0, {{0, 0, -1, 0}}},
+    {"rpm", 1, 30, 1, {{0, 0, -1, 1}}},    {"N", 1, 1, 0, {{1, 1, -2, 0}}},      {"kN", 1000, 1, 0, {{1, 1, -2, 0}}},
+    {"mN", 1, 1000, 0, {{1, 1, -2, 0}}},   {"J", 1, 1, 0, {{2, 1, -2, 0}}},      {"kJ", 1000, 1, 0, {{2, 1, -2, 0}}},
+    {"W", 1, 1, 0, {{2, 1, -3, 0}}},       {"kW", 1000, 1, 0, {{2, 1, -3, 0}}},  {"Pa", 1, 1, 0, {{-1, 1, -2, 0}}},
     {"kPa", 1000, 1, 0, {{-1, 1, -2, 0}}}, {"MPa", 1e6, 1, 0, {{-1, 1, -2, 0}}},
 };
 
 const Symbol* find_symbol(std::string_view name)
 {
     for (const Symbol& s : kSymbols)
-        if (s.name == name) return &s;
+        if (s.name == name)
+            return &s;
     return nullptr;
 }
 
@@ -74,7 +75,8 @@ bool multiply(UnitFactor& f, const Symbol& symbol, int power)
     for (std::size_t i = 0; i < f.dimension.power.size(); ++i)
     {
         const int sum = f.dimension.power[i] + symbol.dimension.power[i] * power;
-        if (std::abs(sum) > kMostPower) return false;
+        if (std::abs(sum) > kMostPower)
+            return false;
         f.dimension.power[i] = static_cast<signed char>(sum);
     }
     f.pi_power += symbol.pi_power * power;
@@ -97,7 +99,8 @@ public:
     {
         UnitFactor out;
         // "1/s": a quotient without numerator.
-        if (text_.starts_with("1") && trimmed(text_.substr(1)).starts_with("/")) at_ = 1;
+        if (text_.starts_with("1") && trimmed(text_.substr(1)).starts_with("/"))
+            at_ = 1;
         bool first = at_ == 0;
         while (skip_blanks(), at_ < text_.size())
         {
@@ -108,7 +111,8 @@ public:
                 skip_blanks();
             }
             first = false;
-            if (auto r = read_factor(out, sign); !r) return r.errors();
+            if (auto r = read_factor(out, sign); !r)
+                return r.errors();
         }
         return out;
     }
@@ -122,11 +126,15 @@ private:
     Result<void> read_factor(UnitFactor& out, int sign)
     {
         const std::size_t begin = at_;
-        while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' && text_[at_] != '*' && text_[at_] != '^') ++at_;
+        while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' && text_[at_] != '*' &&
+               text_[at_] != '^')
+            ++at_;
         const std::string_view name = text_.substr(begin, at_ - begin);
-        if (name.empty() || !is_letter(name.front())) return reason(quoted(text_) + " is not a unit");
+        if (name.empty() || !is_letter(name.front()))
+            return reason(quoted(text_) + " is not a unit");
         const Symbol* symbol = find_symbol(name);
-        if (!symbol) return unknown_unit(name);
+        if (!symbol)
+            return unknown_unit(name);
         int power = 1;
         if (at_ < text_.size() && text_[at_] == '^')
         {
@@ -138,7 +146,8 @@ private:
             if (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' && text_[at_] != '*')
                 return reason(quoted(text_) + " is not a unit");
         }
-        if (!multiply(out, *symbol, sign * power)) return reason(quoted(text_) + " is not a sensible unit");
+        if (!multiply(out, *symbol, sign * power))
+            return reason(quoted(text_) + " is not a sensible unit");
         return {};
     }
 
@@ -156,11 +165,15 @@ double UnitFactor::to_si(double value) const
     return out;
 }
 
-Result<UnitFactor> parse_unit(std::string_view text) { return UnitReader(trimmed(text)).read(); }
+Result<UnitFactor> parse_unit(std::string_view text)
+{
+    return UnitReader(trimmed(text)).read();
+}
 
 bool unit_fits(const Dimension& written, const Dimension& declared)
 {
-    if (written == declared) return true;
+    if (written == declared)
+        return true;
     const bool rest_agrees = written.power[0] == declared.power[0] && written.power[1] == declared.power[1] &&
                              written.power[2] == declared.power[2];
     // Only where there is mass: "2 Hz" for rad/s would hide whether turns or radians were meant.
@@ -171,10 +184,14 @@ std::string describe_unit(const Unit& unit)
 {
     std::string others;
     for (const Symbol& s : kSymbols)
-        if (s.dimension == unit.dimension && s.name != unit.symbol) others += (others.empty() ? "" : ", ") + std::string(s.name);
+        if (s.dimension == unit.dimension && s.name != unit.symbol)
+            others += (others.empty() ? "" : ", ") + std::string(s.name);
     return std::string(unit.symbol) + (others.empty() ? "" : " (or " + others + ")");
 }
 
-bool is_unit_symbol(std::string_view text) { return find_symbol(text) != nullptr; }
+bool is_unit_symbol(std::string_view text)
+{
+    return find_symbol(text) != nullptr;
+}
 
 }  // namespace plab::model

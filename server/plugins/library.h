@@ -50,7 +50,8 @@ private:
     Result<PluginInfo> open(const std::string& path);
     Error unknown(const std::string& name) const;
 
-    // Members go in reverse order: the registry, which holds tables and declarations made by plugins, before their code.
+    // Members go in reverse order: the registry, which holds tables and declarations made by plugins, before their
+    // code.
     std::vector<LibraryHandle> libraries_;
     model::TypeRegistry registry_;
     std::vector<PluginInfo> loaded_;

@@ -32,7 +32,8 @@ Result<void> register_types(RegisterFunction entry, OpenPlugin& plugin)
     {
         return refused(plugin.path, "threw an exception while registering its types");
     }
-    if (plugin.registrar.types().empty()) return refused(plugin.path, "declares no types");
+    if (plugin.registrar.types().empty())
+        return refused(plugin.path, "declares no types");
     return {};
 }
 
@@ -54,9 +55,10 @@ std::string why_not_usable(const PluginStamp& stamp)
         return "its stamp has " + std::to_string(stamp.size) + " bytes, " + std::to_string(sizeof(PluginStamp)) +
                " are needed" + rebuild;
     if (stamp.layout != layout_stamp())
-        return "its structures are laid out differently: layout " + std::to_string(stamp.layout) + compiler_of(stamp) + ", " +
-               std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + rebuild;
-    if (!stamp.name || !*stamp.name) return "its stamp has no name";
+        return "its structures are laid out differently: layout " + std::to_string(stamp.layout) + compiler_of(stamp) +
+               ", " + std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + rebuild;
+    if (!stamp.name || !*stamp.name)
+        return "its stamp has no name";
     return {};
 }
 
@@ -73,12 +75,16 @@ Result<OpenPlugin> open_plugin(const std::string& path)
         return refused(file, std::string("cannot be loaded: ") + (why ? why : "unknown reason"));
     }
     const auto* stamp = static_cast<const PluginStamp*>(dlsym(plugin.library.get(), kStampSymbol));
-    if (!stamp) return refused(file, std::string("is no pLab plugin: it has no symbol ") + kStampSymbol);
-    if (const std::string why = why_not_usable(*stamp); !why.empty()) return refused(file, why);
+    if (!stamp)
+        return refused(file, std::string("is no pLab plugin: it has no symbol ") + kStampSymbol);
+    if (const std::string why = why_not_usable(*stamp); !why.empty())
+        return refused(file, why);
     const auto entry = reinterpret_cast<RegisterFunction>(dlsym(plugin.library.get(), kRegisterSymbol));
-    if (!entry) return refused(file, std::string("has no symbol ") + kRegisterSymbol);
+    if (!entry)
+        return refused(file, std::string("has no symbol ") + kRegisterSymbol);
     plugin.name = stamp->name;
-    if (auto done = register_types(entry, plugin); !done) return done.errors();
+    if (auto done = register_types(entry, plugin); !done)
+        return done.errors();
     return plugin;
 }
 
@@ -86,7 +92,8 @@ std::string installed_plugin_directory()
 {
     std::error_code failed;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);
-    if (failed) return {};
+    if (failed)
+        return {};
     return (program.parent_path().parent_path() / "lib" / "plab").string();
 }
 

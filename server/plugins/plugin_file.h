@@ -22,7 +22,7 @@ struct OpenPlugin
     LibraryHandle library;  ///< first: goes last
     std::string path;
     std::string name;
-    Registrar registrar;    ///< the types that it declared
+    Registrar registrar;  ///< the types that it declared
 };
 
 /// Loads the plugin at `path`. It is refused, with a reason that names the file, unless it was built against this SDK:

@@ -172,9 +172,7 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
     {
         const std::uint32_t b = members[i];
         old_velocity_.push_back(bodies.velocity[b]), old_spin_.push_back(bodies.angular_velocity[b]);
-        bodies.velocity[b] += system.acceleration(i) * h;
-        bodies.angular_momentum[b] += system.torque(i) * h;
-        bodies.refresh_spin(b);
+        system.kick(i, h);
     }
     respond(touching_, ImpactMode::Rest, h, book);
     if (!trial) keep_impulses(touching_);

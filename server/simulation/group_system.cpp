@@ -100,7 +100,8 @@ void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events
         const std::uint32_t b = bodies_[i];
         start_position_[i] = host.bodies.position[b], start_orientation_[i] = host.bodies.orientation[b];
         put(speeds_, 6 * i, host.bodies.velocity[b]);
-        put(speeds_, 6 * i + 3, host.bodies.angular_momentum[b]);
+        put(speeds_, 6 * i + 3,
+            host.bodies.needle[b] != 0 ? rotate_back(host.bodies.orientation[b], host.bodies.angular_velocity[b]) : host.bodies.angular_momentum[b]);
     }
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {
@@ -136,7 +137,10 @@ void GroupSystem::scatter(double t)
         host.bodies.position[b] = start_position_[i] + get(coordinates_, 6 * i);
         host.bodies.orientation[b] = start_orientation_[i] * exp_rotation(get(coordinates_, 6 * i + 3));
         host.bodies.velocity[b] = get(speeds_, 6 * i);
-        host.bodies.angular_momentum[b] = get(speeds_, 6 * i + 3);
+        if (host.bodies.needle[b] != 0)
+            host.bodies.angular_velocity[b] = rotate(host.bodies.orientation[b], get(speeds_, 6 * i + 3));
+        else
+            host.bodies.angular_momentum[b] = get(speeds_, 6 * i + 3);
         host.bodies.refresh_spin(b);
     }
     const std::size_t base = 6 * bodies_.size();
@@ -194,6 +198,27 @@ void GroupSystem::rates_of_bodies()
     }
 }
 
+Vec3 GroupSystem::spin_rate_B(std::uint32_t b) const
+{
+    // Euler's equations in the body frame: I w' = tau - w x I w.
+    const Bodies& bodies = frame_.world->host().bodies;
+    const Vec3 w_B = rotate_back(bodies.orientation[b], bodies.angular_velocity[b]);
+    const Vec3 torque_B = rotate_back(bodies.orientation[b], wrenches_.torque[b]);
+    return bodies.inverse_inertia_B[b] * (torque_B - cross(w_B, bodies.inertia_B[b] * w_B));
+}
+
+void GroupSystem::kick(std::size_t member, double h)
+{
+    Bodies& bodies = frame_.world->host().bodies;
+    const std::uint32_t b = bodies_[member];
+    bodies.velocity[b] += acceleration(member) * h;
+    if (bodies.needle[b] != 0)
+        bodies.angular_velocity[b] += rotate(bodies.orientation[b], spin_rate_B(b)) * h;
+    else
+        bodies.angular_momentum[b] += wrenches_.torque[b] * h;
+    bodies.refresh_spin(b);
+}
+
 void GroupSystem::rates_of_shafts(double weight)
 {
     if (roots_.empty()) return;
@@ -237,7 +262,7 @@ void GroupSystem::evaluate(double t, double weight)
     for (std::size_t i = 0; i < bodies_.size(); ++i)
     {
         put(speed_rates_, 6 * i, wrenches_.force[bodies_[i]] * bodies.inverse_mass[bodies_[i]]);
-        put(speed_rates_, 6 * i + 3, wrenches_.torque[bodies_[i]]);
+        put(speed_rates_, 6 * i + 3, bodies.needle[bodies_[i]] != 0 ? spin_rate_B(bodies_[i]) : wrenches_.torque[bodies_[i]]);
     }
     rates_of_shafts(weight);
 }

@@ -59,9 +59,11 @@ public:
     std::span<const std::uint32_t> bodies() const { return bodies_; }
     std::span<const std::uint32_t> shafts() const { return shafts_; }
     const StepContext& context() const { return context_; }
-    /// Speed rates of a member body after evaluate: dv/dt (m/s^2) and dL/dt (N m).
+    /// Of a member body after evaluate: dv/dt (m/s^2) and the torque about C (N m).
     Vec3 acceleration(std::size_t member) const { return get(speed_rates_, 6 * member); }
-    Vec3 torque(std::size_t member) const { return get(speed_rates_, 6 * member + 3); }
+    Vec3 torque(std::size_t member) const { return wrenches_.torque[bodies_[member]]; }
+    /// Changes a member body's velocity and spin by what the forces of evaluate_here do in h.
+    void kick(std::size_t member, double h);
     /// The first member whose state is not finite, after finish() said so.
     Ref not_finite() const { return not_finite_; }
     const ShaftCoupling& coupling() const { return coupling_; }
@@ -84,6 +86,7 @@ private:
     void clear_wrenches();
     void run_forces(double weight);
     void rates_of_bodies();
+    Vec3 spin_rate_B(std::uint32_t body) const;
     void rates_of_shafts(double weight);
 
     struct Selected

@@ -35,6 +35,8 @@ public:
 
     /// Queues a request for the boundary before the next step, or the step that it names.
     void post(Request request);
+    /// Carries a request out at the present boundary, between two steps.
+    Reply carry_out_now(const Request& request) { return carry_out(request); }
     /// Requests that are due take effect; then, unless paused, one step. False if paused.
     bool step();
     /// Answers since the last call, in order.

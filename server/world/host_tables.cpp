@@ -30,14 +30,14 @@ void resize(Bodies& b, std::size_t n)
 {
     b.motion.resize(n, Motion::Static), b.position.resize(n), b.orientation.resize(n), b.velocity.resize(n);
     b.angular_velocity.resize(n), b.angular_momentum.resize(n), b.mass.resize(n), b.inverse_mass.resize(n);
-    b.inertia_B.resize(n), b.inverse_inertia_B.resize(n), b.center_B.resize(n), b.material.resize(n), b.shapes.resize(n);
+    b.inertia_B.resize(n), b.inverse_inertia_B.resize(n), b.center_B.resize(n), b.needle.resize(n), b.material.resize(n), b.shapes.resize(n);
 }
 
 void clear_row(Bodies& b, std::uint32_t i)
 {
     b.motion[i] = Motion::Static, b.position[i] = {}, b.orientation[i] = {}, b.velocity[i] = {};
     b.angular_velocity[i] = {}, b.angular_momentum[i] = {}, b.mass[i] = 0, b.inverse_mass[i] = 0;
-    b.inertia_B[i] = {}, b.inverse_inertia_B[i] = {}, b.center_B[i] = {}, b.material[i] = 0, b.shapes[i].clear();
+    b.inertia_B[i] = {}, b.inverse_inertia_B[i] = {}, b.center_B[i] = {}, b.needle[i] = 0, b.material[i] = 0, b.shapes[i].clear();
 }
 
 void resize(Shafts& s, std::size_t n)

@@ -105,11 +105,25 @@ Result<void> World::run(std::uint32_t component, Phase phase)
     return {};
 }
 
+namespace
+{
+
+/// trace^3 / det is 27 for a sphere and grows with the spread of the principal inertias.
+bool is_needle(const Mat3& inertia)
+{
+    const double trace = inertia(0, 0) + inertia(1, 1) + inertia(2, 2);
+    return trace * trace * trace > 1e4 * determinant(inertia);
+}
+
+}  // namespace
+
 Result<void> World::prepare(std::uint32_t component)
 {
     const Component& c = components_[component];
     if (c.table == kNoIndex) return {};
     auto done = run(component, Phase::Prepare);
+    if (done && c.facet == Facet::Body)
+        host_.bodies.needle[c.host_index] = host_.bodies.dynamic(c.host_index) && is_needle(host_.bodies.inertia_B[c.host_index]) ? 1 : 0;
     if (done && c.facet == Facet::Shape)
     {
         // A shape without a volume is fine to draw; only a body that needs its mass will complain.

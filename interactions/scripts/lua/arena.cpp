@@ -35,8 +35,7 @@ static_assert(size_of(class_of(512)) == 512 && size_of(class_of(513)) == 640 && 
 
 }  // namespace
 
-Arena::Arena(std::size_t capacity)
-    : block_(std::make_unique_for_overwrite<std::byte[]>(capacity)), capacity_(capacity)
+Arena::Arena(std::size_t capacity) : block_(std::make_unique_for_overwrite<std::byte[]>(capacity)), capacity_(capacity)
 {
 }
 

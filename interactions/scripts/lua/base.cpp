@@ -167,15 +167,17 @@ int pairs_in_order(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {
-    {"pcall", protected_call}, {"xpcall", protected_call_with_handler},
-    {"error", raise},          {"assert", assert_true},
-    {"select", select_from},   {"type", type_of_value},
-    {"tostring", to_text},     {"tonumber", to_number},
-    {"ipairs", pairs_of_list}, {"pairs", pairs_in_order}};
+constexpr NativeFunction kFunctions[] = {{"pcall", protected_call}, {"xpcall", protected_call_with_handler},
+                                         {"error", raise},          {"assert", assert_true},
+                                         {"select", select_from},   {"type", type_of_value},
+                                         {"tostring", to_text},     {"tonumber", to_number},
+                                         {"ipairs", pairs_of_list}, {"pairs", pairs_in_order}};
 
 }  // namespace
 
-void open_base(lua_State* lua) { add_functions(lua, kFunctions); }
+void open_base(lua_State* lua)
+{
+    add_functions(lua, kFunctions);
+}
 
 }  // namespace plab::scripts

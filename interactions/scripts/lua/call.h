@@ -31,8 +31,8 @@ struct Call
     const RefList* between = nullptr;
     const Entries* parameters = nullptr;
     const Entries* state = nullptr;
-    Entries* writable_state = nullptr;      ///< Drive only; the same as `state`
-    std::int64_t* random_state = nullptr;   ///< Drive only
+    Entries* writable_state = nullptr;     ///< Drive only; the same as `state`
+    std::int64_t* random_state = nullptr;  ///< Drive only
 };
 
 /// A force that a call asks for. Applied when the call has succeeded, so a failing call adds nothing.

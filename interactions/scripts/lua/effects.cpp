@@ -32,12 +32,15 @@ Value checked_value(lua_State* lua, int argument)
 {
     switch (lua_type(lua, argument))
     {
-        case LUA_TBOOLEAN: return lua_toboolean(lua, argument) != 0;
+        case LUA_TBOOLEAN:
+            return lua_toboolean(lua, argument) != 0;
         case LUA_TNUMBER:
             luaL_argcheck(lua, std::isfinite(lua_tonumber(lua, argument)), argument, "must be finite");
             return lua_tonumber(lua, argument);
-        case LUA_TSTRING: return checked_string(lua, argument);
-        default: break;
+        case LUA_TSTRING:
+            return checked_string(lua, argument);
+        default:
+            break;
     }
     const Vec3* v = to_vector(lua, argument);
     if (!v)
@@ -107,6 +110,9 @@ constexpr NativeFunction kFunctions[] = {{"set", set_parameter}, {"emit", emit_e
 
 }  // namespace
 
-void open_effects(lua_State* lua) { add_functions(lua, kFunctions); }
+void open_effects(lua_State* lua)
+{
+    add_functions(lua, kFunctions);
+}
 
 }  // namespace plab::scripts

@@ -56,8 +56,7 @@ int push_keys(lua_State* lua, int table, bool& others)
 {
     int count = 0;
     others = false;
-    for (lua_pushnil(lua); lua_next(lua, table) != 0; lua_pop(lua, 1))
-        ++count;
+    for (lua_pushnil(lua); lua_next(lua, table) != 0; lua_pop(lua, 1)) ++count;
     lua_createtable(lua, count, 0);
     const int list = lua_gettop(lua);
     auto* keys = static_cast<Key*>(lua_newuserdatauv(lua, sizeof(Key) * static_cast<std::size_t>(count) + 1, 0));
@@ -135,7 +134,7 @@ int push_ordered_keys(lua_State* lua, int index, bool& others)
     const int count = push_keys(lua, table, others);
     const int unsorted = lua_gettop(lua) - 1;
     auto* keys = static_cast<Key*>(lua_touserdata(lua, -1));
-    charge(lua, count * (1 + std::bit_width(static_cast<unsigned>(count))));
+    charge(lua, count * (1 + static_cast<int>(std::bit_width(static_cast<unsigned>(count)))));
     std::sort(keys, keys + count, precedes);
     lua_createtable(lua, count, 0);
     for (int i = 0; i < count; ++i)
@@ -219,6 +218,8 @@ void reach(Walk& walk, int index)
 {
     lua_State* lua = walk.lua;
     const int type = lua_type(lua, index);
+    if (lua_iscfunction(lua, index) && lua_getupvalue(lua, index, 1))
+        luaL_error(lua, "what pairs returns cannot be kept: call pairs where the loop is");  // it counts
     const bool table = type == LUA_TTABLE && !is_frozen(lua, index);
     const bool function = type == LUA_TFUNCTION && !lua_iscfunction(lua, index);
     if (!table && !function)

@@ -125,8 +125,7 @@ int build(lua_State* lua)
     lua_pushliteral(lua, "state");
     lua_rawget(lua, globals);
     lua_rawgeti(lua, LUA_REGISTRYINDEX, kStep);
-    for (int i = 1; i <= count; ++i)
-        lua_rawgeti(lua, functions, i);
+    for (int i = 1; i <= count; ++i) lua_rawgeti(lua, functions, i);
     return kFirstWatchedSlot - 1 + count;
 }
 
@@ -173,7 +172,8 @@ struct Report
 Report explain(Session& session, int status)
 {
     lua_State* lua = session.lua;
-    const auto at = [&] {
+    const auto at = [&]
+    {
         return session.refused_at > 0 ? std::string(kChunkName + 1) + ":" + std::to_string(session.refused_at) + ": "
                                       : std::string();
     };
@@ -186,14 +186,15 @@ Report explain(Session& session, int status)
     switch (session.meter.why())
     {
         case Doom::Instructions:
-        case Doom::Traffic: return {"script.over_budget", said};
+        case Doom::Traffic:
+            return {"script.over_budget", said};
         case Doom::Memory:
             return {"script.out_of_memory",
                     at() + "more than memory_limit = " + std::to_string(session.arena.capacity()) + " bytes"};
         case Doom::Text:
-            return {"script.out_of_memory",
-                    at() + "a text of more than " + std::to_string(kLongestText) + " bytes"};
-        case Doom::None: break;
+            return {"script.out_of_memory", at() + "a text of more than " + std::to_string(kLongestText) + " bytes"};
+        case Doom::None:
+            break;
     }
     return {"script.error", is_utf8(said) ? said : "the error's text is not UTF-8"};
 }
@@ -230,8 +231,14 @@ Result<void> Machine::load(const std::string& code, const Call& call)
     return reason(as_load_error(why.message));
 }
 
-bool Machine::has_drive() const { return !failure_ && !lua_isnil(session_->lua, kDriveSlot); }
-bool Machine::has_force() const { return !failure_ && !lua_isnil(session_->lua, kForceSlot); }
+bool Machine::has_drive() const
+{
+    return !failure_ && !lua_isnil(session_->lua, kDriveSlot);
+}
+bool Machine::has_force() const
+{
+    return !failure_ && !lua_isnil(session_->lua, kForceSlot);
+}
 
 bool Machine::drive(const Call& call)
 {
@@ -264,7 +271,10 @@ bool Machine::force(const Call& call)
     return run(kForceSlot, 2, call);
 }
 
-std::span<const Action> Machine::actions() const { return session_->actions; }
+std::span<const Action> Machine::actions() const
+{
+    return session_->actions;
+}
 
 /// The function and its arguments are on the stack.
 bool Machine::run(int function, int arguments, const Call& call)
@@ -321,7 +331,13 @@ void Machine::fail(const Call& call, std::string kind, std::string message)
     failure.tick = call.context->tick, failure.time = call.context->time;
 }
 
-std::int64_t Machine::take_instructions() { return std::exchange(most_instructions_, 0); }
-std::size_t Machine::memory_used() const { return session_->arena.used(); }
+std::int64_t Machine::take_instructions()
+{
+    return std::exchange(most_instructions_, 0);
+}
+std::size_t Machine::memory_used() const
+{
+    return session_->arena.used();
+}
 
 }  // namespace plab::scripts

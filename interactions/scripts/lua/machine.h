@@ -26,9 +26,9 @@ struct Failure
     std::string kind;     ///< of the event: "script.error", "script.over_budget", "script.out_of_memory"
     std::string message;  ///< "code:3: ..."
     Tick tick = 0;
-    double time = 0;         ///< s
-    bool reported = false;   ///< its event is out
-    bool booked = false;     ///< the component's quarantine says so too
+    double time = 0;        ///< s
+    bool reported = false;  ///< its event is out
+    bool booked = false;    ///< the component's quarantine says so too
 };
 
 /// Runs on one thread at a time; two machines share nothing. After a failure it does nothing until loaded again.

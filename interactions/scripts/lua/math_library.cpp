@@ -88,8 +88,14 @@ int extreme(lua_State* lua, bool largest)
     lua_pushvalue(lua, best);
     return 1;
 }
-int smallest(lua_State* lua) { return extreme(lua, false); }
-int largest(lua_State* lua) { return extreme(lua, true); }
+int smallest(lua_State* lua)
+{
+    return extreme(lua, false);
+}
+int largest(lua_State* lua)
+{
+    return extreme(lua, true);
+}
 
 int to_integer(lua_State* lua)
 {
@@ -120,8 +126,7 @@ std::uint64_t random_state(const Call& call)
     const auto owners = call.context->component_of_row;
     const std::uint32_t owner = call.row < owners.size() ? owners[call.row] : kNoIndex;
     char name[sizeof owner];
-    for (std::size_t i = 0; i < sizeof owner; ++i)
-        name[i] = static_cast<char>(owner >> (8 * i));
+    for (std::size_t i = 0; i < sizeof owner; ++i) name[i] = static_cast<char>(owner >> (8 * i));
     return seed_for(call.context->seed, name, sizeof name) | 1;
 }
 
@@ -134,10 +139,11 @@ int random_number(lua_State* lua)
         return luaL_error(lua, "math.random is for drive(step): force(t, state) must be pure");
     const int arguments = lua_gettop(lua);
     const lua_Integer low = arguments > 1 ? luaL_checkinteger(lua, 1) : 1;
-    const lua_Integer high = arguments > 1 ? luaL_checkinteger(lua, 2) : (arguments == 1 ? luaL_checkinteger(lua, 1) : 1);
+    const lua_Integer high =
+        arguments > 1 ? luaL_checkinteger(lua, 2) : (arguments == 1 ? luaL_checkinteger(lua, 1) : 1);
     luaL_argcheck(lua, low <= high, arguments > 1 ? 2 : 1, "the interval is empty");
     const lua_Unsigned span = static_cast<lua_Unsigned>(high) - static_cast<lua_Unsigned>(low);
-    luaL_argcheck(lua, span < (1ull << 53), arguments > 1 ? 2 : 1, "the interval has more than 2^53 numbers");
+    luaL_argcheck(lua, span<(1ull << 53), arguments> 1 ? 2 : 1, "the interval has more than 2^53 numbers");
 
     std::uint64_t state = random_state(call);
     const double u = next_uniform(state);
@@ -150,11 +156,11 @@ int random_number(lua_State* lua)
 }
 
 constexpr NativeFunction kFunctions[] = {
-    {"abs", absolute},         {"sqrt", apply<std::sqrt>}, {"sin", apply<std::sin>},       {"cos", apply<std::cos>},
-    {"tan", apply<std::tan>},  {"asin", apply<std::asin>}, {"acos", apply<std::acos>},     {"atan", arc_tangent},
-    {"exp", apply<std::exp>},  {"log", logarithm},         {"floor", round_down},          {"ceil", round_up},
-    {"min", smallest},         {"max", largest},           {"fmod", remainder_of_division}, {"tointeger", to_integer},
-    {"type", number_type},     {"random", random_number}};
+    {"abs", absolute},        {"sqrt", apply<std::sqrt>}, {"sin", apply<std::sin>},        {"cos", apply<std::cos>},
+    {"tan", apply<std::tan>}, {"asin", apply<std::asin>}, {"acos", apply<std::acos>},      {"atan", arc_tangent},
+    {"exp", apply<std::exp>}, {"log", logarithm},         {"floor", round_down},           {"ceil", round_up},
+    {"min", smallest},        {"max", largest},           {"fmod", remainder_of_division}, {"tointeger", to_integer},
+    {"type", number_type},    {"random", random_number}};
 
 }  // namespace
 

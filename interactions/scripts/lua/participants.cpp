@@ -88,8 +88,10 @@ int participant_index(lua_State* lua)
         if (lua_rawget(lua, lua_upvalueindex(1)) != LUA_TNIL)
             return 1;
     }
-    return luaL_error(lua, "%s has no '%s'; a shaft has angle, speed, inertia, a body has position, velocity, "
-                      "angular_velocity, orientation, mass", RoleName(p.place).text,
+    return luaL_error(lua,
+                      "%s has no '%s'; a shaft has angle, speed, inertia, a body has position, velocity, "
+                      "angular_velocity, orientation, mass",
+                      RoleName(p.place).text,
                       lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
 }
 

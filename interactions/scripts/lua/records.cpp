@@ -17,13 +17,15 @@ const Entries& entries_of(lua_State* lua, const Object& window)
     return window.tag == Tag::State ? *running_call(lua, "state").state : *call.parameters;
 }
 
-const char* name_of(const Object& window) { return window.tag == Tag::State ? "state" : "parameters"; }
+const char* name_of(const Object& window)
+{
+    return window.tag == Tag::State ? "state" : "parameters";
+}
 
 int refuse_name(lua_State* lua, const Object& window, const Entries& entries)
 {
     std::string known;
-    for (const Entry& e : entries)
-        known += (known.empty() ? "" : ", ") + e.name;
+    for (const Entry& e : entries) known += (known.empty() ? "" : ", ") + e.name;
     lua_pushlstring(lua, known.data(), std::min<std::size_t>(known.size(), 500));
     const char* key = lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2);
     return luaL_error(lua, "%s has no '%s'; declared are: %s", name_of(window), key, lua_tostring(lua, -1));
@@ -60,8 +62,8 @@ int entry_get(lua_State* lua)
 int refuse_type(lua_State* lua, const Entry& e)
 {
     constexpr const char* kTypes[] = {"truth value", "number", "text"};
-    return luaL_error(lua, "state.%s is a %s, and stays one: it cannot be a %s", e.name.c_str(), kTypes[e.value.index()],
-                      type_name(lua, 3));
+    return luaL_error(lua, "state.%s is a %s, and stays one: it cannot be a %s", e.name.c_str(),
+                      kTypes[e.value.index()], type_name(lua, 3));
 }
 
 int entry_set(lua_State* lua)
@@ -112,7 +114,10 @@ int step_get(lua_State* lua)
     return 1;
 }
 
-int step_set(lua_State* lua) { return luaL_error(lua, "step is read-only"); }
+int step_set(lua_State* lua)
+{
+    return luaL_error(lua, "step is read-only");
+}
 
 void make_metatable(lua_State* lua, int slot, const char* name, lua_CFunction get, lua_CFunction set)
 {

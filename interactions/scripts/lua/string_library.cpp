@@ -48,13 +48,18 @@ int length_of(lua_State* lua)
 int change_case(lua_State* lua, char first, char last, int shift)
 {
     Text out;
-    for (const char c : check_text(lua, 1))
-        out.append(c >= first && c <= last ? static_cast<char>(c + shift) : c);
+    for (const char c : check_text(lua, 1)) out.append(c >= first && c <= last ? static_cast<char>(c + shift) : c);
     push_text(lua, out);
     return 1;
 }
-int upper(lua_State* lua) { return change_case(lua, 'a', 'z', 'A' - 'a'); }
-int lower(lua_State* lua) { return change_case(lua, 'A', 'Z', 'a' - 'A'); }
+int upper(lua_State* lua)
+{
+    return change_case(lua, 'a', 'z', 'A' - 'a');
+}
+int lower(lua_State* lua)
+{
+    return change_case(lua, 'A', 'Z', 'a' - 'A');
+}
 
 int repeat(lua_State* lua)
 {
@@ -64,13 +69,15 @@ int repeat(lua_State* lua)
     Text out;
     if (s.empty() && between.empty())
         return push_text(lua, out), 1;
-    for (lua_Integer i = 0; i < times && out.fits(); ++i)
+    // The last piece has nothing behind it, hence the one more; what is still too long, `out` notices.
+    const auto most = static_cast<lua_Integer>(kLongestText / (s.size() + between.size())) + 1;
+    for (lua_Integer i = 0; i < times && times <= most; ++i)
     {
         if (i > 0)
             out.append(between);
         out.append(s);
     }
-    if (!out.fits())
+    if (!out.fits() || times > most)
         return luaL_error(lua, "string.rep makes a text of more than %I bytes", static_cast<lua_Integer>(kLongestText));
     push_text(lua, out);
     return 1;
@@ -122,7 +129,10 @@ struct Conversion
     }
 };
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
 
 /// Reads up to two digits; false if there are more.
 bool read_digits(std::string_view form, std::size_t& at, Conversion& out)
@@ -183,8 +193,7 @@ void append_padded(lua_State* lua, const Conversion& c, int argument, Text& out)
     std::size_t width = 0, precision = kLongestText, at = 0;
     const bool left = spec.starts_with('-');
     at = left ? 1 : 0;
-    for (; at < spec.size() && is_digit(spec[at]); ++at)
-        width = width * 10 + static_cast<std::size_t>(spec[at] - '0');
+    for (; at < spec.size() && is_digit(spec[at]); ++at) width = width * 10 + static_cast<std::size_t>(spec[at] - '0');
     if (at < spec.size() && spec[at] == '.')
         for (precision = 0, ++at; at < spec.size() && is_digit(spec[at]); ++at)
             precision = precision * 10 + static_cast<std::size_t>(spec[at] - '0');
@@ -192,11 +201,9 @@ void append_padded(lua_State* lua, const Conversion& c, int argument, Text& out)
         luaL_error(lua, "string.format: %%s takes '-', a width and a precision only");
     const std::string_view text = shown.view().substr(0, precision);
     const std::size_t fill = width > text.size() ? width - text.size() : 0;
-    for (std::size_t i = 0; !left && i < fill; ++i)
-        out.append(' ');
+    for (std::size_t i = 0; !left && i < fill; ++i) out.append(' ');
     out.append(text);
-    for (std::size_t i = 0; left && i < fill; ++i)
-        out.append(' ');
+    for (std::size_t i = 0; left && i < fill; ++i) out.append(' ');
 }
 
 int format(lua_State* lua)
@@ -220,15 +227,16 @@ int format(lua_State* lua)
         else if (good && std::string_view("dixXoeEfFgGaA").find(conversion.letter) != std::string_view::npos)
             append_number(lua, conversion, ++argument, out);
         else
-            return luaL_error(lua, "string.format knows %%d i x X o e E f F g G a A s with two digits of width and "
+            return luaL_error(lua,
+                              "string.format knows %%d i x X o e E f F g G a A s with two digits of width and "
                               "precision");
     }
     push_text(lua, out);
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {{"sub", part},     {"len", length_of},       {"upper", upper},
-                                         {"lower", lower},  {"rep", repeat},          {"byte", bytes_of},
+constexpr NativeFunction kFunctions[] = {{"sub", part},      {"len", length_of},     {"upper", upper},
+                                         {"lower", lower},   {"rep", repeat},        {"byte", bytes_of},
                                          {"format", format}, {"char", text_of_bytes}};
 
 }  // namespace

@@ -163,16 +163,14 @@ int sort(lua_State* lua)
     lua_createtable(lua, static_cast<int>(n), 0);
     lua_createtable(lua, static_cast<int>(n), 0);
     int from = 3, to = 4;
-    for (lua_Integer i = 1; i <= n; ++i)
-        copy_element(lua, 1, i, from, i);
+    for (lua_Integer i = 1; i <= n; ++i) copy_element(lua, 1, i, from, i);
     for (lua_Integer run = 1; run < n; run *= 2)
     {
         for (lua_Integer low = 1; low <= n; low += 2 * run)
             merge(lua, from, to, low, std::min(low + run, n + 1), std::min(low + 2 * run, n + 1));
         std::swap(from, to);
     }
-    for (lua_Integer i = 1; i <= n; ++i)
-        copy_element(lua, from, i, 1, i);
+    for (lua_Integer i = 1; i <= n; ++i) copy_element(lua, from, i, 1, i);
     return 0;
 }
 

@@ -19,19 +19,29 @@ const char* type_name(lua_State* lua, int index)
 {
     switch (lua_type(lua, index))
     {
-        case LUA_TUSERDATA: break;
-        case LUA_TSTRING: return "text";
-        case LUA_TBOOLEAN: return "truth value";
-        default: return luaL_typename(lua, index);
+        case LUA_TUSERDATA:
+            break;
+        case LUA_TSTRING:
+            return "text";
+        case LUA_TBOOLEAN:
+            return "truth value";
+        default:
+            return luaL_typename(lua, index);
     }
     switch (static_cast<const Object*>(lua_touserdata(lua, index))->tag)
     {
-        case Tag::Vector: return "vec";
-        case Tag::Rotation: return "rotation";
-        case Tag::Participant: return "participant";
-        case Tag::State: return "state";
-        case Tag::Parameters: return "parameters";
-        case Tag::Step: return "step";
+        case Tag::Vector:
+            return "vec";
+        case Tag::Rotation:
+            return "rotation";
+        case Tag::Participant:
+            return "participant";
+        case Tag::State:
+            return "state";
+        case Tag::Parameters:
+            return "parameters";
+        case Tag::Step:
+            return "step";
     }
     return "object";
 }
@@ -75,14 +85,18 @@ void append_shown(lua_State* lua, int index, Text& out)
     char buffer[96];
     switch (lua_type(lua, index))
     {
-        case LUA_TNIL: return out.append("nil");
-        case LUA_TBOOLEAN: return out.append(lua_toboolean(lua, index) ? "true" : "false");
-        case LUA_TSTRING: return out.append({lua_tostring(lua, index), lua_rawlen(lua, index)});
+        case LUA_TNIL:
+            return out.append("nil");
+        case LUA_TBOOLEAN:
+            return out.append(lua_toboolean(lua, index) ? "true" : "false");
+        case LUA_TSTRING:
+            return out.append({lua_tostring(lua, index), lua_rawlen(lua, index)});
         case LUA_TNUMBER:
             lua_pushvalue(lua, index);
             out.append(lua_tostring(lua, -1));
             return lua_pop(lua, 1);
-        default: break;
+        default:
+            break;
     }
     if (const Vec3* v = to_vector(lua, index))
     {

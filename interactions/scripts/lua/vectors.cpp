@@ -42,7 +42,10 @@ int vector_subtract(lua_State* lua)
     const Operands of(lua);
     return push_vector(lua, of.a - of.b), 1;
 }
-int vector_negate(lua_State* lua) { return push_vector(lua, -check_vector(lua, 1)), 1; }
+int vector_negate(lua_State* lua)
+{
+    return push_vector(lua, -check_vector(lua, 1)), 1;
+}
 int vector_divide(lua_State* lua)
 {
     const Vec3& v = check_vector(lua, 1);
@@ -72,8 +75,14 @@ int vector_cross(lua_State* lua)
     const Operands of(lua);
     return push_vector(lua, cross(of.a, of.b)), 1;
 }
-int vector_length(lua_State* lua) { return lua_pushnumber(lua, length(check_vector(lua, 1))), 1; }
-int vector_normalized(lua_State* lua) { return push_vector(lua, normalized(check_vector(lua, 1))), 1; }
+int vector_length(lua_State* lua)
+{
+    return lua_pushnumber(lua, length(check_vector(lua, 1))), 1;
+}
+int vector_normalized(lua_State* lua)
+{
+    return push_vector(lua, normalized(check_vector(lua, 1))), 1;
+}
 
 int rotation_rotate(lua_State* lua, Vec3 (*turn)(const Quat&, const Vec3&))
 {
@@ -82,8 +91,14 @@ int rotation_rotate(lua_State* lua, Vec3 (*turn)(const Quat&, const Vec3&))
     push_vector(lua, turn(r->q, check_vector(lua, 2)));
     return 1;
 }
-int rotation_forth(lua_State* lua) { return rotation_rotate(lua, rotate); }
-int rotation_back(lua_State* lua) { return rotation_rotate(lua, rotate_back); }
+int rotation_forth(lua_State* lua)
+{
+    return rotation_rotate(lua, rotate);
+}
+int rotation_back(lua_State* lua)
+{
+    return rotation_rotate(lua, rotate_back);
+}
 
 /// A method out of the table that is this function's upvalue.
 int find_method(lua_State* lua, const char* what)
@@ -109,10 +124,14 @@ int vector_index(lua_State* lua)
     const Vec3& v = check_vector(lua, 1);
     switch (letter_of(lua))
     {
-        case 'x': return lua_pushnumber(lua, v.x), 1;
-        case 'y': return lua_pushnumber(lua, v.y), 1;
-        case 'z': return lua_pushnumber(lua, v.z), 1;
-        default: return find_method(lua, "vec");
+        case 'x':
+            return lua_pushnumber(lua, v.x), 1;
+        case 'y':
+            return lua_pushnumber(lua, v.y), 1;
+        case 'z':
+            return lua_pushnumber(lua, v.z), 1;
+        default:
+            return find_method(lua, "vec");
     }
 }
 
@@ -121,11 +140,16 @@ int rotation_index(lua_State* lua)
     const Quat& q = static_cast<RotationObject*>(lua_touserdata(lua, 1))->q;
     switch (letter_of(lua))
     {
-        case 'w': return lua_pushnumber(lua, q.w), 1;
-        case 'x': return lua_pushnumber(lua, q.x), 1;
-        case 'y': return lua_pushnumber(lua, q.y), 1;
-        case 'z': return lua_pushnumber(lua, q.z), 1;
-        default: return find_method(lua, "a rotation");
+        case 'w':
+            return lua_pushnumber(lua, q.w), 1;
+        case 'x':
+            return lua_pushnumber(lua, q.x), 1;
+        case 'y':
+            return lua_pushnumber(lua, q.y), 1;
+        case 'z':
+            return lua_pushnumber(lua, q.z), 1;
+        default:
+            return find_method(lua, "a rotation");
     }
 }
 
@@ -137,8 +161,8 @@ int refuse_assignment(lua_State* lua)
 constexpr NativeFunction kVectorMethods[] = {
     {"dot", vector_dot}, {"cross", vector_cross}, {"length", vector_length}, {"normalized", vector_normalized}};
 constexpr NativeFunction kVectorOperators[] = {
-    {"__add", vector_add},      {"__sub", vector_subtract}, {"__mul", vector_multiply},       {"__div", vector_divide},
-    {"__unm", vector_negate},   {"__eq", vector_equal},     {"__newindex", refuse_assignment}};
+    {"__add", vector_add},    {"__sub", vector_subtract}, {"__mul", vector_multiply},       {"__div", vector_divide},
+    {"__unm", vector_negate}, {"__eq", vector_equal},     {"__newindex", refuse_assignment}};
 constexpr NativeFunction kRotationMethods[] = {{"rotate", rotation_forth}, {"rotate_back", rotation_back}};
 constexpr NativeFunction kRotationOperators[] = {{"__newindex", refuse_assignment}};
 

@@ -21,7 +21,8 @@ enum class Motion : std::uint8_t
 
 /// Rigid bodies in space. Frames: W world, B the body's frame as authored, C its centre of mass with B's axes.
 /// Angular momentum is the state of a dynamic body's rotation; its angular velocity follows from it
-/// (see refresh_spin), so that free rotation keeps its momentum to the last bit.
+/// (see refresh_spin), so that free rotation keeps its momentum to the last bit. A needle would lose its spin that way
+/// (its smallest inertia multiplies every rounding error of the momentum), so for needles it is the other way round.
 struct Bodies
 {
     std::vector<Motion> motion;
@@ -32,6 +33,7 @@ struct Bodies
     std::vector<Vec3> angular_momentum;  ///< about C, in W, N m s; dynamic bodies only
     std::vector<double> mass;            ///< kg
     std::vector<double> inverse_mass;    ///< 1/kg; 0 unless dynamic
+    std::vector<std::uint8_t> needle;    ///< 1: principal inertias so far apart that the angular velocity is the state
     std::vector<Mat3> inertia_B;         ///< about C, in B, kg m^2
     std::vector<Mat3> inverse_inertia_B; ///< 0 unless dynamic
     std::vector<Vec3> center_B;          ///< p_BC, m
@@ -53,9 +55,11 @@ struct Bodies
         const Mat3 R = rotation_matrix(orientation[i]);
         return R * inverse_inertia_B[i] * transposed(R);
     }
-    /// w from L: w = R I_B^-1 R^T L.
+    /// The derived one of momentum and spin from the one that is the state, after that or the orientation changed:
+    /// w = R I_B^-1 R^T L.
     void refresh_spin(std::uint32_t i)
     {
+        if (needle[i] != 0) return refresh_momentum(i);
         const Mat3 R = rotation_matrix(orientation[i]);
         angular_velocity[i] = R * (inverse_inertia_B[i] * transposed_times(R, angular_momentum[i]));
     }
@@ -65,13 +69,21 @@ struct Bodies
         const Mat3 R = rotation_matrix(orientation[i]);
         angular_momentum[i] = R * (inertia_B[i] * transposed_times(R, angular_velocity[i]));
     }
+    /// Adds to the angular momentum (N m s, W, about C) of a dynamic body.
+    void add_angular_impulse(std::uint32_t i, const Vec3& l_W)
+    {
+        if (needle[i] != 0)
+            angular_velocity[i] += inverse_inertia_W(i) * l_W;
+        else
+            angular_momentum[i] += l_W;
+        refresh_spin(i);
+    }
     /// An impulse j (N s) at p_W; nothing happens to a body that is not dynamic.
     void apply_impulse(std::uint32_t i, const Vec3& j, const Vec3& p_W)
     {
         if (!dynamic(i)) return;
         velocity[i] += j * inverse_mass[i];
-        angular_momentum[i] += cross(p_W - position[i], j);
-        refresh_spin(i);
+        add_angular_impulse(i, cross(p_W - position[i], j));
     }
     double kinetic_energy(std::uint32_t i) const
     {

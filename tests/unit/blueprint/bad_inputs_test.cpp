@@ -33,7 +33,8 @@ std::vector<BadInput> read_table(const std::string& path)
     {
         ++line_number;
         BadInput& now = out.back();
-        if (now.text.empty() && now.errors.empty()) now.line = line_number;
+        if (now.text.empty() && now.errors.empty())
+            now.line = line_number;
         if (line.empty() && !now.errors.empty())
             out.emplace_back();
         else if (line.starts_with("-> "))
@@ -41,14 +42,16 @@ std::vector<BadInput> read_table(const std::string& path)
         else if (!line.empty() && !line.starts_with("# "))
             now.text += line + "\n";
     }
-    if (out.back().text.empty()) out.pop_back();
+    if (out.back().text.empty())
+        out.pop_back();
     return out;
 }
 
 std::string document(const BadInput& bad)
 {
     const std::string mark = "whole document:\n";
-    if (bad.text.starts_with(mark)) return bad.text.substr(mark.size());
+    if (bad.text.starts_with(mark))
+        return bad.text.substr(mark.size());
     return "<plab version=\"1\">\n" + bad.text + "</plab>\n";
 }
 
@@ -88,8 +91,10 @@ TEST_CASE("the bad parts of one scene are all reported at once, in document orde
           "scene.xml:2:1: scene: dt must be positive, not 0\n"
           "scene.xml:3:1: a (State/RigidBodi): unknown type 'State/RigidBodi', did you mean 'State/RigidBody'?\n"
           "scene.xml:4:1: b (State/RigidBody): mass must be positive, not -1\n"
-          "scene.xml:4:1: b (State/RigidBody): unknown attribute 'positon', did you mean 'position'? (known are 'position', "
-          "'orientation', 'linear_velocity', 'angular_velocity', 'mass', 'density', 'inertia', 'material', 'shape' and 'solver')\n");
+          "scene.xml:4:1: b (State/RigidBody): unknown attribute 'positon', did you mean 'position'? (known are "
+          "'position', "
+          "'orientation', 'linear_velocity', 'angular_velocity', 'mass', 'density', 'inertia', 'material', 'shape' and "
+          "'solver')\n");
 }
 
 TEST_CASE("a fragment may not redefine what is there, nor change the scene's settings")
@@ -107,7 +112,8 @@ TEST_CASE("a fragment may not redefine what is there, nor change the scene's set
         return result.ok() ? "accepted" : result.error().text();
     };
     CHECK(added("<component id='b' type='Field/Gravity' between='a'/>") == "accepted");
-    CHECK(added("<component id='a' type='State/Static'/>") == "request 17:1:1: a (State/Static): id 'a' is already in the scene");
+    CHECK(added("<component id='a' type='State/Static'/>") ==
+          "request 17:1:1: a (State/Static): id 'a' is already in the scene");
     CHECK(added("<plab version='1'>\n<scene dt='1'/></plab>") ==
           "request 17:2:1: scene: dt belongs to the scene, not to a part that is added");
 }

@@ -36,7 +36,8 @@ TEST_CASE("what looks like a number and is none is not taken for a text")
 {
     CHECK(refusal("") == "needs a value; \"\" is the empty text");
     CHECK(refusal("1,5") ==
-          "'1,5': use a point, not a comma, in numbers, and blanks between them; write it in double quotes if it is a text");
+          "'1,5': use a point, not a comma, in numbers, and blanks between them; write it in double quotes if it is a "
+          "text");
     CHECK(refusal("3 apples") == "'3 apples' is not a number; write it in double quotes if it is a text");
     CHECK(refusal("inf") == "'inf' is not finite; write it in double quotes if it is a text");
     CHECK(refusal("1e999") == "'1e999' is out of range; write it in double quotes if it is a text");
@@ -47,9 +48,10 @@ TEST_CASE("what looks like a number and is none is not taken for a text")
 
 TEST_CASE("what is written reads back the same")
 {
-    for (const EntryValue& v : {EntryValue(true), EntryValue(false), EntryValue(0.1), EntryValue(-0.0), EntryValue(5e-324),
-                                EntryValue(1.7976931348623157e308), EntryValue(std::string()), EntryValue(std::string("true")),
-                                EntryValue(std::string(" \"quoted\" ")), EntryValue(std::string("12"))})
+    for (const EntryValue& v :
+         {EntryValue(true), EntryValue(false), EntryValue(0.1), EntryValue(-0.0), EntryValue(5e-324),
+          EntryValue(1.7976931348623157e308), EntryValue(std::string()), EntryValue(std::string("true")),
+          EntryValue(std::string(" \"quoted\" ")), EntryValue(std::string("12"))})
     {
         CAPTURE(format_entry(v));
         const auto back = parse_entry(format_entry(v));

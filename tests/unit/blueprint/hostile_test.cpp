@@ -25,6 +25,9 @@ std::string repeated(std::string_view part, std::size_t n)
     return out;
 }
 
+/// Far above what is needed (some 10 ms), for sanitizers and busy machines; far below what a quadratic answer takes.
+constexpr double kQuickly = 3.0;  // s
+
 double seconds_for(const std::string& text)
 {
     const auto begin = std::chrono::steady_clock::now();
@@ -44,7 +47,7 @@ TEST_CASE("a billion laughs stop at the first one")
     }
     text += "]>\n<plab version='1'><component id='&lol9;'/></plab>";
     CHECK(refusal(text) == "h.xml:2:1: DOCTYPE: a document type (DTD) is refused: a blueprint has no entities");
-    CHECK(seconds_for(text) < 0.05);
+    CHECK(seconds_for(text) < 0.5);
 }
 
 TEST_CASE("external entities are not read")
@@ -52,7 +55,8 @@ TEST_CASE("external entities are not read")
     CHECK(refusal("<!DOCTYPE plab SYSTEM 'file:///etc/passwd'><plab version='1'/>") ==
           "h.xml:1:1: DOCTYPE: a document type (DTD) is refused: a blueprint has no entities");
     CHECK(refusal("<plab version='1'>&passwd;</plab>") ==
-          "h.xml:1:19: not well-formed XML: unknown entity; only &lt; &gt; &amp; &quot; &apos; and character numbers are known");
+          "h.xml:1:19: not well-formed XML: unknown entity; only &lt; &gt; &amp; &quot; &apos; and character numbers "
+          "are known");
 }
 
 TEST_CASE("depth: 64 elements may be open, the 65th may not")
@@ -103,7 +107,8 @@ TEST_CASE("sizes of text, of values, of the whole, and the number of elements")
     const std::string tail = "</param></component></plab>";
     const std::size_t most = std::size_t{16} << 20;
     CHECK(refusal(head + std::string(most, 'x') + tail) == "accepted");
-    CHECK(refusal(head + std::string(most + 1, 'x') + tail) == "h.xml:1:53: <param>: the text is longer than 16777216 bytes");
+    CHECK(refusal(head + std::string(most + 1, 'x') + tail) ==
+          "h.xml:1:53: <param>: the text is longer than 16777216 bytes");
     CHECK(refusal("<plab version='1'><component x='" + std::string(most + 1, 'x') + "'/></plab>") ==
           "h.xml:1:19: <component>: the value of attribute 'x' is longer than 16777216 bytes");
     CHECK(refusal(std::string((std::size_t{64} << 20) + 1, ' ')) == "h.xml: the text is larger than 67108864 bytes");
@@ -127,7 +132,8 @@ TEST_CASE("encodings other than UTF-8 are refused where they show")
 
 TEST_CASE("bytes that are no UTF-8")
 {
-    const auto with = [](std::string_view bytes) { return refusal("<plab version='1'>\n<!--a" + std::string(bytes) + "--></plab>"); };
+    const auto with = [](std::string_view bytes)
+    { return refusal("<plab version='1'>\n<!--a" + std::string(bytes) + "--></plab>"); };
     const std::string at = "h.xml:2:6: the text is not valid UTF-8";
     CHECK(with("\x80") == at);                  // a continuation alone
     CHECK(with("\xC0\xAF") == at);              // overlong '/'
@@ -144,7 +150,8 @@ TEST_CASE("bytes that are no UTF-8")
 TEST_CASE("NUL and other characters that XML does not have")
 {
     CHECK(refusal("<plab version='1'>\n a\0b</plab>"sv) == "h.xml:2:3: a NUL character cannot stand in XML");
-    CHECK(refusal("<plab version='1'>\x01</plab>") == "h.xml:1:19: not well-formed XML: not well-formed (invalid token)");
+    CHECK(refusal("<plab version='1'>\x01</plab>") ==
+          "h.xml:1:19: not well-formed XML: not well-formed (invalid token)");
     CHECK(refusal("<plab version='1'>&#0;</plab>") ==
           "h.xml:1:19: not well-formed XML: reference to invalid character number");
 }
@@ -156,7 +163,8 @@ TEST_CASE("torn XML")
           "h.xml:3:1: not well-formed XML: <component> of line 2 is never closed");
     CHECK(refusal("<plab version='1'>\n<component>\n</plab>") ==
           "h.xml:3:3: not well-formed XML: a closing tag that does not match the open <component> of line 2");
-    CHECK(refusal("<plab version='1'/><plab/>") == "h.xml:1:20: not well-formed XML: something stands after the root element");
+    CHECK(refusal("<plab version='1'/><plab/>") ==
+          "h.xml:1:20: not well-formed XML: something stands after the root element");
     CHECK(refusal("<plab version='1' version='1'/>") == "h.xml:1:19: not well-formed XML: duplicate attribute");
     CHECK(refusal("<plab version=1/>") == "h.xml:1:15: not well-formed XML: not well-formed (invalid token)");
     CHECK(refusal("<plab version='1'><![CDATA[") == "h.xml:1:28: not well-formed XML: unclosed CDATA section");
@@ -165,9 +173,11 @@ TEST_CASE("torn XML")
 TEST_CASE("a document torn at any byte or with any byte changed is answered, not suffered")
 {
     const std::string good =
-        "<?xml version='1.0'?><plab version='1'><scene dt='1/60'/><component id='m'><MESH><P ID='1'>0,0,0</P><P ID='2'>1,0,0</P>"
+        "<?xml version='1.0'?><plab version='1'><scene dt='1/60'/><component id='m'><MESH><P ID='1'>0,0,0</P><P "
+        "ID='2'>1,0,0</P>"
         "<P ID='3'>0,1,0</P><F><FV1><PREF>1</PREF></FV1><FV2><PREF>2</PREF></FV2><FV3><PREF>3</PREF></FV3></F></MESH>"
-        "<command><cmdparam type='SetX'><udata>1</udata></cmdparam></command><state name='a'>1</state></component></plab>";
+        "<command><cmdparam type='SetX'><udata>1</udata></cmdparam></command><state "
+        "name='a'>1</state></component></plab>";
     REQUIRE(refusal(good) == "accepted");
     std::size_t refused = 0;
     for (std::size_t n = 0; n < good.size(); ++n) refused += refusal(good.substr(0, n)) != "accepted";
@@ -183,9 +193,10 @@ TEST_CASE("a document torn at any byte or with any byte changed is answered, not
 
 TEST_CASE("large and strange input is answered quickly")
 {
-    CHECK(seconds_for("<plab version='1'>" + repeated("<x/>", 100'000) + "</plab>") < 1.0);
-    CHECK(seconds_for(repeated("<?x?>", 1'000'000)) < 1.0);
-    CHECK(seconds_for("<plab version='1'>" + repeated("&amp;", 1'000'000) + "</plab>") < 1.0);
-    CHECK(seconds_for("<plab version='1'><component>" + repeated("<state name='s'>1</state>", 100'000) + "</component></plab>") < 1.0);
+    CHECK(seconds_for("<plab version='1'>" + repeated("<x/>", 100'000) + "</plab>") < kQuickly);
+    CHECK(seconds_for(repeated("<?x?>", 1'000'000)) < kQuickly);
+    CHECK(seconds_for("<plab version='1'>" + repeated("&amp;", 1'000'000) + "</plab>") < kQuickly);
+    CHECK(seconds_for("<plab version='1'><component>" + repeated("<state name='s'>1</state>", 100'000) +
+                      "</component></plab>") < kQuickly);
     CHECK(refusal(repeated("<?x?>", 1'000)) == "h.xml:1:1: <?x?>: processing instructions are refused");
 }

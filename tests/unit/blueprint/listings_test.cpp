@@ -35,13 +35,15 @@ struct Listing
     Names members(const std::string& id, const std::string& role) const
     {
         for (const model::RoleSpec& r : component(id).roles)
-            if (r.name == role) return r.members;
+            if (r.name == role)
+                return r.members;
         return {};
     }
     Value field(const std::string& id, const std::string& name) const
     {
         for (const model::FieldSpec& f : component(id).fields)
-            if (f.name == name) return f.value;
+            if (f.name == name)
+                return f.value;
         return {};
     }
 };

@@ -44,15 +44,16 @@ TEST_CASE("an empty scene is a scene")
 
 TEST_CASE("components keep attributes, order, nesting and places")
 {
-    const auto b = read("<?xml version='1.0' encoding='utf-8'?>\n"
-                        "<plab version=' 1 '>\n"
-                        "  <!-- words -->\n"
-                        "  <component id=' ball ' name='a ball' type='State/RigidBody' mass='2 kg' position='0 0 1'>\n"
-                        "    <component id='inner'/><component id='second'><compref> inner </compref></component>\n"
-                        "    <param name='material'> wood </param>\n"
-                        "  </component>\n"
-                        "  <component id='&#x3b1;'/>\n"
-                        "</plab>\n");
+    const auto b = read(
+        "<?xml version='1.0' encoding='utf-8'?>\n"
+        "<plab version=' 1 '>\n"
+        "  <!-- words -->\n"
+        "  <component id=' ball ' name='a ball' type='State/RigidBody' mass='2 kg' position='0 0 1'>\n"
+        "    <component id='inner'/><component id='second'><compref> inner </compref></component>\n"
+        "    <param name='material'> wood </param>\n"
+        "  </component>\n"
+        "  <component id='&#x3b1;'/>\n"
+        "</plab>\n");
     REQUIRE(b.components.size() == 2);
     const auto& ball = b.components[0];
     CHECK(ball.id == "ball");
@@ -82,8 +83,9 @@ TEST_CASE("columns count characters, not bytes")
 
 TEST_CASE("scene settings, cameras and repetitions")
 {
-    const auto b = read("<plab version='1'>\n<scene dt='1/240' title='t'><camera id='main' position='1 2 3'/></scene>\n"
-                        "<repeat count='3 1 1'><component id='a'/><component id='b'/></repeat></plab>");
+    const auto b = read(
+        "<plab version='1'>\n<scene dt='1/240' title='t'><camera id='main' position='1 2 3'/></scene>\n"
+        "<repeat count='3 1 1'><component id='a'/><component id='b'/></repeat></plab>");
     REQUIRE(b.settings.size() == 2);
     CHECK(b.settings[0].name == "dt");
     CHECK(b.settings[0].text == "1/240");
@@ -98,30 +100,35 @@ TEST_CASE("scene settings, cameras and repetitions")
 
 TEST_CASE("states are gathered into one parameter with entries")
 {
-    const auto b = read("<plab version='1'><component id='s' type='Script/Lua'>\n"
-                        "<state name='count'>0</state><state name='on'>true</state>\n"
-                        "<state name='word'>hello</state><state name='digits'>\"12\"</state>\n"
-                        "<param name='table'><entry name='x'>-1.5e3</entry></param></component></plab>");
+    const auto b = read(
+        "<plab version='1'><component id='s' type='Script/Lua'>\n"
+        "<state name='count'>0</state><state name='on'>true</state>\n"
+        "<state name='word'>hello</state><state name='digits'>\"12\"</state>\n"
+        "<param name='table'><entry name='x'>-1.5e3</entry></param></component></plab>");
     const auto& p = b.components.at(0).parameters;
     REQUIRE(p.size() == 2);
     CHECK(p[0].name == "state");
-    CHECK(p[0].entries == Entries{{"count", 0.0}, {"on", true}, {"word", std::string("hello")}, {"digits", std::string("12")}});
+    CHECK(p[0].entries ==
+          Entries{{"count", 0.0}, {"on", true}, {"word", std::string("hello")}, {"digits", std::string("12")}});
     CHECK(place(p[0].where) == "s.xml:2:1");
     CHECK(p[1].entries == Entries{{"x", -1500.0}});
 }
 
 TEST_CASE("text of code is kept to the letter")
 {
-    const auto b = read("<plab version='1'><component id='s'><param name='code'>\n  if a &lt; b then <![CDATA[x = a < b & \"c\"]]>\n</param>"
-                        "</component></plab>");
+    const auto b = read(
+        "<plab version='1'><component id='s'><param name='code'>\n  if a &lt; b then <![CDATA[x = a < b & "
+        "\"c\"]]>\n</param>"
+        "</component></plab>");
     CHECK(b.components.at(0).parameters.at(0).text == "\n  if a < b then x = a < b & \"c\"\n");
 }
 
 TEST_CASE("figure 2 and 4: exported commands, composites and stage lists")
 {
-    const auto b = read("<plab version='1'><component id='01'><command id='08' subject='02' type='Shape/Draw'/>"
-                        "<command id='09' name='O/Simulation'><command name='Stage/Init'><cmdref> 08 </cmdref></command>"
-                        "<command name='Stage/Step'/></command></component></plab>");
+    const auto b = read(
+        "<plab version='1'><component id='01'><command id='08' subject='02' type='Shape/Draw'/>"
+        "<command id='09' name='O/Simulation'><command name='Stage/Init'><cmdref> 08 </cmdref></command>"
+        "<command name='Stage/Step'/></command></component></plab>");
     const auto& commands = b.components.at(0).commands;
     REQUIRE(commands.size() == 2);
     CHECK(commands[0].id == "08");
@@ -135,11 +142,12 @@ TEST_CASE("figure 2 and 4: exported commands, composites and stage lists")
 
 TEST_CASE("figure 6: parameters that follow a command are that command's")
 {
-    const auto b = read("<plab version='1'><component id='c'><command name='C/Simulation'><command name='Stage/Step'>\n"
-                        "<command subject='52' type='Constraint/AngularVelocity'/>\n"
-                        "<cmdparam type='SetTargetState'><udata><cmdref>202</cmdref></udata></cmdparam>\n"
-                        "<cmdparam type='SetVelocityFactor'><udata>-0.5</udata></cmdparam>\n"
-                        "</command></command></component></plab>");
+    const auto b = read(
+        "<plab version='1'><component id='c'><command name='C/Simulation'><command name='Stage/Step'>\n"
+        "<command subject='52' type='Constraint/AngularVelocity'/>\n"
+        "<cmdparam type='SetTargetState'><udata><cmdref>202</cmdref></udata></cmdparam>\n"
+        "<cmdparam type='SetVelocityFactor'><udata>-0.5</udata></cmdparam>\n"
+        "</command></command></component></plab>");
     const auto& stage = b.components.at(0).commands.at(0).children.at(0);
     CHECK(stage.parameters.empty());
     REQUIRE(stage.children.size() == 1);
@@ -153,9 +161,10 @@ TEST_CASE("figure 6: parameters that follow a command are that command's")
 
 TEST_CASE("figure 7: parameters inside a command, and after one in a component")
 {
-    const auto b = read("<plab version='1'><component id='c'><command id='300' type='Script/Lua'><cmdparam type='SetCode'>"
-                        "<udata>emit('hello')</udata></cmdparam></command><cmdparam type='SetDriver'><udata><compref>a</compref>"
-                        "<compref>b c</compref></udata></cmdparam></component></plab>");
+    const auto b = read(
+        "<plab version='1'><component id='c'><command id='300' type='Script/Lua'><cmdparam type='SetCode'>"
+        "<udata>emit('hello')</udata></cmdparam></command><cmdparam type='SetDriver'><udata><compref>a</compref>"
+        "<compref>b c</compref></udata></cmdparam></component></plab>");
     const auto& parameters = b.components.at(0).commands.at(0).parameters;
     REQUIRE(parameters.size() == 2);
     CHECK(parameters[0].text == "emit('hello')");
@@ -176,17 +185,20 @@ TEST_CASE("foreign elements go to their handlers and imply a type")
     handlers.add({"BLOB", "Shape/Blob",
                   [](const blueprint::XmlElement& e) -> Result<std::vector<model::ValueNode>>
                   {
-                      if (e.text.empty()) return Error{{{}, e.where.line, e.where.column}, "<BLOB>", "is empty"};
+                      if (e.text.empty())
+                          return Error{{{}, e.where.line, e.where.column}, "<BLOB>", "is empty"};
                       return std::vector<model::ValueNode>{{"text", Value(e.text), {{}, e.where.line, e.where.column}}};
                   }});
-    const auto good = read_blueprint("<plab version='1'><component id='a'><BLOB>x</BLOB></component>\n"
-                                     "<component id='b' type='Shape/Other'><BLOB>y</BLOB></component></plab>",
-                                     "s.xml", handlers);
+    const auto good = read_blueprint(
+        "<plab version='1'><component id='a'><BLOB>x</BLOB></component>\n"
+        "<component id='b' type='Shape/Other'><BLOB>y</BLOB></component></plab>",
+        "s.xml", handlers);
     REQUIRE(good.ok());
     CHECK(good->components[0].type == "Shape/Blob");
     CHECK(good->components[1].type == "Shape/Other");
     CHECK(place(good->components[1].values.at(0).where) == "s.xml:2:38");
-    const auto bad = read_blueprint("<plab version='1'>\n<component id='a'><BLOB/></component><BLOB>x</BLOB></plab>", "s.xml", handlers);
+    const auto bad = read_blueprint("<plab version='1'>\n<component id='a'><BLOB/></component><BLOB>x</BLOB></plab>",
+                                    "s.xml", handlers);
     REQUIRE(!bad.ok());
     REQUIRE(bad.errors().size() == 2);
     CHECK(bad.errors()[0].text() == "s.xml:2:19: <BLOB>: is empty");
@@ -195,7 +207,8 @@ TEST_CASE("foreign elements go to their handlers and imply a type")
 
 TEST_CASE("errors are collected as long as the XML is well-formed")
 {
-    const auto result = read_blueprint("<plab version='2'>\n<sceen/>\n<component id=''>\n text</component>\n<?php x?></plab>", "s.xml");
+    const auto result =
+        read_blueprint("<plab version='2'>\n<sceen/>\n<component id=''>\n text</component>\n<?php x?></plab>", "s.xml");
     REQUIRE(!result.ok());
     std::vector<std::string> texts;
     for (const Error& e : result.errors()) texts.push_back(e.text());

@@ -23,10 +23,12 @@ const std::string kPoints = "<P ID='1'>0, 0, 0</P><P ID='2'>1, 0, 0</P><P ID='3'
 
 std::string face(const std::string& a, const std::string& b, const std::string& c)
 {
-    return "<F><FV1><PREF>" + a + "</PREF></FV1><FV2><PREF>" + b + "</PREF></FV2><FV3><PREF>" + c + "</PREF></FV3></F>\n";
+    return "<F><FV1><PREF>" + a + "</PREF></FV1><FV2><PREF>" + b + "</PREF></FV2><FV3><PREF>" + c +
+           "</PREF></FV3></F>\n";
 }
 
-const std::string kTetrahedron = kPoints + face("1", "3", "2") + face("1", "2", "4") + face("2", "3", "4") + face("1", "4", "3");
+const std::string kTetrahedron =
+    kPoints + face("1", "3", "2") + face("1", "2", "4") + face("2", "3", "4") + face("1", "4", "3");
 
 }  // namespace
 
@@ -46,9 +48,10 @@ TEST_CASE("a tetrahedron: points in file order, triangles counted from 0")
 
 TEST_CASE("order of elements, names of points and looks do not matter")
 {
-    const auto result = mesh("<MAT ID='0'><AMB>.1,.1,.1</AMB></MAT><SURFACE/><EXT_tool>x</EXT_tool><N ID='7'>0,0,1</N><TC ID='7'>0,0</TC>"
-                             "<PATCH><F><MATREF>0</MATREF><FV3><PREF> c </PREF></FV3><FV1><PREF>a</PREF><NREF>7</NREF><TCREF>7</TCREF></FV1>"
-                             "<FV2><PREF>b</PREF></FV2></F></PATCH><P ID='c'>-1e-3 ,+.5,2</P><P ID='a'>0,0,0</P><P ID='b'>1,0,0</P>");
+    const auto result = mesh(
+        "<MAT ID='0'><AMB>.1,.1,.1</AMB></MAT><SURFACE/><EXT_tool>x</EXT_tool><N ID='7'>0,0,1</N><TC ID='7'>0,0</TC>"
+        "<PATCH><F><MATREF>0</MATREF><FV3><PREF> c </PREF></FV3><FV1><PREF>a</PREF><NREF>7</NREF><TCREF>7</TCREF></FV1>"
+        "<FV2><PREF>b</PREF></FV2></F></PATCH><P ID='c'>-1e-3 ,+.5,2</P><P ID='a'>0,0,0</P><P ID='b'>1,0,0</P>");
     REQUIRE_MESSAGE(result.ok(), (result.ok() ? "" : result.error().text()));
     CHECK(result->components[0].values[0].value == Value(Reals{-1e-3, .5, 2, 0, 0, 0, 1, 0, 0}));
     CHECK(result->components[0].values[1].value == Value(Integers{1, 2, 0}));
@@ -73,7 +76,8 @@ TEST_CASE("bad meshes")
 
 TEST_CASE("bad coordinates")
 {
-    for (const std::string text : {"", "1", "1,2", "1,2,3,4", "1 2 3", "1,2,x", "1,2,", "nan,0,0", "0,inf,0", "1e999,0,0", "1;2;3", "0x1,0,0"})
+    for (const std::string text :
+         {"", "1", "1,2", "1,2,3,4", "1 2 3", "1,2,x", "1,2,", "nan,0,0", "0,inf,0", "1e999,0,0", "1;2;3", "0x1,0,0"})
     {
         CAPTURE(text);
         CHECK(refusal("<P ID='1'>" + text + "</P>" + face("1", "1", "1")) ==
@@ -83,14 +87,17 @@ TEST_CASE("bad coordinates")
 
 TEST_CASE("a bad point is blamed once, not at each face")
 {
-    const auto result = mesh("<P ID='1'>0 0 0</P><P ID='2'>1,0,0</P><P ID='3'>0,1,0</P>" + face("1", "2", "3") + face("3", "2", "1"));
+    const auto result =
+        mesh("<P ID='1'>0 0 0</P><P ID='2'>1,0,0</P><P ID='3'>0,1,0</P>" + face("1", "2", "3") + face("3", "2", "1"));
     REQUIRE(!result.ok());
     CHECK(result.errors().size() == 1);
 }
 
 TEST_CASE("a second mesh in a component is refused")
 {
-    const auto result = blueprint::read_blueprint("<component id='m'>\n<MESH>" + kTetrahedron + "</MESH>\n<MESH>" + kTetrahedron + "</MESH></component>", "m.xml");
+    const auto result = blueprint::read_blueprint(
+        "<component id='m'>\n<MESH>" + kTetrahedron + "</MESH>\n<MESH>" + kTetrahedron + "</MESH></component>",
+        "m.xml");
     REQUIRE(!result.ok());
     CHECK(result.error().text() == "m.xml:8:1: <MESH>: the component has its vertices already");
 }
@@ -100,7 +107,8 @@ TEST_CASE("what is written reads back to the same bits")
     const Reals vertices{0.1, -0.0, 1e-300, 1.0 / 3, 12345678.901234567, -2e17, 5, 6, 7, 8, 9, 10};
     const Integers triangles{0, 1, 2, 3, 2, 1};
     REQUIRE(blueprint::is_xgl_mesh(vertices, triangles));
-    const auto back = blueprint::read_blueprint("<component id='m'>" + blueprint::write_xgl_mesh(vertices, triangles, 2) + "</component>", "m.xml");
+    const auto back = blueprint::read_blueprint(
+        "<component id='m'>" + blueprint::write_xgl_mesh(vertices, triangles, 2) + "</component>", "m.xml");
     REQUIRE(back.ok());
     CHECK(back->components[0].values[0].value == Value(vertices));
     CHECK(std::signbit(std::get<Reals>(back->components[0].values[0].value)[1]));

@@ -1,6 +1,8 @@
 /// Small worlds by hand: bodies, shapes, a sink, and rows of the collision types with their declared defaults.
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -11,6 +13,12 @@
 
 namespace plab::test
 {
+
+/// Equal to a relative error; doctest's own scale of 1 would let small numbers pass.
+inline doctest::Approx near(double want, double relative)
+{
+    return doctest::Approx(want).epsilon(relative).scale(0);
+}
 
 inline Ref body(std::uint32_t i)
 {
@@ -28,7 +36,7 @@ inline std::uint32_t add_body(Bodies& b, double mass, const Vec3& inertia, const
     b.mass.push_back(mass), b.inverse_mass.push_back(moves ? 1 / mass : 0);
     b.inertia_B.push_back(Mat3::diagonal(inertia.x, inertia.y, inertia.z));
     b.inverse_inertia_B.push_back(moves ? Mat3::diagonal(1 / inertia.x, 1 / inertia.y, 1 / inertia.z) : Mat3{});
-    b.center_B.push_back({}), b.material.push_back(0), b.shapes.push_back({});
+    b.needle.push_back(0), b.center_B.push_back({}), b.material.push_back(0), b.shapes.push_back({});
     return static_cast<std::uint32_t>(b.size() - 1);
 }
 inline std::uint32_t add_sphere(Bodies& b, double mass, double radius, const Vec3& p, const Vec3& v = {})

@@ -188,7 +188,7 @@ TEST_CASE("a round mesh on a plane stands on few points that surround it")
     for (const Touch& k : t)
     {
         sum += k.point;
-        CHECK(k.depth == doctest::Approx(1e-6).epsilon(1e-9));
+        CHECK(k.depth == near(1e-6, 1e-9));
     }
     CHECK(length(sum) / static_cast<double>(t.size()) < 0.15);
 }

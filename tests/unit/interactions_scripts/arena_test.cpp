@@ -58,8 +58,7 @@ TEST_CASE("pieces do not overlap, keep their content when resized, and come back
         REQUIRE(arena.used() <= arena.capacity());
     }
     CHECK(refused > 0);
-    for (Piece& p : pieces)
-        arena.release(p.at, p.size);
+    for (Piece& p : pieces) arena.release(p.at, p.size);
     CHECK(arena.used() == 0);
 }
 

@@ -36,13 +36,11 @@ struct Lab
     Lab()
     {
         rows.describe(schema);
-        for (ColumnBase* column : schema.columns())
-            column->resize(1);
+        for (ColumnBase* column : schema.columns()) column->resize(1);
         for (const Field& f : schema.fields())
             if (f.type != FieldType::Opaque && !f.required)
                 f.column->set(0, f.fallback);
-        for (int i = 0; i < 2; ++i)
-            add_body(), add_shaft();
+        for (int i = 0; i < 2; ++i) add_body(), add_shaft();
         wrenches = Wrenches(bodies, shafts);
         wrenches.power = &power;
         clear();

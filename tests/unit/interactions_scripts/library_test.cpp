@@ -45,6 +45,8 @@ TEST_CASE("string")
         assert(("hello"):sub(0) == "hello" and ("hello"):sub(-100, 100) == "hello" and ("hello"):sub(2, -2) == "ell")
         assert(#"abc" == 3 and ("abc"):len() == 3 and ("aBc"):upper() == "ABC" and ("AbC"):lower() == "abc")
         assert(("ab"):rep(3) == "ababab" and ("ab"):rep(3, "-") == "ab-ab-ab" and ("x"):rep(0) == "" and ("x"):rep(-1) == "")
+        assert(#("x"):rep(4096) == 4096 and #("x"):rep(1366, "yy") == 4096 and not pcall(string.rep, "x", 4097))
+        assert(not pcall(string.rep, "x", 1367, "yy") and #("x"):rep(1, ("y"):rep(4096)) == 1)
         assert(("A"):byte() == 65 and select("#", ("abc"):byte(1, -1)) == 3 and string.char(72, 105) == "Hi")
         assert(string.format("%5.2f|%-5d|%05d|%x|%s|%%|%5s|%-5s|%.2s", 3.14159, 42, 42, 255, true, "ab", "ab", "abc")
                == " 3.14|42   |00042|ff|true|%|   ab|ab   |ab")
@@ -53,8 +55,8 @@ TEST_CASE("string")
         assert(#string.format("%.99f", 1e308) == 409)
         assert(tostring({}) == "table" and tostring(print) == "function" and tostring(state) == "state")
         assert(tostring(1) == "1" and tostring(1.0) == "1.0" and tostring(nil) == "nil" and "a" .. 1 == "a1")
-        assert(tonumber("0x10") == 16 and tonumber(" 1e2 ") == 100 and tonumber("1x") == nil and tonumber({}) == nil))lua")
-          == "");
+        assert(tonumber("0x10") == 16 and tonumber(" 1e2 ") == 100 and tonumber("1x") == nil and tonumber({}) == nil))lua") ==
+          "");
     CHECK(complaint("string.char(256)") == "code:1: bad argument #1 to 'char' (must be a byte, 0 to 255)");
     CHECK(complaint("return '10' + 1") == "code:1: attempt to perform arithmetic on a string value (constant '10')");
 }
@@ -67,7 +69,8 @@ TEST_CASE("table")
         assert(table.concat(t, ",") == "0,1,2,3,4" and table.concat(t, "", 2, 3) == "12" and table.concat({}) == "")
         assert(table.remove(t) == 4 and table.remove(t, 1) == 0 and #t == 3 and table.remove({}) == nil)
         local a, b, c = table.unpack(t) assert(a == 1 and b == 2 and c == 3)
-        assert(select("#", table.unpack({}, 1, 3)) == 3 and select(-1, 1, 2, 3) == 3 and select(2, 1, 2) == 2))lua") == "");
+        assert(select("#", table.unpack({}, 1, 3)) == 3 and select(-1, 1, 2, 3) == 3 and select(2, 1, 2) == 2))lua") ==
+          "");
     CHECK(complaint("table.insert({}, 3, 1)") == "code:1: bad argument #2 to 'insert' (position out of the list)");
     CHECK(complaint("table.concat({{}})") == "code:1: table.concat joins texts and numbers; element 1 is a table");
 }

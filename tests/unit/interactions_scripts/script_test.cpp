@@ -101,8 +101,9 @@ TEST_CASE("bodies and shafts show what they have")
 
 TEST_CASE("participants follow their roles")
 {
-    Lab lab("function force(t, state) for _, p in ipairs(between) do p:add_torque(1) end "
-            "if driven then driven:add_torque(10) end end");
+    Lab lab(
+        "function force(t, state) for _, p in ipairs(between) do p:add_torque(1) end "
+        "if driven then driven:add_torque(10) end end");
     lab.rows.between[0] = {Lab::kShaft0};
     REQUIRE(lab.prepare() == "");
     lab.force();
@@ -169,8 +170,9 @@ TEST_CASE("force is pure: everything else is refused there, with the reason")
         {"print(1)", "code:1: print is for drive(step): force(t, state) must be pure"},
         {"math.random()", "code:1: math.random is for drive(step): force(t, state) must be pure"},
         {"driver:add_torque(1)", "code:1: driver is only read: forces are added to driven and between"},
-        {"driven.speed = 1", "code:1: participants are read-only: add forces in force(t, state), or change parameters "
-                             "by set()"},
+        {"driven.speed = 1",
+         "code:1: participants are read-only: add forces in force(t, state), or change parameters "
+         "by set()"},
         {"driven:add_force(vec(1, 0, 0))", "code:1: driven is a shaft: it takes add_torque(number)"},
         {"x = 1", "code:1: global 'x' cannot be assigned: values that live across steps belong in `state`"},
         {"parameters.k = 1", "code:1: parameters are read-only in the script: a request sets them"},

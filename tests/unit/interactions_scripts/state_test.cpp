@@ -56,13 +56,16 @@ TEST_CASE("values live across steps in declared state only")
           "neither drive(step) nor force(t, state) is defined");
     CHECK(drive_twice("local e = _ENV function drive() e.x = 1 end") ==
           "code:1: global 'x' cannot be assigned: " + kFrozen);
+    CHECK(drive_twice("local next = pairs({1, 2, 3}) function drive() state.n = next() end") ==
+          "what pairs returns cannot be kept: call pairs where the loop is");
     CHECK(drive_twice("state.n = 1 function drive() end") ==
           "line 1: state can be used in drive and force, not while the code is loaded");
 }
 
 TEST_CASE("what does not outlive a call is free: locals, closures and tables made in it")
 {
-    CHECK(drive_twice("function drive() local n = 0 local function up() n = n + 1 end up() up() state.n = n end") == "2");
+    CHECK(drive_twice("function drive() local n = 0 local function up() n = n + 1 end up() up() state.n = n end") ==
+          "2");
     CHECK(drive_twice("local k = 3 local t = {1, 2, {4}} local function f(x) return x * k + t[3][1] + #t end "
                       "function drive() local u = {} u.x = f(1) state.n = u.x end") == "10");
     CHECK(drive_twice("local n = 0 function drive() n = n + 1 n = n - 1 state.n = 5 end") == "5");
@@ -80,13 +83,15 @@ TEST_CASE("force cannot keep anything either")
     lab.force();
     CHECK(lab.wrenches.shaft_torque[0] == 0.0);
     lab.finish();
-    CHECK(lab.only_event() == "script.error: code: local 'calls' was changed by force: values that live across steps "
-                              "belong in `state`");
+    CHECK(lab.only_event() ==
+          "script.error: code: local 'calls' was changed by force: values that live across steps "
+          "belong in `state`");
 }
 
 TEST_CASE("state keeps its types and names")
 {
-    const auto error = [](const std::string& body) {
+    const auto error = [](const std::string& body)
+    {
         Lab lab("function drive() " + body + " end");
         lab.rows.state[0] = {{"b", true}, {"n", 1.0}, {"s", std::string("x")}};
         REQUIRE(lab.prepare() == "");
@@ -112,18 +117,18 @@ TEST_CASE("a memento is the columns: a restored script goes on as it did")
     Lab lab(code);
     lab.rows.state[0] = {{"x", 0.0}, {"s", std::string()}};
     REQUIRE(lab.prepare() == "");
-    for (int i = 0; i < 5; ++i)
-        lab.step();
+    for (int i = 0; i < 5; ++i) lab.step();
     ByteWriter saved;
     for (const Field& f : lab.schema.fields())
         if (f.kind == FieldKind::State)
             f.column->save(0, saved);
-    const auto go_on = [&] {
-        for (int i = 0; i < 5; ++i)
-            lab.step();
+    const auto go_on = [&]
+    {
+        for (int i = 0; i < 5; ++i) lab.step();
         return lab.rows.state[0];
     };
-    const auto restore = [&] {
+    const auto restore = [&]
+    {
         ByteReader in(saved.bytes());
         for (const Field& f : lab.schema.fields())
             if (f.kind == FieldKind::State)
@@ -143,8 +148,7 @@ TEST_CASE("a memento from before a failure brings the script back as it was")
     Lab lab("local n = 0 function drive(step) if step.tick == 2 then n = 7 end state.n = n end");
     lab.rows.state[0] = {{"n", 0.0}};
     REQUIRE(lab.prepare() == "");
-    for (int i = 0; i < 4; ++i)
-        lab.step();
+    for (int i = 0; i < 4; ++i) lab.step();
     CHECK(lab.rows.quarantined[0]);
     CHECK(lab.events.all.size() == 1);
     lab.rows.quarantined[0] = false, lab.context.tick = 1;
@@ -159,7 +163,8 @@ TEST_CASE("a memento from before a failure brings the script back as it was")
 TEST_CASE("random numbers are seeded, per component, and uniform")
 {
     const char* code = "function drive() state.x = math.random() state.k = math.random(3, 5) end";
-    const auto first = [&](std::uint64_t seed, std::uint32_t owner) {
+    const auto first = [&](std::uint64_t seed, std::uint32_t owner)
+    {
         Lab lab(code);
         lab.rows.state[0] = {{"x", 0.0}, {"k", 0.0}};
         lab.context.seed = seed, lab.owners[0] = owner;
@@ -187,8 +192,7 @@ TEST_CASE("random numbers are seeded, per component, and uniform")
         ++counts[k - 3];
     }
     CHECK(sum / 3000 == doctest::Approx(0.5).epsilon(0.03));  // 5 sigma = 0.026
-    for (const int n : counts)
-        CHECK(n == doctest::Approx(1000).epsilon(0.13));
+    for (const int n : counts) CHECK(n == doctest::Approx(1000).epsilon(0.13));
 }
 
 TEST_CASE("pairs has one order: numbers, then texts, as they sort")
@@ -240,18 +244,17 @@ TEST_CASE("rows run on different threads at once, and come out as on one")
             for i, e in ipairs(t) do state.x = state.x + e[1] * i end
             pcall(error, "thrown and caught")
         end)lua";
-    const auto run = [&](std::uint32_t owner) {
+    const auto run = [&](std::uint32_t owner)
+    {
         Lab lab(code);
         lab.rows.state[0] = {{"x", 0.0}}, lab.owners[0] = owner;
         if (!lab.prepare().empty())
             return -1.0;
-        for (int i = 0; i < 200; ++i)
-            lab.step();
+        for (int i = 0; i < 200; ++i) lab.step();
         return lab.state("x");
     };
     double alone[2], together[2];
-    for (std::uint32_t i = 0; i < 2; ++i)
-        alone[i] = run(i);
+    for (std::uint32_t i = 0; i < 2; ++i) alone[i] = run(i);
     std::thread other([&] { together[0] = run(0); });
     together[1] = run(1);
     other.join();

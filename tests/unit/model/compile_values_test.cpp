@@ -10,7 +10,8 @@ using model::Blueprint;
 TEST_CASE("settings of a scene")
 {
     Blueprint b = scene({});
-    b.settings = {text("dt", "1/60"), text("seed", "18446744073709551615"), text("title", "two balls"), text("solver", "Solver/SemiImplicitEuler")};
+    b.settings = {text("dt", "1/60"), text("seed", "18446744073709551615"), text("title", "two balls"),
+                  text("solver", "Solver/SemiImplicitEuler")};
     b.cameras = {component("front", "", {{"position", "0 -5 1"}, {"look_at", "0 0 1"}, {"field_of_view", "40 deg"}})};
     const model::SceneSettings s = compiled(b).settings;
     CHECK(s.dt.denominator == 60);
@@ -34,10 +35,13 @@ TEST_CASE("settings that are refused")
     };
     CHECK(why("dt", "0") == "scene.xml:2:1: scene: dt must be positive, not 0");
     CHECK(why("seed", "-1") == "scene.xml:2:1: scene: seed: '-1' is not a whole number of 0 or more");
-    CHECK(why("sed", "1") == "scene.xml:2:1: scene: unknown setting 'sed', did you mean 'seed'? (settings are 'dt', 'seed', 'solver' and 'title')");
+    CHECK(why("sed", "1") ==
+          "scene.xml:2:1: scene: unknown setting 'sed', did you mean 'seed'? (settings are 'dt', 'seed', 'solver' and "
+          "'title')");
     CHECK(why("solver", "bal") == "scene.xml:2:1: scene: solver: no component has the id 'bal', did you mean 'ball'?");
     CHECK(why("solver", "ball") == "scene.xml:2:1: scene: solver 'ball' is no component of type Solver/...");
-    CHECK(why("solver", "Shape/Sphere") == "scene.xml:2:1: scene: solver must be of type Solver/..., not 'Shape/Sphere'");
+    CHECK(why("solver", "Shape/Sphere") ==
+          "scene.xml:2:1: scene: solver must be of type Solver/..., not 'Shape/Sphere'");
     CHECK(why("solver", "Solver/RungeKuta4") ==
           "scene.xml:2:1: scene: solver: unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
     CHECK(why("solver", " ") == "scene.xml:2:1: scene: solver is empty: give the id or the type of a solver");
@@ -51,7 +55,8 @@ TEST_CASE("cameras that see nothing")
         b.cameras = {component("c", "", attributes, 3)};
         return errors_of(b);
     };
-    CHECK(why({{"position", "1 1 1"}, {"look_at", "1 1 1"}}).find("must not look at where it stands") != std::string::npos);
+    CHECK(why({{"position", "1 1 1"}, {"look_at", "1 1 1"}}).find("must not look at where it stands") !=
+          std::string::npos);
     CHECK(why({{"position", "0 0 5"}}) == "scene.xml:3:1: camera 'c': must not look along its up direction");
     CHECK(why({{"up", "0 0 0"}}) == "scene.xml:3:1: camera 'c': up must not be zero: it is a direction");
     CHECK(why({{"field_of_view", "200 deg"}}).find("field_of_view must be at most") != std::string::npos);
@@ -60,7 +65,8 @@ TEST_CASE("cameras that see nothing")
 
 TEST_CASE("fields are read with units and stand in the order of their declaration")
 {
-    const model::SceneSpec s = compiled(scene({component("red", "State/RigidBody", {{"position", "0 0 30 cm"}, {"mass", "250 g"}})}));
+    const model::SceneSpec s =
+        compiled(scene({component("red", "State/RigidBody", {{"position", "0 0 30 cm"}, {"mass", "250 g"}})}));
     CHECK(field_of(s, "red", "mass") == "0.25");
     CHECK(field_of(s, "red", "position") == "0 0 0.3");
     CHECK(field_of(s, "red", "orientation") == "-");
@@ -69,13 +75,16 @@ TEST_CASE("fields are read with units and stand in the order of their declaratio
 
 TEST_CASE("params and embedded values are fields as well")
 {
-    model::ComponentNode mesh = component("mesh", "");
+    model::ComponentNode mesh = component("mesh", "Shape/Mesh");
     mesh.values = {{"vertices", Value(Reals{0, 0, 0}), at(2)}, {"triangles", Value(Integers{0, 0, 0}), at(3)}};
     model::ComponentNode script = component("s", "Script/Lua");
     script.parameters = {text("code", "x = 1"), text("state", "")};
     script.parameters[1].entries = {{"count", 1.0}};
     const model::SceneSpec s = compiled(scene({mesh, script}));
     CHECK(s.find("mesh")->type == "Shape/Mesh");
+    mesh.type.clear();
+    CHECK(errors_of({mesh}).find("scene.xml:2:1: mesh: a component without type has no 'vertices': give it a type") ==
+          0);
     CHECK(field_of(s, "mesh", "vertices") == "0 0 0");
     CHECK(field_of(s, "s", "state") == "count=1");
 }
@@ -89,13 +98,17 @@ TEST_CASE("fields that are refused")
     CHECK(why({{"mass", "1 m"}}) == b + "mass must be in kg (or g, mg, t), not in 'm'");
     CHECK(why({}) == b + "mass is missing: mass of the body");
     CHECK(why({{"mass", "1"}, {"postion", "0 0 0"}}) ==
-          b + "unknown attribute 'postion', did you mean 'position'? (known are 'mass', 'position', 'orientation', 'linear_velocity', "
+          b + "unknown attribute 'postion', did you mean 'position'? (known are 'mass', 'position', 'orientation', "
+              "'linear_velocity', "
               "'shape' and 'solver')");
     CHECK(why({{"mass", "1"}, {"energy", "3"}}) == b + "energy is an output of State/RigidBody and cannot be set");
     CHECK(why({{"mass", "1"}, {"mass", "2"}}) == b + "mass is given twice, here and at scene.xml:4:1");
-    CHECK(why({{"radius", "1"}}, "") == "scene.xml:4:1: b: a component without type has no 'radius': give it a type, or leave it out");
-    CHECK(why({{"restitution", "1.5"}}, "Response/Impulse") == "scene.xml:4:1: b (Response/Impulse): restitution must be at most 1, not 1.5");
-    CHECK(why({}, "State/RigidBdy") == "scene.xml:4:1: b (State/RigidBdy): unknown type 'State/RigidBdy', did you mean 'State/RigidBody'?");
+    CHECK(why({{"radius", "1"}}, "") ==
+          "scene.xml:4:1: b: a component without type has no 'radius': give it a type, or leave it out");
+    CHECK(why({{"restitution", "1.5"}}, "Response/Impulse") ==
+          "scene.xml:4:1: b (Response/Impulse): restitution must be at most 1, not 1.5");
+    CHECK(why({}, "State/RigidBdy") ==
+          "scene.xml:4:1: b (State/RigidBdy): unknown type 'State/RigidBdy', did you mean 'State/RigidBody'?");
 
     model::ComponentNode referring = component("b", "State/RigidBody", {}, 4);
     referring.parameters = {reference("mass", {"b"}, 5)};
@@ -105,8 +118,9 @@ TEST_CASE("fields that are refused")
     CHECK(errors_of({referring}) == "scene.xml:5:1: b (State/RigidBody): mass takes a value, not entries");
     model::ComponentNode mesh = component("m", "Shape/Mesh", {{"triangles", "0 1 2"}}, 4);
     mesh.values = {{"vertices", Value(1.0), at(5)}, {"normals", Value(Reals{}), at(6)}};
-    CHECK(errors_of({mesh}) == "scene.xml:5:1: m (Shape/Mesh): vertices must be numbers, not a number\n"
-                               "scene.xml:6:1: m (Shape/Mesh): embedded XML gives 'normals', which Shape/Mesh does not have");
+    CHECK(errors_of({mesh}) ==
+          "scene.xml:5:1: m (Shape/Mesh): vertices must be numbers, not a number\n"
+          "scene.xml:6:1: m (Shape/Mesh): embedded XML gives 'normals', which Shape/Mesh does not have");
 }
 
 TEST_CASE("ids")
@@ -125,13 +139,15 @@ TEST_CASE("ids")
 
 TEST_CASE("all errors come at once, in the order of the file, and the rest are counted")
 {
-    CHECK(errors_of({component("b", "Shape/Sphere", {{"radius", "x"}}, 9), component("a", "Shape/Sphere", {{"radius", "0"}, {"r", "1"}}, 4)}) ==
+    CHECK(errors_of({component("b", "Shape/Sphere", {{"radius", "x"}}, 9),
+                     component("a", "Shape/Sphere", {{"radius", "0"}, {"r", "1"}}, 4)}) ==
           "scene.xml:4:1: a (Shape/Sphere): radius must be positive, not 0\n"
           "scene.xml:4:1: a (Shape/Sphere): unknown attribute 'r' (known are 'radius' and 'position')\n"
           "scene.xml:9:1: b (Shape/Sphere): radius must be a number, not 'x'");
     FixedTypes types;
     Blueprint many = scene({});
-    for (std::uint32_t i = 0; i < 30; ++i) many.components.push_back(component("s" + std::to_string(i), "Shape/Sphere", {{"radius", "0"}}, i + 1));
+    for (std::uint32_t i = 0; i < 30; ++i)
+        many.components.push_back(component("s" + std::to_string(i), "Shape/Sphere", {{"radius", "0"}}, i + 1));
     model::CompileLimits limits;
     limits.errors = 10;
     const auto result = model::compile(many, types, nullptr, limits);
@@ -143,7 +159,8 @@ TEST_CASE("all errors come at once, in the order of the file, and the rest are c
 TEST_CASE("the number of components is limited")
 {
     FixedTypes types;
-    Blueprint b = scene({component("a", "Shape/Sphere"), component("b", "Shape/Sphere"), component("c", "Shape/Sphere")});
+    Blueprint b =
+        scene({component("a", "Shape/Sphere"), component("b", "Shape/Sphere"), component("c", "Shape/Sphere")});
     model::CompileLimits limits;
     limits.components = 2;
     CHECK(model::compile(b, types, nullptr, limits).error().reason == "the scene has more than 2 components");

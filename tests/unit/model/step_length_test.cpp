@@ -14,10 +14,10 @@ TEST_CASE("step lengths are exact where they can be")
         std::int64_t numerator, denominator;
     };
     const Row rows[] = {
-        {"1/60", 1, 60},       {"1/240 s", 1, 240},      {"0.001", 1, 1000},      {"2 ms", 1, 500},    {"1e-3", 1, 1000},
-        {"1/4 ms", 1, 4000},   {"0.5/60", 1, 120},       {"2/120", 1, 60},        {"1", 1, 1},         {"10 us", 1, 100000},
-        {"1 min", 60, 1},      {"1e2", 100, 1},          {"0.0125", 1, 80},       {" 1/60\n", 1, 60},  {"+0.002", 1, 500},
-        {"0.0166667", 166667, 10000000},
+        {"1/60", 1, 60},   {"1/240 s", 1, 240},  {"0.001", 1, 1000}, {"2 ms", 1, 500},
+        {"1e-3", 1, 1000}, {"1/4 ms", 1, 4000},  {"0.5/60", 1, 120}, {"2/120", 1, 60},
+        {"1", 1, 1},       {"10 us", 1, 100000}, {"1 min", 60, 1},   {"1e2", 100, 1},
+        {"0.0125", 1, 80}, {" 1/60\n", 1, 60},   {"+0.002", 1, 500}, {"0.0166667", 166667, 10000000},
     };
     for (const Row& row : rows)
     {
@@ -38,8 +38,10 @@ TEST_CASE("a step length that is no small fraction is kept as seconds")
     {
         CAPTURE(text);
         const Result<StepLength> dt = parse_step_length(text);
-        if (!dt) continue;
-        if (dt->denominator != 0) CHECK(dt->numerator <= 100'000'000);
+        if (!dt)
+            continue;
+        if (dt->denominator != 0)
+            CHECK(dt->numerator <= 100'000'000);
     }
     const Result<StepLength> dt = parse_step_length("0.016666666666666666");
     REQUIRE(dt.ok());

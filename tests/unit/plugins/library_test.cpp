@@ -26,7 +26,8 @@ std::string sample(const std::string& flaw)
 class Folder
 {
 public:
-    explicit Folder(const std::string& name) : path_(fs::temp_directory_path() / ("plab_library_test_" + std::to_string(getpid()) + "_" + name))
+    explicit Folder(const std::string& name)
+        : path_(fs::temp_directory_path() / ("plab_library_test_" + std::to_string(getpid()) + "_" + name))
     {
         fs::remove_all(path_);
         fs::create_directories(path_);
@@ -42,7 +43,8 @@ public:
     void plugin(const std::string& name, const std::string& flaw, const std::string& types) const
     {
         write(name + ".manifest", "plab-manifest 1\n" + types);
-        if (!flaw.empty()) fs::copy_file(sample(flaw), path_ / (name + ".so"));
+        if (!flaw.empty())
+            fs::copy_file(sample(flaw), path_ / (name + ".so"));
     }
 
 private:
@@ -68,7 +70,8 @@ bool is_mapped(const std::string& path)
 {
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);)
-        if (line.find(path) != line.npos) return true;
+        if (line.find(path) != line.npos)
+            return true;
     return false;
 }
 
@@ -121,7 +124,8 @@ TEST_CASE("unknown types: the nearest names of all manifests, and what could not
     b.plugin("y", "", "Solver/SemiImplicitEuler\n");
     PluginLibrary library({a.path(), b.path(), a.path() + "/../" + fs::path(a.path()).filename().string()});
     CHECK(library.names().size() == 2);
-    CHECK(refusal(library, "Solver/RungeKuta4") == "unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
+    CHECK(refusal(library, "Solver/RungeKuta4") ==
+          "unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
     CHECK(refusal(library, "") == "unknown type ''");
 
     PluginLibrary nowhere({a.file("missing")});
@@ -153,7 +157,8 @@ TEST_CASE("bad manifests are problems, not the end")
     std::vector<std::string> problems;
     for (const Error& e : library.problems()) problems.push_back(e.text());
     CHECK(problems == std::vector<std::string>{
-                          folder.file("a.manifest") + ":1:1: is no manifest of this version: the first line must be 'plab-manifest 1'",
+                          folder.file("a.manifest") +
+                              ":1:1: is no manifest of this version: the first line must be 'plab-manifest 1'",
                           folder.file("b.manifest") + ": cannot be read",
                           folder.file("c.manifest") + ":3:1: is no type name; letters, digits, '_' and '/' are allowed",
                           folder.file("d.manifest") + ": names A/B twice",
@@ -179,14 +184,18 @@ TEST_CASE("a manifest without its plugin, and one that promises too much")
 TEST_CASE("each mismatch of the stamp has its own words")
 {
     const std::string again = "; build it again with this SDK";
-    CHECK(load_refusal("version") == "plugin " + sample("version") + ": was built for version 2 of the SDK, version 1 is needed" + again);
-    CHECK(load_refusal("size") == "plugin " + sample("size") + ": its stamp has " + std::to_string(sizeof(PluginStamp) + 8) + " bytes, " +
+    CHECK(load_refusal("version") ==
+          "plugin " + sample("version") + ": was built for version 2 of the SDK, version 1 is needed" + again);
+    CHECK(load_refusal("size") == "plugin " + sample("size") + ": its stamp has " +
+                                      std::to_string(sizeof(PluginStamp) + 8) + " bytes, " +
                                       std::to_string(sizeof(PluginStamp)) + " are needed" + again);
-    CHECK(load_refusal("layout") == "plugin " + sample("layout") +
-                                        ": its structures are laid out differently: layout 42 (compiler " __VERSION__ "), " +
-                                        std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + again);
+    CHECK(load_refusal("layout") ==
+          "plugin " + sample("layout") +
+              ": its structures are laid out differently: layout 42 (compiler " __VERSION__ "), " +
+              std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + again);
     CHECK(load_refusal("name") == "plugin " + sample("name") + ": its stamp has no name");
-    CHECK(load_refusal("stamp") == "plugin " + sample("stamp") + ": is no pLab plugin: it has no symbol plab_plugin_stamp");
+    CHECK(load_refusal("stamp") ==
+          "plugin " + sample("stamp") + ": is no pLab plugin: it has no symbol plab_plugin_stamp");
     CHECK(load_refusal("entry") == "plugin " + sample("entry") + ": has no symbol plab_plugin_register");
 }
 
@@ -224,7 +233,8 @@ TEST_CASE("load_plugin: twice is once; other plugins with the same types are ref
     folder.plugin("copy", "none", "Sample/Good\n");
     const auto copy = library.load_plugin(folder.file("copy.so"));
     REQUIRE(!copy.ok());
-    CHECK(copy.error().text() == "plugin " + folder.file("copy.so") + ": Sample/Good: is already declared by plugin 'sample'");
+    CHECK(copy.error().text() ==
+          "plugin " + folder.file("copy.so") + ": Sample/Good: is already declared by plugin 'sample'");
     CHECK(library.loaded().size() == 1);
 
     folder.write("text.so", "no library");

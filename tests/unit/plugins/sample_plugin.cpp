@@ -7,7 +7,10 @@ namespace
 struct Rows
 {
     plab::Column<double> value;
-    void describe(plab::Schema& schema) { schema.param(value, "value", plab::unit::metre, "a length").or_else(2).positive(); }
+    void describe(plab::Schema& schema)
+    {
+        schema.param(value, "value", plab::unit::metre, "a length").or_else(2).positive();
+    }
 };
 
 [[maybe_unused]] void add_types([[maybe_unused]] plab::Registrar& registrar)
@@ -15,7 +18,8 @@ struct Rows
 #if defined(SAMPLE_THROWS)
     throw 1;
 #elif !defined(SAMPLE_EMPTY)
-    registrar.component<Rows>("Sample/Good", "works").host_command(plab::Phase::Finish, "Sample/Finish", "does nothing");
+    registrar.component<Rows>("Sample/Good", "works")
+        .host_command(plab::Phase::Finish, "Sample/Finish", "does nothing");
     registrar.component<Rows>("Sample/Better", "works, too");
 #endif
 #if defined(SAMPLE_TWICE)
@@ -26,28 +30,30 @@ struct Rows
 }  // namespace
 
 #if !defined(SAMPLE_STAMP)
-extern "C" PLAB_EXPORT const plab::PluginStamp plab_plugin_stamp{
+extern "C" PLAB_EXPORT const plab::PluginStamp plab_plugin_stamp
+{
 #if defined(SAMPLE_VERSION)
     plab::kSdkVersion + 1,
 #else
     plab::kSdkVersion,
 #endif
 #if defined(SAMPLE_SIZE)
-    sizeof(plab::PluginStamp) + 8,
+        sizeof(plab::PluginStamp) + 8,
 #else
-    sizeof(plab::PluginStamp),
+        sizeof(plab::PluginStamp),
 #endif
 #if defined(SAMPLE_LAYOUT)
-    42,
+        42,
 #else
-    plab::layout_stamp(),
+        plab::layout_stamp(),
 #endif
 #if defined(SAMPLE_NAME)
-    nullptr,
+        nullptr,
 #else
-    "sample",
+        "sample",
 #endif
-    __VERSION__};
+        __VERSION__
+};
 #endif
 
 #if !defined(SAMPLE_ENTRY)

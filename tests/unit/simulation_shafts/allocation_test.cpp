@@ -17,6 +17,11 @@ void* operator new(std::size_t n)
         return p;
     throw std::bad_alloc();
 }
+void* operator new(std::size_t n, const std::nothrow_t&) noexcept
+{
+    ++allocations;
+    return std::malloc(n == 0 ? 1 : n);
+}
 void operator delete(void* p) noexcept
 {
     std::free(p);

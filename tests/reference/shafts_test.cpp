@@ -1,0 +1,150 @@
+// Gears: reduced coordinates, pairwise impulses, one-way copies. F1.. as in the catalogue of reference problems.
+#include "support/scene.h"
+
+using namespace plab;
+using plab::test::near;
+using plab::test::Scene;
+
+namespace
+{
+
+std::string shaft(const std::string& id, double inertia, double speed = 0)
+{
+    return "<component id=\"" + id + "\" type=\"State/Shaft\" inertia=\"" + std::to_string(inertia) + "\" angular_velocity=\"" +
+           std::to_string(speed) + "\"/>";
+}
+std::string gear(const std::string& id, const std::string& type, const std::string& a, const std::string& b, const std::string& factor)
+{
+    return "<component id=\"" + id + "\" type=\"Constraint/AngularVelocity/" + type + "\" driver=\"" + a + "\" driven=\"" + b +
+           "\" velocity_factor=\"" + factor + "\"/>";
+}
+std::string torque(const std::string& on, const std::string& value)
+{
+    return "<component id=\"torque\" type=\"Script/Lua\" driven=\"" + on + "\"><param name=\"code\">function force(t, state) driven:add_torque(" + value +
+           ") end</param></component>";
+}
+
+}  // namespace
+
+TEST_CASE("F1: a pair accelerates with its reflected inertia")
+{
+    for (const char* type : {"Graph", "Impulse"})
+    {
+        CAPTURE(type);
+        Scene s(shaft("a", 10) + shaft("b", 100) + gear("g", type, "a", "b", "-0.1") + torque("a", "6"), "dt=\"1/100\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(1);
+        CHECK(near(s.spin("a"), 6.0 / 11, 1e-13));
+        CHECK(near(s.spin("b"), -0.6 / 11, 1e-13));
+        CHECK(near(s.angle("a"), 3.0 / 11, 1e-13));
+        CHECK(near(s.real("g", "torque"), -100 * 0.6 / 11, 1e-13));
+    }
+}
+
+TEST_CASE("F1, one way: an assigned shaft follows and the driver feels nothing")
+{
+    Scene s(shaft("a", 10) + shaft("b", 100) + gear("g", "Assign", "a", "b", "-0.1") + torque("a", "6"), "dt=\"1/100\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(1);
+    CHECK(near(s.spin("a"), 0.6, 1e-13));
+    CHECK(near(s.spin("b"), -0.06, 1e-13));
+    CHECK(near(s.angle("b"), -0.03, 1e-13));
+}
+
+TEST_CASE("F2: six meshes of 10:1, both ways")
+{
+    const auto train = [](const char* factor) {
+        std::string body;
+        for (int i = 0; i < 7; ++i) body += shaft("s" + std::to_string(i), 0.001);
+        for (int i = 0; i < 6; ++i) body += gear("g" + std::to_string(i), "Graph", "s" + std::to_string(i), "s" + std::to_string(i + 1), factor);
+        return body + torque("s0", "1");
+    };
+    const auto inertia = [](double r) {
+        double sum = 0;
+        for (int i = 6; i >= 0; --i) sum += std::pow(r * r, i) * 1e-3;
+        return sum;
+    };
+    Scene down(train("0.1"), "dt=\"1/100\""), up(train("10"), "dt=\"1/100\"");
+    REQUIRE_MESSAGE(down.loaded(), down.error());
+    down.run(1), up.run(1);
+    CHECK(std::fabs(down.spin("s0") * inertia(0.1) - 1) < 2e-14);
+    CHECK(std::fabs(up.spin("s0") * inertia(10) - 1) < 2e-14);
+    CHECK(std::fabs(up.spin("s6") / up.spin("s0") / 1e6 - 1) < 1e-14);
+}
+
+TEST_CASE("F3: sudden engagement at run time shares the momentum")
+{
+    Scene s(shaft("a", 1, 100) + shaft("b", 2), "dt=\"1/100\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    const double before = s.simulation().totals().kinetic;
+    model::Blueprint fragment = *blueprint::read_blueprint("<plab version=\"1\">" + gear("g", "Graph", "a", "b", "-0.5") + "</plab>", "add.xml");
+    auto compiled = model::compile(fragment, test::library(), &s.simulation().world().scene());
+    REQUIRE_MESSAGE(compiled.ok(), (compiled.ok() ? "" : test::first_error(compiled.errors())));
+    const auto reply = s.ask(simulation::AddOperation{*compiled});
+    REQUIRE_MESSAGE(reply.done, test::first_error(reply.errors));
+    s.step();
+    CHECK(near(s.spin("a"), 200.0 / 3, 1e-14));
+    CHECK(near(s.spin("b"), -100.0 / 3, 1e-14));
+    CHECK(near(s.simulation().totals().kinetic - before, -5000.0 / 3, 1e-13));
+}
+
+TEST_CASE("F4: a consistent loop and fifty duplicate meshes are redundant, counted, and change nothing")
+{
+    const std::string three = shaft("a", 1) + shaft("b", 2) + shaft("c", 3) + gear("g1", "Graph", "a", "b", "2") + gear("g2", "Graph", "b", "c", "3");
+    std::string loop = three + gear("g3", "Graph", "c", "a", "1/6");
+    for (int i = 0; i < 50; ++i) loop += gear("h" + std::to_string(i), "Graph", "a", "b", "2");
+    Scene tree(three + torque("a", "5")), ring(loop + torque("a", "5"));
+    REQUIRE_MESSAGE(ring.loaded(), ring.error());
+    CHECK(ring.simulation().stepper().graph().redundant().size() == 51);
+    tree.run(1), ring.run(1);
+    CHECK(ring.spin("c") == tree.spin("c"));
+    CHECK(near(ring.spin("a"), 5.0 / (1 + 4 * 2 + 36 * 3), 1e-13));
+}
+
+TEST_CASE("F5: a contradictory loop is refused with its edges and product")
+{
+    const std::string ring = shaft("a", 1) + shaft("b", 2) + shaft("c", 3) + gear("g1", "Graph", "a", "b", "2") + gear("g2", "Graph", "b", "c", "3") +
+                             gear("g3", "Graph", "c", "a", "0.16666388893518441");
+    const std::string error = Scene(ring).error();
+    CHECK(error.find("g1") != std::string::npos);
+    CHECK(error.find("g2") != std::string::npos);
+    CHECK(error.find("g3") != std::string::npos);
+    CHECK(error.find("0.99998") != std::string::npos);
+}
+
+TEST_CASE("F7: a line of 1000 gears has no drift at all")
+{
+    std::string body;
+    std::uint64_t seed = 7;
+    double rho = 1;
+    std::vector<double> rhos{1};
+    for (int i = 0; i < 1000; ++i)
+    {
+        char id[16];
+        std::snprintf(id, sizeof id, "s%04d", i);
+        body += shaft(id, 0.001);
+        if (i == 0) continue;
+        char before[16];
+        std::snprintf(before, sizeof before, "s%04d", i - 1);
+        seed = seed * 6364136223846793005ull + 1442695040888963407ull;
+        const int driver = 20 + static_cast<int>((seed >> 33) % 40), driven = 20 + static_cast<int>((seed >> 43) % 40);
+        body += "<component id=\"g" + std::string(id) + "\" type=\"Constraint/AngularVelocity/Graph\" driver=\"" + before + "\" driven=\"" + id +
+                "\" driver_teeth=\"" + std::to_string(driver) + "\" driven_teeth=\"" + std::to_string(driven) + "\"/>";
+        rho *= -static_cast<double>(driver) / driven;
+        rhos.push_back(rho);
+    }
+    Scene s(body + torque("s0000", "1"), "dt=\"1/100\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(2000);
+    double worst = 0;
+    for (int i = 0; i < 1000; ++i)
+    {
+        char id[16];
+        std::snprintf(id, sizeof id, "s%04d", i);
+        const auto& shafts = s.simulation().world().host().shafts;
+        const std::uint32_t k = s.simulation().world().component(s.simulation().world().find(id)).host_index;
+        CHECK(std::fabs(shafts.ratio[k] / rhos[static_cast<std::size_t>(i)] - 1) < 1e-12);
+        worst = std::max(worst, std::fabs(shafts.angle[k] - shafts.ratio[k] * shafts.angle[shafts.root[k]]));
+    }
+    CHECK(worst == 0);
+}

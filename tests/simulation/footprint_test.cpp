@@ -1,0 +1,116 @@
+// What a scene does not need is not there: libraries, phases, memory, time.
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "support/scene.h"
+
+using namespace plab;
+using plab::test::Scene;
+
+extern std::atomic<long> plab_test_allocations;
+
+namespace
+{
+
+/// Runs the real daemon on a scene and asks which libraries it has mapped when it is done stepping.
+std::string mapped_libraries(const std::string& scene)
+{
+    const std::string file = std::string(PLAB_BINARY_DIR) + "/footprint_scene.xml";
+    std::ofstream(file) << "<plab version=\"1\"><scene dt=\"1/100\"/>" << scene << "</plab>";
+    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabd " + file + " --until 0.1 --maps 2>&1";
+    std::FILE* pipe = popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    std::string out;
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
+    CHECK_MESSAGE(pclose(pipe) == 0, out);
+    return out;
+}
+
+bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+const char* const kShafts = R"(<component id="a" type="State/Shaft" inertia="1"/><component id="b" type="State/Shaft" inertia="1"/>
+  <component id="g" type="Constraint/AngularVelocity/Graph" driver="a" driven="b" velocity_factor="-0.5"/>)";
+const char* const kScript = R"(<component id="m" type="Script/Lua" driven="a"><param name="code">function force(t, state) driven:add_torque(1) end</param></component>)";
+const char* const kBall = R"(<component id="s" type="Shape/Sphere" radius="0.1"/><component id="floor" type="Shape/Plane"/>
+  <component id="ball" type="State/RigidBody" mass="1" shape="s" position="0 0 1"/><component id="ground" type="State/Static" shape="floor"/>
+  <component id="gravity" type="Field/Gravity" between="ball"/>
+  <component id="contact" type="CDetection/ODE" between="ball ground" resolution="Resolution/LocalBisection" response="Response/Impulse" response.restitution="1"/>)";
+
+long allocations_of(Scene& s, int steps)
+{
+    s.step(500);
+    const long before = plab_test_allocations;
+    for (int i = 0; i < steps; ++i) s.simulation().step();
+    return plab_test_allocations - before;
+}
+
+}  // namespace
+
+TEST_CASE("no script, no Lua; no collision, no ODE; only what is named is mapped")
+{
+    const std::string shafts = mapped_libraries(kShafts), script = mapped_libraries(std::string(kShafts) + kScript), ball = mapped_libraries(kBall);
+    CHECK(!has(shafts, "liblua"));
+    CHECK(!has(shafts, "libode"));
+    CHECK(has(shafts, "constraints.so"));
+    CHECK(!has(shafts, "shapes.so"));
+    CHECK(has(script, "liblua"));
+    CHECK(!has(script, "libode"));
+    CHECK(has(ball, "libode"));
+    CHECK(!has(ball, "liblua"));
+    CHECK(!has(ball, "constraints.so"));
+    for (const std::string* text : {&shafts, &script, &ball}) CHECK(!has(*text, "libddsc"));
+}
+
+TEST_CASE("a scene of shafts has no 3-D state, and runs no phase of collisions")
+{
+    Scene s(kShafts);
+    CHECK(s.simulation().world().host().bodies.size() == 0);
+    CHECK(!s.simulation().stepper().anything_collides());
+    CHECK(!s.simulation().stepper().anything_drives());
+}
+
+TEST_CASE("a warm step allocates nothing")
+{
+    Scene shafts(std::string(kShafts) + kScript);
+    CHECK(allocations_of(shafts, 1000) == 0);
+    Scene free_body("<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 2 2.5\" angular_velocity=\"1 2 3\"/><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>");
+    CHECK(allocations_of(free_body, 1000) == 0);
+    // At rest: contact stays, no event is made.
+    Scene resting("<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"floor\" type=\"Shape/Plane\"/>"
+                  "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\" position=\"0 0 0.1001\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
+                  "<component id=\"gravity\" type=\"Field/Gravity\" between=\"ball\"/>"
+                  "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball ground\" resolution=\"Resolution/LocalBisection\" response=\"Response/Impulse\"/>");
+    CHECK(allocations_of(resting, 1000) == 0);
+}
+
+TEST_CASE("an empty step costs less than a microsecond")
+{
+    Scene s("");
+    s.step(1000);
+    double best = 1e9;
+    for (int round = 0; round < 20; ++round)
+    {
+        const auto before = std::chrono::steady_clock::now();
+        for (int i = 0; i < 10000; ++i) s.simulation().step();
+        best = std::min(best, std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - before).count() / 10000);
+    }
+    MESSAGE("empty step: ", best, " ns");
+    CHECK(best < 1000);
+}
+
+TEST_CASE("ten thousand bodies load in seconds")
+{
+    const auto before = std::chrono::steady_clock::now();
+    Scene s("<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><repeat id=\"all\" count=\"100 100\" step=\"1 1 0\">"
+            "<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\"/></repeat><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(2);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+    MESSAGE("10,000 bodies: ", seconds, " s");
+    CHECK(seconds < 20);
+    CHECK(s.simulation().world().host().bodies.size() == 10000);
+}
