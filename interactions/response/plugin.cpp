@@ -6,7 +6,7 @@ PLAB_PLUGIN("response", registrar)
     using namespace plab;
     using namespace plab::response;
     registrar.component<NoneRows>("Response/None", "a sensor: contacts are reported, bodies pass through one another")
-        .command<respond_none>(Phase::Respond, "Response/Respond", "reports contacts without pushing")
+        .host_command(Phase::Respond, "Response/Respond", "nothing: the host reports the contacts")
         .cost("nothing");
     registrar
         .component<ImpulseRows>("Response/Impulse",

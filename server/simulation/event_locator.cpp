@@ -1,6 +1,8 @@
 #include "simulation/event_locator.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <cmath>
 
 namespace plab::simulation
@@ -133,6 +135,7 @@ void EventLocator::bracket(Candidate& candidate, Trial& trial)
 
 void EventLocator::locate(Candidate& candidate)
 {
+    if (getenv("DBG")) std::fprintf(stderr, "locate tick %ld a %u b %u contacts %zu begin %.17g step %.17g depth %.3g\n", (long)s_->frame_.tick, candidate.a.index, candidate.b.index, candidate.contacts.size(), begin_of_scope(), s_->frame_.step, candidate.contacts[0].contact.depth);
     candidate.located = true;
     candidate.time = s_->frame_.step;
     if (candidate.at_end) return;
@@ -211,6 +214,7 @@ void EventLocator::answer(Candidate& candidate)
 {
     const double time = s_->frame_.start_time + candidate.time;
     impact_ = candidate.contacts;
+    if (getenv("DBG")) std::fprintf(stderr, "answer time %.17g stuck %d n %zu vn %.3g depth %.3g\n", candidate.time, candidate.stuck, impact_.size(), s_->normal_velocity(impact_[0].contact), impact_[0].contact.depth);
     if (s_->detectors_[candidate.detector].responds)
     {
         const std::size_t own = impact_.size();

@@ -76,6 +76,8 @@ TEST_CASE("names: 200 characters, not more")
 {
     const std::string longest(200, 'n'), endless(1'000'000, 'n');
     CHECK(refusal("<plab version='1'><component id='" + longest + "' " + longest + "='1'/></plab>") == "accepted");
+    CHECK(refusal("<plab version='1'><" + longest + "n/></plab>") ==
+          "h.xml:1:19: the name of an element has 201 characters; at most 200 are allowed");
     CHECK(refusal("<plab version='1'><" + endless + "/></plab>") ==
           "h.xml:1:19: the name of an element has 1000000 characters; at most 200 are allowed");
     CHECK(refusal("<plab version='1'><component " + endless + "='1'/></plab>") ==

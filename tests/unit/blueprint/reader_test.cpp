@@ -164,9 +164,11 @@ TEST_CASE("figure 7: parameters inside a command, and after one in a component")
     const auto b = read(
         "<plab version='1'><component id='c'><command id='300' type='Script/Lua'><cmdparam type='SetCode'>"
         "<udata>emit('hello')</udata></cmdparam></command><cmdparam type='SetDriver'><udata><compref>a</compref>"
-        "<compref>b c</compref></udata></cmdparam></component></plab>");
+        "<compref>b c</compref></udata></cmdparam><cmdparam "
+        "type='SetX'><udata>1</udata></cmdparam></component></plab>");
     const auto& parameters = b.components.at(0).commands.at(0).parameters;
-    REQUIRE(parameters.size() == 2);
+    REQUIRE(parameters.size() == 3);
+    CHECK(parameters[2].text == "1");
     CHECK(parameters[0].text == "emit('hello')");
     CHECK(parameters[1].component_references == std::vector<std::string>{"a", "b c"});
 }

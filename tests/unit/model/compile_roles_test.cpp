@@ -66,6 +66,10 @@ TEST_CASE("a group stands for all inside it that fit, an object for the only one
     CHECK(role_of(s, "c", "between") == "a b x");
     CHECK(role_of(s, "d", "between") == "a x");
     CHECK(s.find("some")->group == std::vector<std::string>{"a", "x"});
+    // Twice inside one group is once.
+    const model::SceneSpec twice =
+        compiled(scene({group("balls", {body("a"), body("b"), shares("pair", {"a", "b"})}), collide("balls")}));
+    CHECK(role_of(twice, "c", "between") == "a b");
     const model::SceneSpec one = compiled(scene({group("motor", {shaft("axle"), component("form", "Shape/Sphere")}),
                                                  shaft("b"), gear({{"driver", "motor"}, {"driven", "b"}})}));
     CHECK(role_of(one, "g", "driver") == "axle");

@@ -105,7 +105,7 @@ TEST_CASE("numbers and their units")
             CHECK(std::get<double>(*value) == doctest::Approx(row.wanted).epsilon(1e-15));
     }
     // Exact: a decimal with a decimal unit is the double nearest to it, half a turn is the double pi.
-    CHECK(std::get<double>(*parse_value("7 cm", field(FieldType::Real, unit::metre))) == 0.07);
+    CHECK(std::get<double>(*parse_value("35 cm", field(FieldType::Real, unit::metre))) == 0.35);
     CHECK(std::get<double>(*parse_value("180 deg", field(FieldType::Real, unit::radian))) == kPi);
 }
 

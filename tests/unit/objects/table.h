@@ -39,7 +39,7 @@ inline Bodies make_bodies(std::size_t n)
     Bodies b;
     b.motion.resize(n), b.position.resize(n), b.orientation.resize(n), b.velocity.resize(n);
     b.angular_velocity.resize(n), b.angular_momentum.resize(n), b.mass.resize(n), b.inverse_mass.resize(n);
-    b.inertia_B.resize(n), b.inverse_inertia_B.resize(n), b.center_B.resize(n), b.material.resize(n);
+    b.inertia_B.resize(n), b.inverse_inertia_B.resize(n), b.center_B.resize(n), b.needle.resize(n), b.material.resize(n);
     b.shapes.resize(n);
     return b;
 }

@@ -127,6 +127,7 @@ TEST_CASE("unknown types: the nearest names of all manifests, and what could not
     CHECK(refusal(library, "Solver/RungeKuta4") ==
           "unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
     CHECK(refusal(library, "") == "unknown type ''");
+    CHECK(refusal(library, "Solver/RungeKutta4").find("cannot be loaded") != std::string::npos);  // not: in two plugins
 
     PluginLibrary nowhere({a.file("missing")});
     CHECK(refusal(nowhere, "A/B") == "unknown type 'A/B'; no plugins were found; plugin folder " + a.file("missing") +
