@@ -216,6 +216,8 @@ void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactS
         flush(a, b, length(s.shift), sink);
     }
 
+    if (sink.only_standing())
+        return;
     const auto& near = broad_.find_pairs();
     pairs_ = near.size();
     const auto members = [&](const BroadPhase::Pair& p) {

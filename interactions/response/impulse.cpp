@@ -6,17 +6,6 @@
 namespace plab::response
 {
 
-void respond_none(const StepContext&, Row, const NoneRows&, const Bodies& bodies, Impact& impact)
-{
-    for (Contact& c : impact.contacts)
-    {
-        const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
-        c.impulse = {}, c.resting = true;
-        c.slip = length(u - c.normal * dot(c.normal, u));
-    }
-    impact.iterations = 0, impact.residual = 0, impact.converged = true;
-}
-
 void ImpulseRows::describe(Schema& s)
 {
     s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise")

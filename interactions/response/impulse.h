@@ -18,7 +18,6 @@ struct NoneRows
     void describe(Schema&) {}
 };
 /// Phase::Respond. Contacts come out as resting, without impulse: nothing that has to be located again.
-void respond_none(const StepContext& context, Row row, const NoneRows& rows, const Bodies& bodies, Impact& impact);
 
 /// The contacts between two bodies: answered together.
 struct Patch

@@ -54,12 +54,10 @@ bool is_interaction(const world::World& world, std::uint32_t i)
 std::string object_json(const world::World& world, std::uint32_t i)
 {
     const world::Component& c = world.component(i);
-    const auto vec = [&](const char* name) { return array(std::get<Vec3>(world.get(i, name))); };
     if (c.facet == Facet::Shaft)
         return "{\"angle\": " + number(world.host().shafts.angle[c.host_index]) +
                ", \"angular_velocity\": " + number(world.host().shafts.speed[c.host_index]) + "}";
     const auto hosted = [&](const char* name) { return world::get_hosted(world.host(), Facet::Body, c.host_index, name); };
-    (void)vec;
     return "{\"position\": " + array(std::get<Vec3>(hosted("position"))) + ", \"orientation\": " + array(std::get<Quat>(hosted("orientation"))) +
            ", \"linear_velocity\": " + array(std::get<Vec3>(hosted("linear_velocity"))) +
            ", \"angular_velocity\": " + array(std::get<Vec3>(hosted("angular_velocity"))) + "}";
@@ -140,7 +138,7 @@ Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simula
     {
         const world::Component& c = s.world().component(i);
         if (!is_object(c)) continue;
-        trace->objects_.push_back(c.id);
+        trace->objects_.push_back({c.id, c.facet == Facet::Shaft ? 2u : 13u});
         const char* const shaft[] = {"angle", "angular_velocity"};
         const char* const body[] = {"position.x", "position.y", "position.z", "orientation.w", "orientation.x", "orientation.y", "orientation.z",
                                     "linear_velocity.x", "linear_velocity.y", "linear_velocity.z",
@@ -162,11 +160,14 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     const simulation::Totals t = s.totals();
     std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + hash_text(s.state_hash()) + "," + number(t.kinetic + t.stored) + "," +
                       number(t.kinetic) + "," + number(t.momentum.x) + "," + number(t.momentum.y) + "," + number(t.momentum.z);
-    for (const std::string& id : objects_)
+    for (const auto& [id, columns] : objects_)
     {
         const std::uint32_t i = s.world().find(id);
-        if (i == kNoIndex)
+        if (i == kNoIndex || !is_object(s.world().component(i)))
+        {
+            row += std::string(columns, ',');  // gone: its columns stay empty
             continue;
+        }
         const world::Component& c = s.world().component(i);
         if (c.facet == Facet::Shaft)
         {

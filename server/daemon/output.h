@@ -29,7 +29,7 @@ private:
         void operator()(std::FILE* f) const { std::fclose(f); }
     };
     std::unique_ptr<std::FILE, Closer> file_;
-    std::vector<std::string> objects_;
+    std::vector<std::pair<std::string, std::size_t>> objects_;  ///< id and number of columns
     double every_ = 0;
     double next_ = 0;
     Tick last_ = -1;

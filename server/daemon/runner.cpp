@@ -191,6 +191,11 @@ int run(simulation::Simulation& s, const Options& options, const std::atomic<boo
     table.show(s, true);
     if (trace) trace->sample(s, true);
     if (options.maps) print_mapped_libraries();
+    if (s.pending_requests() > 0)
+    {
+        spdlog::error("{} requests name steps that the run did not reach", s.pending_requests());
+        fine = false;
+    }
     if (!options.out.empty()) fine = write_end_state(s, options.out) && fine;
     return fine ? 0 : 1;
 }

@@ -12,8 +12,6 @@ void Stepper::advance_all()
     const bool contacts_rest = std::any_of(cache_.pairs().begin(), cache_.pairs().end(), [](const PairState& p) { return p.resting; });
     if (contacts_rest || std::any_of(groups_.all.begin(), groups_.all.end(), [](const Group& g) { return g.solver == kNoIndex && !(g.bodies.empty() && g.shafts.empty()); }))
     {
-        island_all_.resize(groups_.all.size());
-        for (std::uint32_t g = 0; g < island_all_.size(); ++g) island_all_[g] = g;
         advance(island_all_, 0, frame_.step, {&work_, 1}, false);
     }
     else

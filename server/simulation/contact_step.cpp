@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "plab/rotation.h"
+#include "simulation/clock.h"
 #include "simulation/stepper.h"
 
 namespace plab::simulation
@@ -21,7 +22,9 @@ void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<co
     call.context = &context, call.rows = Rows(&detector.row, 1);
     call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
     call.contacts = &sink;
+    const std::uint64_t before = now_ns();
     (void)detector.command->run(call, table.rows());
+    cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
 }
 
 void Stepper::detect_all(std::vector<FoundContact>& out)
@@ -102,7 +105,7 @@ double Stepper::kinetic_energy(const std::vector<FoundContact>& contacts) const
 
 void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book)
 {
-    // Each detector's own response answers for its contacts. Several of them take turns until nobody changes anything.
+    // Each detector's own response answers for its contacts. Several detectors are answered in id order.
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         if (!detectors_[d].responds) continue;
@@ -122,8 +125,10 @@ void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, doub
         call.context = &context, call.rows = Rows(&c.row, 1);
         call.bodies = &world_.host().bodies, call.impact = &impact;
         const double before = book.work ? kinetic_energy(contacts) : 0.0;
+        const std::uint64_t started = now_ns();
         for (const CommandInfo& command : table.type().info.commands)
             if (command.phase == Phase::Respond && command.run) (void)command.run(call, table.rows());
+        cost_.by_table[c.table][static_cast<std::size_t>(Phase::Respond)] += now_ns() - started;
         if (book.work) (*book.work)[response] += book.sign * (kinetic_energy(contacts) - before);
         report_.worst_residual = std::max(report_.worst_residual, impact.residual);
         std::size_t next = 0;

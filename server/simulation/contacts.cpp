@@ -71,6 +71,7 @@ void ContactCache::save(const world::World& world, ByteWriter& out) const
         write(out, world.rank(p.b));
         write(out, p.resting);
         write(out, p.overlapping);
+        write(out, p.normal);
         for (std::uint32_t i = 0; i < p.count; ++i)
         {
             write(out, p.contacts[i].feature);

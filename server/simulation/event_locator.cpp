@@ -1,8 +1,6 @@
 #include "simulation/event_locator.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <cmath>
 
 namespace plab::simulation
@@ -135,7 +133,6 @@ void EventLocator::bracket(Candidate& candidate, Trial& trial)
 
 void EventLocator::locate(Candidate& candidate)
 {
-    if (getenv("DBG")) std::fprintf(stderr, "locate tick %ld a %u b %u contacts %zu begin %.17g step %.17g depth %.3g\n", (long)s_->frame_.tick, candidate.a.index, candidate.b.index, candidate.contacts.size(), begin_of_scope(), s_->frame_.step, candidate.contacts[0].contact.depth);
     candidate.located = true;
     candidate.time = s_->frame_.step;
     if (candidate.at_end) return;
@@ -149,6 +146,7 @@ void EventLocator::locate(Candidate& candidate)
     {
         bracket(candidate, trial);
         candidate.time = trial.begin;
+        candidate.bracket = trial.end - trial.begin;
     }
     else
     {
@@ -158,11 +156,27 @@ void EventLocator::locate(Candidate& candidate)
     for (const std::uint32_t g : scope_) s_->restore_end(g);
 }
 
-void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts)
+void EventLocator::look_from_the_clear_side(Candidate& candidate)
+{
+    // The contacts were seen a rounding error later: see them where the answer will act, pushed together by no more
+    // than the way from there, so that arms and normals fit the state.
+    double closing = 0;
+    for (const FoundContact& f : candidate.contacts) closing = std::max(closing, std::fabs(s_->normal_velocity(f.contact)));
+    const Bodies& bodies = s_->world_.host().bodies;
+    const double size = length(bodies.position[candidate.a.index]) + length(bodies.position[candidate.b.index]);
+    const double margin = 4 * closing * candidate.bracket + 1e-15 * (1 + size);
+    const StandingPair pair{candidate.a, candidate.b, candidate.contacts.front().contact.normal * -margin};
+    seen_.clear();
+    s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
+    if (seen_.empty()) return;
+    sort_contacts(seen_, s_->world_);
+    candidate.contacts = seen_;
+}
+
+void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double at)
 {
     // Normal acceleration of the contact points under the forces alone; it tells bouncing from coming to rest.
     GroupSystem& system = s_->system_for(scope_, {});
-    const double at = contacts.empty() ? 0.0 : begin_of_scope();
     system.begin(at, s_->frame_.step, {}, nullptr);
     system.evaluate_here();
     const Bodies& bodies = s_->world_.host().bodies;
@@ -213,8 +227,8 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
 void EventLocator::answer(Candidate& candidate)
 {
     const double time = s_->frame_.start_time + candidate.time;
+    if (!candidate.stuck && !candidate.at_end && s_->detectors_[candidate.detector].responds) look_from_the_clear_side(candidate);
     impact_ = candidate.contacts;
-    if (getenv("DBG")) std::fprintf(stderr, "answer time %.17g stuck %d n %zu vn %.3g depth %.3g\n", candidate.time, candidate.stuck, impact_.size(), s_->normal_velocity(impact_[0].contact), impact_[0].contact.depth);
     if (s_->detectors_[candidate.detector].responds)
     {
         const std::size_t own = impact_.size();
@@ -223,7 +237,7 @@ void EventLocator::answer(Candidate& candidate)
         for (FoundContact& f : seen_)
             if (!(f.contact.a == candidate.a && f.contact.b == candidate.b)) f.contact.impulse = {}, impact_.push_back(f);
         for (std::size_t i = 0; i < own; ++i) s_->fill_material(impact_[i]), impact_[i].contact.impulse = {};
-        rate_of_approach(impact_);
+        rate_of_approach(impact_, candidate.time);
         s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
         // Overlapping from the start and not parted by the response: it stands, whatever the response says.
         for (std::size_t i = 0; i < own; ++i)

@@ -27,6 +27,7 @@ private:
         bool located = false;
         bool stuck = false;     ///< overlaps where the piece begins: there is nothing to bracket
         bool at_end = false;    ///< no event location: answered where the step ends
+        double bracket = 0;     ///< s between the last clear and the first overlapping trial
         double time = 0;        ///< s since the start of the step, on the clear side
         std::vector<FoundContact> contacts;  ///< as seen on the overlapping side
     };
@@ -44,7 +45,8 @@ private:
     /// Rewinds the scope and advances it from where its pieces began to `time`.
     void advance_scope(double time, WorkBook book, bool trial);
     void answer(Candidate& candidate);
-    void rate_of_approach(std::vector<FoundContact>& contacts);
+    void look_from_the_clear_side(Candidate& candidate);
+    void rate_of_approach(std::vector<FoundContact>& contacts, double at);
     void record(Candidate& candidate, const std::vector<FoundContact>& contacts, double time);
     void announce_rest(const FoundContact& f, PairState& pair, double time);
     void look_again(std::vector<FoundContact>& found);

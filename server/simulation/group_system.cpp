@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plab/rotation.h"
+#include "simulation/clock.h"
 
 namespace plab::simulation
 {
@@ -27,8 +28,9 @@ void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_
 
     groups_.assign(groups.begin(), groups.end());
     groups_.insert(groups_.end(), shadows.begin(), shadows.end());
-    filter_rows(Phase::Force);
-    filter_rows(Phase::Couple);
+    filter_forces();
+    shaft_system_.configure(world, *frame.schedule, *frame.groups, groups_, *frame.graph);
+    force_ns_.assign(world.tables().size(), 0);
     const std::size_t n = 6 * bodies_.size() + roots_.size();
     coordinates_.resize(n), speeds_.resize(n), coordinate_rates_.resize(n), speed_rates_.resize(n);
     start_position_.resize(bodies_.size()), start_orientation_.resize(bodies_.size()), start_angle_.resize(roots_.size());
@@ -56,32 +58,28 @@ void GroupSystem::collect_members(std::span<const std::uint32_t> groups, bool ac
     }
 }
 
-void GroupSystem::filter_rows(Phase phase)
+void GroupSystem::filter_forces()
 {
-    const auto which = phase == Phase::Force ? 0u : 1u;
     merged_.clear();
     for (const std::uint32_t g : groups_)
     {
-        const Group& group = frame_.groups->all[g];
-        const auto& rows = phase == Phase::Force ? group.forces : group.couplings;
+        const auto& rows = frame_.groups->all[g].forces;
         merged_.insert(merged_.end(), rows.begin(), rows.end());
     }
     std::sort(merged_.begin(), merged_.end());
     merged_.erase(std::unique(merged_.begin(), merged_.end()), merged_.end());
 
-    const auto& blocks = frame_.schedule->of(phase);
-    auto& selected = selected_[which];
-    if (selected.size() < blocks.size()) selected.resize(blocks.size());
-    std::size_t count = 0;
+    const auto& blocks = frame_.schedule->of(Phase::Force);
+    if (selected_.size() < blocks.size()) selected_.resize(blocks.size());
+    selected_count_ = 0;
     for (std::size_t i = 0; i < merged_.size();)
     {
-        Selected& s = selected[count++];
+        Selected& s = selected_[selected_count_++];
         s.block = &blocks[merged_[i].block];
         s.rows.clear();
         for (const std::uint32_t block = merged_[i].block; i < merged_.size() && merged_[i].block == block; ++i)
             s.rows.push_back(merged_[i].row);
     }
-    selected_count_[which] = count;
 }
 
 void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events)
@@ -168,14 +166,16 @@ void GroupSystem::run_forces(double weight)
     call.context = &context_;
     call.bodies = &host.bodies, call.shafts = &host.shafts, call.shapes = &host.shapes, call.materials = &host.materials;
     call.wrenches = &wrenches_;
-    for (std::size_t k = 0; k < selected_count_[0]; ++k)
+    for (std::size_t k = 0; k < selected_count_; ++k)
     {
-        const Selected& s = selected_[0][k];
+        const Selected& s = selected_[k];
+        const std::uint64_t before = booked ? now_ns() : 0;
         const world::Table& table = *frame_.world->tables()[s.block->table];
         context_.component_of_row = table.component_of_row(), context_.facet_of_row = table.host_of_row();
         call.rows = s.rows;
         (void)s.block->command->run(call, table.rows());  // forces have no failures but events
         if (!booked) continue;
+        force_ns_[s.block->table] += now_ns() - before;
         const double share = book_.sign * weight * context_.dt;
         for (const Row row : s.rows)
         {
@@ -223,31 +223,14 @@ void GroupSystem::rates_of_shafts(double weight)
 {
     if (roots_.empty()) return;
     world::HostTables& host = frame_.world->host();
-    coupling_.begin_accelerations(*frame_.graph, host.shafts, wrenches_.shaft_torque, shafts_, prescribed_shafts_);
-    if (selected_count_[1] > 0)
-    {
-        PhaseCall call;
-        call.context = &context_;
-        call.shaft_motion = &coupling_;
-        call.bodies = &host.bodies, call.shafts = &host.shafts;
-        coupling_.solve([&] {
-            for (std::size_t k = 0; k < selected_count_[1]; ++k)
-            {
-                const Selected& s = selected_[1][k];
-                const world::Table& table = *frame_.world->tables()[s.block->table];
-                context_.component_of_row = table.component_of_row(), context_.facet_of_row = table.host_of_row();
-                call.rows = s.rows;
-                (void)s.block->command->run(call, table.rows());
-            }
-        });
-    }
+    shaft_system_.solve_accelerations(context_, wrenches_.shaft_torque);
     // Shadows' couplings were booked with their own group's advance.
-    if (book_.work && weight != 0 && !has_shadows_) coupling_.account(*book_.work, book_.sign * weight * context_.dt);
+    if (book_.work && weight != 0 && !has_shadows_) shaft_system_.account(*book_.work, book_.sign * weight * context_.dt);
     const std::size_t base = 6 * bodies_.size();
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {
         coordinate_rates_[base + i] = host.shafts.speed[roots_[i]];
-        speed_rates_[base + i] = coupling_.rate({Facet::Shaft, roots_[i]});
+        speed_rates_[base + i] = shaft_system_.rate(roots_[i]);
     }
 }
 
@@ -273,6 +256,15 @@ void GroupSystem::evaluate_kinematics()
     rates_of_bodies();
     const std::size_t base = 6 * bodies_.size();
     for (std::size_t i = 0; i < roots_.size(); ++i) coordinate_rates_[base + i] = speeds_[base + i];
+}
+
+void GroupSystem::collect_cost(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table)
+{
+    for (std::size_t t = 0; t < force_ns_.size(); ++t)
+    {
+        by_table[t][static_cast<std::size_t>(Phase::Force)] += force_ns_[t];
+        force_ns_[t] = 0;
+    }
 }
 
 void GroupSystem::move_shafts(double h, Shafts& shafts)

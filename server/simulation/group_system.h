@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "simulation/groups.h"
-#include "simulation/shaft_coupling.h"
+#include "simulation/shaft_system.h"
 
 namespace plab::simulation
 {
@@ -66,7 +66,10 @@ public:
     void kick(std::size_t member, double h);
     /// The first member whose state is not finite, after finish() said so.
     Ref not_finite() const { return not_finite_; }
-    const ShaftCoupling& coupling() const { return coupling_; }
+    /// Torques of couplings, from the last evaluation.
+    void add_reactions(ShaftTorques& torques) const { shaft_system_.add_reactions(torques); }
+    /// Adds the time that forces took since the last call, ns by table.
+    void collect_cost(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table);
 
     std::span<double> coordinates() override { return coordinates_; }
     std::span<double> speeds() override { return speeds_; }
@@ -80,7 +83,7 @@ private:
     static Vec3 get(const std::vector<double>& v, std::size_t i) { return {v[i], v[i + 1], v[i + 2]}; }
     static void put(std::vector<double>& v, std::size_t i, const Vec3& a) { v[i] = a.x, v[i + 1] = a.y, v[i + 2] = a.z; }
     void collect_members(std::span<const std::uint32_t> groups, bool accounted);
-    void filter_rows(Phase phase);
+    void filter_forces();
     void scatter(double t);
     void scatter_prescribed(double since_step_start);
     void clear_wrenches();
@@ -98,8 +101,8 @@ private:
     StepFrame frame_;
     std::vector<std::uint32_t> bodies_, shafts_, prescribed_bodies_, prescribed_shafts_;
     std::vector<std::uint32_t> roots_;  ///< shafts that carry coordinates
-    std::array<std::vector<Selected>, 2> selected_;  ///< forces, couplings
-    std::array<std::size_t, 2> selected_count_{};
+    std::vector<Selected> selected_;  ///< forces; the first selected_count_ are valid
+    std::size_t selected_count_ = 0;
     std::vector<BlockRow> merged_;
     std::vector<std::uint32_t> groups_;
     std::vector<std::uint8_t> active_bodies_, active_shafts_, accounted_bodies_, accounted_shafts_;
@@ -110,7 +113,8 @@ private:
     WorkBook book_;
     Wrenches wrenches_;
     std::vector<double> power_;
-    ShaftCoupling coupling_;
+    ShaftSystem shaft_system_;
+    std::vector<std::uint64_t> force_ns_;  ///< by table
 
     std::vector<double> coordinates_, speeds_, coordinate_rates_, speed_rates_;
     std::array<std::vector<double>, 32> workspace_;

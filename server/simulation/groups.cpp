@@ -178,6 +178,9 @@ private:
             if (n == kNoIndex) n = groups_.clusters++;
             groups_.all[g].cluster = n;
         }
+        groups_.cluster_has_couplings.assign(groups_.clusters, 0);
+        for (const Group& group : groups_.all)
+            if (!group.couplings.empty()) groups_.cluster_has_couplings[group.cluster] = 1;
     }
 
     std::uint32_t solver_of(Ref ref) const

@@ -38,6 +38,7 @@ struct Groups
     std::vector<Group> all;
     std::vector<std::uint32_t> group_of_body, group_of_shaft;  ///< kNoIndex: static
     std::uint32_t clusters = 0;
+    std::vector<std::uint8_t> cluster_has_couplings;  ///< by cluster: sweeps are needed
 
     std::uint32_t of(Ref ref) const
     {

@@ -39,6 +39,8 @@ public:
     Reply carry_out_now(const Request& request) { return carry_out(request); }
     /// Requests that are due take effect; then, unless paused, one step. False if paused.
     bool step();
+    /// Requests that wait for their step.
+    std::size_t pending_requests() const { return requests_.size(); }
     /// Answers since the last call, in order.
     std::vector<Reply> take_replies();
 

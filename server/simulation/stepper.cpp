@@ -1,22 +1,12 @@
 #include "simulation/stepper.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "simulation/clock.h"
 #include "simulation/step_tree.h"
 
 namespace plab::simulation
 {
-namespace
-{
-
-std::uint64_t now_ns()
-{
-    return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
-}
-
-}  // namespace
-
 template <class Body>
 void Stepper::timed(const Block& block, Body body)
 {
@@ -39,6 +29,9 @@ void Stepper::step(Tick tick, double start_time, double dt)
     frame_ = {&world_, &schedule_, &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed};
     for (const StepNode& node : kStepTree)
         if ((this->*node.needed)()) (this->*node.run)();
+    for (const auto& system : batch_systems_) system->collect_cost(cost_.by_table);
+    for (Cached& c : cached_systems_)
+        if (c.system) c.system->collect_cost(cost_.by_table);
     ++cost_.steps;
     cost_.total += now_ns() - before;
 }
@@ -75,31 +68,9 @@ void Stepper::couple_speeds()
     Shafts& shafts = world_.host().shafts;
     if (!graph_.consistent(shafts)) graph_.engage(shafts, &work_);
     if (schedule_.of(Phase::Couple).empty()) return;
-    std::vector<std::uint32_t>& members = island_;
-    std::vector<std::uint32_t>& prescribed = shadows_;
-    members.clear(), prescribed.clear();
-    for (const std::uint32_t i : world_.in_id_order())
-    {
-        const world::Component& c = world_.component(i);
-        if (c.facet == Facet::Shaft) (shafts.dynamic(c.host_index) ? members : prescribed).push_back(c.host_index);
-    }
-    ShaftCoupling& coupling = speed_coupling_;
-    coupling.begin_speeds(graph_, shafts, members, prescribed);
     StepContext context;
     context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
-    PhaseCall call;
-    call.context = &context, call.shaft_motion = &coupling;
-    const CouplingReport done = coupling.solve([&] {
-        for (const Block& block : schedule_.of(Phase::Couple))
-        {
-            world::Table& table = *world_.tables()[block.table];
-            context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-            call.rows = block.rows;
-            (void)block.command->run(call, table.rows());
-        }
-    });
-    coupling.store_speeds(shafts);
-    coupling.account(work_, 1.0);
+    const CouplingReport done = speed_system_.solve_speeds(context, shafts, work_);
     report_.coupling_residual = std::max(report_.coupling_residual, done.converged ? 0.0 : done.residual);
     if (!done.conflict) return;
     Event e;
@@ -113,8 +84,8 @@ void Stepper::couple_speeds()
 void Stepper::finish()
 {
     reactions_.clear();
-    if (!groups_.all.empty() && !world_.host().shafts.motion.empty())
-        for (const auto& system : batch_systems_) reactions_.add(system->coupling());
+    if (batches_ready_ && !world_.host().shafts.motion.empty())
+        for (std::size_t b = 0; b < batches_.size(); ++b) batch_systems_[b]->add_reactions(reactions_);
     StepContext context;
     context.time = frame_.start_time + frame_.step, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
     context.events = this;

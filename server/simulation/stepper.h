@@ -161,7 +161,7 @@ private:
 
     // Working lists, kept warm.
     std::vector<std::uint32_t> smooth_, in_contact_, shadows_, island_, island_all_, solvers_, same_solver_;
-    ShaftCoupling speed_coupling_;
+    ShaftSystem speed_system_;
     std::vector<std::uint8_t> group_flags_;
     std::vector<std::uint32_t> contact_groups_;
     std::vector<std::uint8_t> done_;

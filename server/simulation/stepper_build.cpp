@@ -90,6 +90,9 @@ Result<void> Stepper::rebuild()
     groups_ = build_groups(world_, schedule_);
     detectors_ = find_detectors(world_, schedule_);
     cache_.refresh(world_, detectors_);
+    island_all_.resize(groups_.all.size());
+    for (std::uint32_t g = 0; g < island_all_.size(); ++g) island_all_[g] = g;
+    speed_system_.configure(world_, schedule_, groups_, island_all_, graph_);
     rewinds_possible_ = std::any_of(detectors_.begin(), detectors_.end(), [](const Detector& d) { return d.locates; });
     work_.resize(world_.components().size(), 0.0);
     cost_.by_table.resize(world_.tables().size());

@@ -1,7 +1,6 @@
 #include "simulation/transaction.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "model/compile.h"
 #include "model/values.h"
@@ -258,6 +257,7 @@ Result<void> Transaction::apply_one(const SetOperation& op)
     if (!value) return Error{{}, element, op.name + ": " + value.error().reason};
     const Bodies before = world.host().bodies;
     if (auto done = world.set(*component, field->name, *value); !done) return Error{{}, element, done.error().reason};
+    world.component(*component).quarantined = false;  // a mended component gets another chance; the trial step judges it
     if (field->kind == FieldKind::State) return {};
     prepared_.insert(*component);
     if (auto done = world.prepare(*component); !done) return done;

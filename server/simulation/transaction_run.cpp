@@ -1,14 +1,11 @@
 // A transaction's course: backup, operations, trial steps, commit or rollback.
-#include <chrono>
-
+#include "simulation/clock.h"
 #include "simulation/transaction.h"
 
 namespace plab::simulation
 {
 namespace
 {
-
-std::uint64_t now_ns() { return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count()); }
 
 /// Requests to the clock touch no component.
 bool concerns_the_scene(const Operation& op)

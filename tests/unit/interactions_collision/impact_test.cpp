@@ -220,17 +220,3 @@ TEST_CASE("a box that lands flat bounces flat, at Newton's speed and with less e
     CHECK(total_energy(b) < before);
     CHECK(std::fabs(b.velocity[1].y) < 1e-12);
 }
-
-TEST_CASE("a sensor sees and does not push")
-{
-    Bodies b;
-    add_sphere(b, 1, 1, {-1, 0, 0}, {1, 0, 0});
-    add_sphere(b, 1, 1, {1, 0, 0});
-    std::vector<Contact> c{touch(0, 1, {}, {1, 0, 0}, 0, 1)};
-    Impact impact;
-    impact.contacts = c;
-    response::respond_none({}, 0, {}, b, impact);
-    CHECK(b.velocity[0].x == 1);
-    CHECK(c[0].resting);
-    CHECK(c[0].impulse == Vec3{});
-}

@@ -1,0 +1,13 @@
+/// The clock that costs are measured with.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace plab::simulation
+{
+
+/// Monotonic time, ns. A call costs about 20 ns: nothing finer than a block of rows is measured.
+inline std::uint64_t now_ns() { return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count()); }
+
+}  // namespace plab::simulation
