@@ -138,6 +138,7 @@ TEST_CASE("C5: a ball that loses speed in each bounce comes to rest at the sum o
     }
 }
 
+// Along z, where the wall's normal is exact: spheres off one line would part exponentially, as they should.
 TEST_CASE("C6: Galperin's balls count the digits of pi")
 {
     int k = 0;
@@ -146,13 +147,13 @@ TEST_CASE("C6: Galperin's balls count the digits of pi")
         CAPTURE(k);
         const double mass = std::pow(100.0, k);
         char heavy[160];
-        std::snprintf(heavy, sizeof heavy, "mass=\"%.17g\" position=\"3 0 0\" linear_velocity=\"-0.1 0 0\"", mass);
-        Scene s("<component id=\"wall.shape\" type=\"Shape/Plane\" orientation=\"axis 0 1 0 90 deg\"/><component id=\"wall\" type=\"State/Static\" shape=\"wall.shape\"/>" +
-                    ball("light", "mass=\"1\" position=\"1.5 0 0\"", 0.5) + ball("heavy", heavy, 0.5) + contact("light heavy wall", "LocalBisection", "1"),
+        std::snprintf(heavy, sizeof heavy, "mass=\"%.17g\" position=\"0 0 3\" linear_velocity=\"0 0 -0.1\"", mass);
+        Scene s("<component id=\"wall.shape\" type=\"Shape/Plane\"/><component id=\"wall\" type=\"State/Static\" shape=\"wall.shape\"/>" +
+                    ball("light", "mass=\"1\" position=\"0 0 1.5\"", 0.5) + ball("heavy", heavy, 0.5) + contact("light heavy wall", "LocalBisection", "1"),
                 k < 3 ? "dt=\"1/60\"" : "dt=\"1/240\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.keep_events = true;
-        s.run(60);
+        s.run(600);  // the last ones nearly move along with one another
         CHECK(s.count("contact.impact") == digits);
         ++k;
     }

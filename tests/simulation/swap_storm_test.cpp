@@ -17,7 +17,7 @@ const char* const kStorm = R"(
   <repeat id="balls" count="3" step="0.5 0 0.2"><component id="ball" type="State/RigidBody" mass="1" shape="s" position="0 0 0.6"/></repeat>
   <component id="gravity" type="Field/Gravity" between="balls"/>
   <component id="drag" type="Field/Drag" between="balls" linear="0.01"/>
-  <component id="wind" type="Script/Lua" driven="balls.0"><param name="state"><entry name="n">0</entry></param>
+  <component id="wind" type="Script/Lua" driven="ball.0"><param name="state"><entry name="n">0</entry></param>
     <param name="code">function drive(step) state.n = state.n + 1 end function force(t, state) driven:add_force(vec(0.1, 0, 0)) end</param></component>
   <component id="contact" type="CDetection/ODE" between="balls" against="ground" resolution="Resolution/LocalBisection" response="Response/Impulse"
              response.restitution="0.8"/>)";
@@ -59,7 +59,7 @@ TEST_CASE("five hundred random swaps")
     }
     CHECK(refused > 0);
     CHECK(s.real("wind", "state.n") == static_cast<double>(s.simulation().tick()));
-    for (const char* ball : {"balls.0", "balls.1", "balls.2"})
+    for (const char* ball : {"ball.0", "ball.1", "ball.2"})
     {
         const Vec3 p = s.vec(ball, "position");
         CHECK(is_finite(p));
