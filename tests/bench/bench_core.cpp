@@ -1,0 +1,115 @@
+// Prints the core's figures: cost of an empty step, steps per second of the paper's scene, pause of a swap, time from
+// start to the first step. CSV on standard output: name, unit, value.
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "blueprint/reader.h"
+#include "model/compile.h"
+#include "plugins/library.h"
+#include "simulation/clock.h"
+#include "simulation/simulation.h"
+
+using namespace plab;
+
+namespace
+{
+
+struct Loaded
+{
+    std::unique_ptr<plugins::PluginLibrary> library;
+    std::unique_ptr<simulation::Simulation> simulation;
+};
+
+Loaded load(Result<model::Blueprint> blueprint)
+{
+    Loaded out;
+    out.library = std::make_unique<plugins::PluginLibrary>(std::vector<std::string>{PLAB_BINARY_DIR "/lib/plab"});
+    auto scene = blueprint ? model::compile(*blueprint, *out.library) : Result<model::SceneSpec>(blueprint.errors());
+    out.simulation = std::make_unique<simulation::Simulation>(*out.library);
+    auto done = scene ? out.simulation->load(*scene) : Result<void>(scene.errors());
+    if (!done)
+    {
+        std::fprintf(stderr, "%s\n", done.error().text().c_str());
+        std::exit(1);
+    }
+    return out;
+}
+
+Loaded load_paper() { return load(blueprint::read_blueprint_file(PLAB_SOURCE_DIR "/scenes/fan_and_balloons.xml")); }
+
+double median(std::vector<double> v)
+{
+    std::sort(v.begin(), v.end());
+    return v[v.size() / 2];
+}
+
+void print(const char* name, const char* unit, double value) { std::printf("%s,%s,%.6g\n", name, unit, value); }
+
+void empty_step()
+{
+    Loaded l = load(blueprint::read_blueprint("<plab version=\"1\"/>", "empty.xml"));
+    std::vector<double> rounds;
+    for (int r = 0; r < 21; ++r)
+    {
+        const std::uint64_t before = simulation::now_ns();
+        for (int i = 0; i < 100000; ++i) l.simulation->step();
+        rounds.push_back(static_cast<double>(simulation::now_ns() - before) / 1e5);
+    }
+    print("empty_step_median", "ns", median(rounds));
+}
+
+void paper_scene()
+{
+    std::vector<double> rounds;
+    for (int r = 0; r < 11; ++r)
+    {
+        Loaded l = load_paper();
+        const std::uint64_t before = simulation::now_ns();
+        for (int i = 0; i < 2400; ++i) l.simulation->step();
+        rounds.push_back(2400 / (static_cast<double>(simulation::now_ns() - before) * 1e-9));
+    }
+    print("paper_scene_median", "steps/s", median(rounds));
+}
+
+void swaps()
+{
+    Loaded l = load_paper();
+    std::vector<double> pauses;
+    for (int i = 0; i < 1000; ++i)
+    {
+        simulation::Request request;
+        request.operations = {simulation::SwapOperation{"contact.response", i % 2 == 0 ? "Response/None" : "Response/Impulse", {}}};
+        const simulation::Reply reply = l.simulation->carry_out_now(request);
+        if (!reply.done) std::exit(1);
+        pauses.push_back(reply.pause_ns * 1e-3);
+        l.simulation->step();
+    }
+    print("swap_pause_median", "us", median(pauses));
+    print("swap_pause_max", "us", *std::max_element(pauses.begin(), pauses.end()));
+}
+
+void start()
+{
+    std::vector<double> rounds;
+    for (int r = 0; r < 11; ++r)
+    {
+        const std::uint64_t before = simulation::now_ns();
+        Loaded l = load_paper();
+        l.simulation->step();
+        rounds.push_back(static_cast<double>(simulation::now_ns() - before) * 1e-6);
+    }
+    print("load_to_first_step_median", "ms", median(rounds));
+}
+
+}  // namespace
+
+int main()
+{
+    empty_step();
+    paper_scene();
+    swaps();
+    start();
+    return 0;
+}
