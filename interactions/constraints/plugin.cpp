@@ -19,9 +19,7 @@ PLAB_PLUGIN("constraints", registrar)
     using namespace plab::constraints;
     using plab::Phase;
 
-    registrar
-        .component<AssignRows>("Constraint/AngularVelocity/Assign",
-                               "the driven shaft copies the driver's speed, which feels nothing")
+    registrar.component<AssignRows>("Constraint/AngularVelocity/Assign", "the driven shaft copies the driver's speed, which feels nothing")
         .command<&prepare<AssignRows>>(Phase::Prepare, "Constraint/Prepare", kPrepareDoc)
         .command<&assign_driven>(Phase::Couple, kCouple, "gives driven the speed of driver times the factor")
         .command<&finish<AssignRows>>(Phase::Finish, "Constraint/Finish", kFinishDoc)
@@ -29,12 +27,9 @@ PLAB_PLUGIN("constraints", registrar)
         .limits("momentum and energy of the driven shaft are made up; no circles")
         .source("the paper's AngularVelocity constraint");
 
-    registrar
-        .component<ImpulseRows>("Constraint/AngularVelocity/Impulse",
-                                "the pair shares torques and impulses as its inertias demand")
+    registrar.component<ImpulseRows>("Constraint/AngularVelocity/Impulse", "the pair shares torques and impulses as its inertias demand")
         .command<&prepare<ImpulseRows>>(Phase::Prepare, "Constraint/Prepare", kPrepareDoc)
-        .command<&exchange_impulses>(Phase::Couple, kCouple,
-                                     "corrects the pair's speeds by an impulse weighted by inertia")
+        .command<&exchange_impulses>(Phase::Couple, kCouple, "corrects the pair's speeds by an impulse weighted by inertia")
         .command<&finish<ImpulseRows>>(Phase::Finish, "Constraint/Finish", kFinishDoc)
         .cost("2 impulses per row and sweep; 2 sweeps for a pair, of the order of n^2 for a line of n")
         .limits(
@@ -42,9 +37,7 @@ PLAB_PLUGIN("constraints", registrar)
             "drifts by rounding")
         .source("Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, 1996");
 
-    registrar
-        .component<GraphRows>("Constraint/AngularVelocity/Graph",
-                              "keeps the ratio exactly, solved with the whole graph of couplings")
+    registrar.component<GraphRows>("Constraint/AngularVelocity/Graph", "keeps the ratio exactly, solved with the whole graph of couplings")
         .command<&prepare<GraphRows>>(Phase::Prepare, "Constraint/Prepare", kPrepareDoc)
         .command<&connect>(Phase::Connect, "Constraint/Connect", "joins the two shafts in the constraint graph")
         .host_command(Phase::Couple, kCouple, "the host moves joined shafts as one degree of freedom")

@@ -17,10 +17,8 @@ constexpr std::size_t kFew = 32;
 
 SpaceHandle make_space(const std::string& kind)
 {
-    if (kind == "simple")
-        return SpaceHandle(dSimpleSpaceCreate(nullptr));
-    if (kind == "sweep_and_prune")
-        return SpaceHandle(dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ));
+    if (kind == "simple") return SpaceHandle(dSimpleSpaceCreate(nullptr));
+    if (kind == "sweep_and_prune") return SpaceHandle(dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ));
     return SpaceHandle(dHashSpaceCreate(nullptr));
 }
 
@@ -44,10 +42,7 @@ void set_groups(dxGeom* geom, Membership m)
     dGeomSetCollideBits(geom, m.dynamic ? kMoved | kHeld : kMoved);
 }
 
-std::uint32_t part_of(dxGeom* geom)
-{
-    return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom)));
-}
+std::uint32_t part_of(dxGeom* geom) { return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom))); }
 
 /// Half extents along the axes of W of a box with half extents h, turned by q.
 Vec3 turned_half(const Quat& q, const Vec3& h)
@@ -58,10 +53,7 @@ Vec3 turned_half(const Quat& q, const Vec3& h)
     return out;
 }
 
-double largest(const Vec3& v)
-{
-    return std::max({v.x, v.y, v.z});
-}
+double largest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
 }  // namespace
 
 void BroadPhase::reset(const std::string& kind, std::size_t parts)
@@ -82,8 +74,7 @@ void BroadPhase::add(const Collider& collider, std::uint32_t member, Membership 
     part.member = member;
     part.unbounded = collider.kind() == ColliderKind::Plane;
     part.wide = {{1, 1, 1}, {-1, -1, -1}};  // contains nothing yet
-    if (collider.kind() == ColliderKind::None)
-        return;
+    if (collider.kind() == ColliderKind::None) return;
     part.geom.reset(part.unbounded ? dCreatePlane(space_.get(), 0, 0, 1, 0) : dCreateBox(space_.get(), 1, 1, 1));
     dGeomSetData(part.geom.get(), reinterpret_cast<void*>(static_cast<std::uintptr_t>(index)));
     set_groups(part.geom.get(), membership);
@@ -103,8 +94,7 @@ void BroadPhase::widen(Part& part)
 void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose& X_WS)
 {
     Part& part = parts_[index];
-    if (!part.geom)
-        return;
+    if (!part.geom) return;
     if (part.unbounded)
     {
         const Vec3 n = part.normal = rotate(X_WS.q, {0, 0, 1});
@@ -118,10 +108,8 @@ void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose&
     const Vec3 center = X_WS * collider.bound_center();
     part.tight = {center - half, center + half};
     bool inside = true;
-    for (int k = 0; k < 3; ++k)
-        inside = inside && part.wide.lower[k] <= part.tight.lower[k] && part.tight.upper[k] <= part.wide.upper[k];
-    if (!inside)
-        widen(part);
+    for (int k = 0; k < 3; ++k) inside = inside && part.wide.lower[k] <= part.tight.lower[k] && part.tight.upper[k] <= part.wide.upper[k];
+    if (!inside) widen(part);
 }
 
 void BroadPhase::note(void* self, dxGeom* a, dxGeom* b)
@@ -139,11 +127,9 @@ bool BroadPhase::reaches(const Part& half_space, const Box& box)
 
 bool BroadPhase::overlap(const Part& a, const Part& b)
 {
-    if (a.unbounded || b.unbounded)
-        return true;
+    if (a.unbounded || b.unbounded) return true;
     for (int k = 0; k < 3; ++k)
-        if (a.tight.lower[k] > b.tight.upper[k] || b.tight.lower[k] > a.tight.upper[k])
-            return false;
+        if (a.tight.lower[k] > b.tight.upper[k] || b.tight.lower[k] > a.tight.upper[k]) return false;
     return true;
 }
 
@@ -153,38 +139,32 @@ void BroadPhase::fit_cells()
     double small = HUGE_VAL, large = 0;
     for (const Part& p : parts_)
     {
-        if (!p.geom || p.unbounded)
-            continue;
+        if (!p.geom || p.unbounded) continue;
         const double extent = largest(p.wide.upper - p.wide.lower);
         small = std::min(small, extent), large = std::max(large, extent);
     }
-    if (!(large > 0))
-        return;
+    if (!(large > 0)) return;
     const auto level = [](double extent) { return std::clamp(std::ilogb(extent) + 1, -30, 30); };
     dHashSpaceSetLevels(space_.get(), level(small), level(large));
 }
 
 void BroadPhase::search()
 {
-    if (hashed_)
-        fit_cells();
+    if (hashed_) fit_cells();
     near_.clear();
     dSpaceCollide(space_.get(), this, &note);
     // The order in which ODE finds pairs depends on who moved last; it ends here.
-    const auto key = [&](const Pair& p)
-    { return std::tuple(parts_[p.first].member, parts_[p.second].member, p.first, p.second); };
+    const auto key = [&](const Pair& p) { return std::tuple(parts_[p.first].member, parts_[p.second].member, p.first, p.second); };
     std::sort(near_.begin(), near_.end(), [&](const Pair& x, const Pair& y) { return key(x) < key(y); });
     stale_ = false;
 }
 
 const std::vector<BroadPhase::Pair>& BroadPhase::find_pairs()
 {
-    if (stale_)
-        search();
+    if (stale_) search();
     pairs_.clear();
     for (const Pair& p : near_)
-        if (overlap(parts_[p.first], parts_[p.second]))
-            pairs_.push_back(p);
+        if (overlap(parts_[p.first], parts_[p.second])) pairs_.push_back(p);
     return pairs_;
 }
 

@@ -23,8 +23,7 @@ Collider::Collider(const Geometry& geometry) : source_(geometry)
             kind_ = ColliderKind::Plane;
             break;
         case GeometryKind::Mesh:
-            if (!geometry.hull_collides)
-                break;
+            if (!geometry.hull_collides) break;
             if (auto hull = make_hull(geometry.vertices); hull)
                 kind_ = ColliderKind::Hull, hull_ = hull.take();
             else
@@ -52,26 +51,19 @@ void Collider::make_box()
 
 bool Collider::built_from(const Geometry& g) const
 {
-    if (g.kind != source_.kind || g.pose != source_.pose || g.size != source_.size)
-        return false;
-    if (g.kind != GeometryKind::Mesh)
-        return true;
-    if (g.hull_collides != source_.hull_collides)
-        return false;
+    if (g.kind != source_.kind || g.pose != source_.pose || g.size != source_.size) return false;
+    if (g.kind != GeometryKind::Mesh) return true;
+    if (g.hull_collides != source_.hull_collides) return false;
     return !g.hull_collides || g.vertices == source_.vertices;
 }
 
 Vec3 Collider::bound_half() const
 {
-    if (kind_ == ColliderKind::Sphere)
-        return {size().x, size().x, size().x};
+    if (kind_ == ColliderKind::Sphere) return {size().x, size().x, size().x};
     return kind_ == ColliderKind::Box ? size() : (hull_.upper - hull_.lower) * 0.5;
 }
 
-Vec3 Collider::bound_center() const
-{
-    return kind_ == ColliderKind::Hull ? (hull_.upper + hull_.lower) * 0.5 : Vec3{};
-}
+Vec3 Collider::bound_center() const { return kind_ == ColliderKind::Hull ? (hull_.upper + hull_.lower) * 0.5 : Vec3{}; }
 
 dxGeom* Collider::probe(int side, const Pose& X) const
 {

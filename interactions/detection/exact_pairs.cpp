@@ -34,12 +34,10 @@ Vec3 nearest_on_triangle(const Vec3& p, const std::array<Vec3, 3>& corner, const
     {
         const Vec3& a = corner[i];
         const Vec3& b = corner[(i + 1) % 3];
-        if (dot(cross(normal, b - a), p - a) >= 0)
-            continue;
+        if (dot(cross(normal, b - a), p - a) >= 0) continue;
         inside = false;
         const Vec3 q = nearest_on_segment(p, a, b);
-        if (const double d = length_squared(p - q); d < best.distance_squared)
-            best = {q, d};
+        if (const double d = length_squared(p - q); d < best.distance_squared) best = {q, d};
     }
     return inside ? p - dot(p - corner[0], normal) * normal : best.point;
 }
@@ -81,8 +79,7 @@ void sphere_box(double radius, const Vec3& center, const Vec3& half, const Pose&
     {
         int face = 0;
         for (int k = 1; k < 3; ++k)
-            if (half[k] - std::fabs(c[k]) < half[face] - std::fabs(c[face]))
-                face = k;
+            if (half[k] - std::fabs(c[k]) < half[face] - std::fabs(c[face])) face = k;
         n[face] = c[face] < 0 ? -1.0 : 1.0;
         nearest[face] = n[face] * half[face];
         outside = std::fabs(c[face]) - half[face];
@@ -96,10 +93,8 @@ void sphere_hull(double radius, const Vec3& center, const Hull& hull, const Pose
     std::size_t top = 0;
     double outside = -HUGE_VAL;
     for (std::size_t f = 0; f < hull.faces.size(); ++f)
-        if (const double d = dot(hull.normals[f], c) - hull.offsets[f]; d > outside)
-            outside = d, top = f;
-    if (outside >= radius)
-        return;
+        if (const double d = dot(hull.normals[f], c) - hull.offsets[f]; d > outside) outside = d, top = f;
+    if (outside >= radius) return;
     Vec3 n = hull.normals[top];
     Vec3 nearest = c - n * outside;
     if (outside > 0)
@@ -108,17 +103,13 @@ void sphere_hull(double radius, const Vec3& center, const Hull& hull, const Pose
         double best = HUGE_VAL;
         for (std::size_t f = 0; f < hull.faces.size(); ++f)
         {
-            if (dot(hull.normals[f], c) <= hull.offsets[f])
-                continue;
+            if (dot(hull.normals[f], c) <= hull.offsets[f]) continue;
             const auto& v = hull.faces[f];
-            const Vec3 q = nearest_on_triangle(c, {hull.vertices[v[0]], hull.vertices[v[1]], hull.vertices[v[2]]},
-                                               hull.normals[f]);
-            if (const double d = length_squared(c - q); d < best)
-                best = d, nearest = q;
+            const Vec3 q = nearest_on_triangle(c, {hull.vertices[v[0]], hull.vertices[v[1]], hull.vertices[v[2]]}, hull.normals[f]);
+            if (const double d = length_squared(c - q); d < best) best = d, nearest = q;
         }
         outside = length(c - nearest);
-        if (outside > 0)
-            n = (c - nearest) / outside;
+        if (outside > 0) n = (c - nearest) / outside;
     }
     out.add(sphere_touch(radius, X_hull * nearest, rotate(X_hull.q, n), outside));
 }

@@ -51,8 +51,7 @@ std::pair<Index, double> find_extreme(std::span<const Vec3> points, Measure meas
 {
     std::pair<Index, double> best{0, -1.0};
     for (Index i = 0; i < points.size(); ++i)
-        if (const double m = measure(points[i]); m > best.second)
-            best = {i, m};
+        if (const double m = measure(points[i]); m > best.second) best = {i, m};
     return best;
 }
 
@@ -60,20 +59,16 @@ bool Quickhull::start()
 {
     const Vec3 p0 = points_[0];
     const auto [i1, d1] = find_extreme(points_, [&](const Vec3& p) { return length(p - p0); });
-    if (d1 <= tolerance_)
-        return false;
+    if (d1 <= tolerance_) return false;
     const Vec3 e1 = normalized(points_[i1] - p0);
     const auto [i2, d2] = find_extreme(points_, [&](const Vec3& p) { return length(cross(e1, p - p0)); });
-    if (d2 <= tolerance_)
-        return false;
+    if (d2 <= tolerance_) return false;
     const Vec3 n = normalized(cross(e1, points_[i2] - p0));
     const auto [i3, d3] = find_extreme(points_, [&](const Vec3& p) { return std::fabs(dot(n, p - p0)); });
-    if (d3 <= tolerance_)
-        return false;
+    if (d3 <= tolerance_) return false;
 
     Index a = i1, b = i2;
-    if (dot(n, points_[i3] - p0) > 0)
-        std::swap(a, b);  // the base looks away from the fourth point
+    if (dot(n, points_[i3] - p0) > 0) std::swap(a, b);  // the base looks away from the fourth point
     add_face(0, a, b), add_face(0, b, i3), add_face(b, a, i3), add_face(a, 0, i3);
     for (Index i = 0; i < points_.size(); ++i) assign(i, 0);
     return true;
@@ -86,8 +81,7 @@ void Quickhull::add_face(Index a, Index b, Index c)
     f.normal = normalized(cross(points_[b] - points_[a], points_[c] - points_[a]));
     f.offset = std::max({dot(f.normal, points_[a]), dot(f.normal, points_[b]), dot(f.normal, points_[c])});
     for (int i = 0; i < 3; ++i)
-        owner_[{f.corner[static_cast<std::size_t>(i)], f.corner[static_cast<std::size_t>((i + 1) % 3)]}] =
-            faces_.size();
+        owner_[{f.corner[static_cast<std::size_t>(i)], f.corner[static_cast<std::size_t>((i + 1) % 3)]}] = faces_.size();
     faces_.push_back(std::move(f));
 }
 
@@ -95,8 +89,7 @@ void Quickhull::assign(Index point, std::size_t first_face)
 {
     for (std::size_t f = first_face; f < faces_.size(); ++f)
     {
-        if (!faces_[f].alive || height(faces_[f], point) <= tolerance_)
-            continue;
+        if (!faces_[f].alive || height(faces_[f], point) <= tolerance_) continue;
         faces_[f].outside.push_back(point);
         return;
     }
@@ -113,8 +106,7 @@ void Quickhull::collect_visible(std::size_t seed, Index eye)
         for (std::size_t i = 0; i < 3; ++i)
         {
             const std::size_t next = owner_.at({corner[(i + 1) % 3], corner[i]});
-            if (!faces_[next].alive || height(faces_[next], eye) <= tolerance_)
-                continue;
+            if (!faces_[next].alive || height(faces_[next], eye) <= tolerance_) continue;
             faces_[next].alive = false;
             visible_.push_back(next);
         }
@@ -132,27 +124,23 @@ void Quickhull::replace_visible(Index eye)
         for (std::size_t i = 0; i < 3; ++i)
         {
             const Edge e{corner[i], corner[(i + 1) % 3]};
-            if (faces_[owner_.at({e.second, e.first})].alive)
-                horizon.push_back(e);
+            if (faces_[owner_.at({e.second, e.first})].alive) horizon.push_back(e);
         }
     }
     for (const Edge& e : horizon) add_face(e.first, e.second, eye);
     for (const std::size_t v : visible_)
         for (const Index p : std::exchange(faces_[v].outside, {}))
-            if (p != eye)
-                assign(p, first_new);
+            if (p != eye) assign(p, first_new);
 }
 
 void Quickhull::grow()
 {
     for (std::size_t f = 0; f < faces_.size(); ++f)
     {
-        if (!faces_[f].alive || faces_[f].outside.empty())
-            continue;
+        if (!faces_[f].alive || faces_[f].outside.empty()) continue;
         Index eye = faces_[f].outside.front();
         for (const Index p : faces_[f].outside)
-            if (height(faces_[f], p) > height(faces_[f], eye))
-                eye = p;
+            if (height(faces_[f], p) > height(faces_[f], eye)) eye = p;
         collect_visible(f, eye);
         replace_visible(eye);
     }
@@ -167,8 +155,7 @@ Hull Quickhull::result() const
             for (const Index c : f.corner) kept[c] = 1;
     for (Index i = 0; i < points_.size(); ++i)
     {
-        if (!kept[i])
-            continue;
+        if (!kept[i]) continue;
         kept[i] = static_cast<Index>(hull.vertices.size());
         hull.vertices.push_back(points_[i]);
     }
@@ -182,15 +169,13 @@ Hull Quickhull::result() const
         }
     for (const Face& f : faces_)
     {
-        if (!f.alive)
-            continue;
+        if (!f.alive) continue;
         hull.faces.push_back({kept[f.corner[0]], kept[f.corner[1]], kept[f.corner[2]]});
         for (std::size_t i = 0; i < 3; ++i)
         {
             const Index a = f.corner[i], b = f.corner[(i + 1) % 3];
             const bool flat = dot(f.normal, faces_[owner_.at({b, a})].normal) > 1 - 1e-12;
-            if (a < b && !flat)
-                hull.edges.push_back({kept[a], kept[b]});
+            if (a < b && !flat) hull.edges.push_back({kept[a], kept[b]});
         }
         hull.normals.push_back(f.normal);
         hull.offsets.push_back(f.offset);
@@ -201,19 +186,15 @@ Hull Quickhull::result() const
 
 Result<Hull> make_hull(std::span<const Vec3> points)
 {
-    if (points.size() < 4)
-        return reason("a hull needs at least 4 vertices, not " + std::to_string(points.size()));
+    if (points.size() < 4) return reason("a hull needs at least 4 vertices, not " + std::to_string(points.size()));
     double extent = 0;
     for (const Vec3& p : points)
     {
-        if (!is_finite(p))
-            return reason("a vertex of the hull is not finite");
-        extent = std::max(
-            {extent, std::fabs(p.x - points[0].x), std::fabs(p.y - points[0].y), std::fabs(p.z - points[0].z)});
+        if (!is_finite(p)) return reason("a vertex of the hull is not finite");
+        extent = std::max({extent, std::fabs(p.x - points[0].x), std::fabs(p.y - points[0].y), std::fabs(p.z - points[0].z)});
     }
     Quickhull hull(points, 1e-12 * extent);
-    if (!hull.start())
-        return reason("the vertices lie in a plane: their hull has no volume");
+    if (!hull.start()) return reason("the vertices lie in a plane: their hull has no volume");
     hull.grow();
     return hull.result();
 }

@@ -15,7 +15,7 @@ namespace plab::detection
 /// A closed convex polyhedron of triangles. normals[f] . p <= offsets[f] for all points p inside.
 struct Hull
 {
-    std::vector<Vec3> vertices;  ///< m; only those on the hull, in the order in which they were given
+    std::vector<Vec3> vertices;                       ///< m; only those on the hull, in the order in which they were given
     std::vector<std::array<std::uint32_t, 3>> faces;  ///< counter-clockwise seen from outside
     std::vector<std::array<std::uint32_t, 2>> edges;  ///< those between faces that are not in one plane
     std::vector<Vec3> normals;                        ///< unit, outwards, one per face

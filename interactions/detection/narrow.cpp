@@ -35,8 +35,7 @@ void box_box(const Collider& a, const Pose& X_a, const Collider& b, const Pose& 
         const Vec3 point{g.pos[0], g.pos[1], g.pos[2]};
         const Vec3 normal = normalized(Vec3{-g.normal[0], -g.normal[1], -g.normal[2]});
         out.add({point, normal, g.depth,
-                 27 * region(a.size(), rotate_back(X_a.q, point - X_a.p)) +
-                     region(b.size(), rotate_back(X_b.q, point - X_b.p))});
+                 27 * region(a.size(), rotate_back(X_a.q, point - X_a.p)) + region(b.size(), rotate_back(X_b.q, point - X_b.p))});
     }
 }
 
@@ -46,18 +45,13 @@ void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, cons
     using enum ColliderKind;
     if (a.kind() == Sphere)
     {
-        if (b.kind() == Sphere)
-            return sphere_sphere(a.size().x, X_a.p, b.size().x, X_b.p, out);
-        if (b.kind() == Plane)
-            return sphere_plane(a.size().x, X_a.p, X_b, out);
-        if (b.kind() == Box)
-            return sphere_box(a.size().x, X_a.p, b.size(), X_b, out);
+        if (b.kind() == Sphere) return sphere_sphere(a.size().x, X_a.p, b.size().x, X_b.p, out);
+        if (b.kind() == Plane) return sphere_plane(a.size().x, X_a.p, X_b, out);
+        if (b.kind() == Box) return sphere_box(a.size().x, X_a.p, b.size(), X_b, out);
         return sphere_hull(a.size().x, X_a.p, b.hull(), X_b, out);
     }
-    if (a.kind() == Plane)
-        return;  // half-spaces do not collide with one another
-    if (b.kind() == Box)
-        return box_box(a, X_a, b, X_b, out);
+    if (a.kind() == Plane) return;  // half-spaces do not collide with one another
+    if (b.kind() == Box) return box_box(a, X_a, b, X_b, out);
     hull_hull(a.hull(), X_a, b.hull(), X_b, out);
 }
 }  // namespace
@@ -65,8 +59,7 @@ void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, cons
 void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out)
 {
     using enum ColliderKind;
-    if (a.kind() == None || b.kind() == None)
-        return;
+    if (a.kind() == None || b.kind() == None) return;
     const auto flip_from = [&](std::size_t first)
     {
         for (Touch& t : out.all().subspan(first)) t.normal = -t.normal;
@@ -78,12 +71,9 @@ void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& 
         flip_from(before);
         return;
     }
-    if (b.kind() == Plane && a.kind() == Box)
-        return box_plane(a.size(), X_a, X_b, out);
-    if (b.kind() == Plane && a.kind() == Hull)
-        return hull_plane(a.hull(), X_a, X_b, out);
-    if (a.kind() <= b.kind())
-        return collide_ordered(a, X_a, b, X_b, out);
+    if (b.kind() == Plane && a.kind() == Box) return box_plane(a.size(), X_a, X_b, out);
+    if (b.kind() == Plane && a.kind() == Hull) return hull_plane(a.hull(), X_a, X_b, out);
+    if (a.kind() <= b.kind()) return collide_ordered(a, X_a, b, X_b, out);
     collide_ordered(b, X_b, a, X_a, out);
     flip_from(before);
 }

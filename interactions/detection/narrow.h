@@ -29,8 +29,7 @@ public:
     /// Keeps points that overlap, as far as there is room.
     void add(const Touch& touch)
     {
-        if (touch.depth > 0 && count_ < kCapacity)
-            touches_[count_++] = touch;
+        if (touch.depth > 0 && count_ < kCapacity) touches_[count_++] = touch;
     }
     std::span<Touch> all() { return {touches_.data(), count_}; }
     std::span<const Touch> all() const { return {touches_.data(), count_}; }

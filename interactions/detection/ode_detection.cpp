@@ -6,13 +6,11 @@ namespace
 {
 void report_complaints(const StepContext& context, Row row, const OdeScene& scene)
 {
-    if (!context.events)
-        return;
+    if (!context.events) return;
     for (std::size_t i = 0; i < scene.colliders().size(); ++i)
     {
         const std::string& why = scene.colliders()[i].complaint();
-        if (why.empty())
-            continue;
+        if (why.empty()) continue;
         Event e;
         e.tick = context.tick, e.time = context.time, e.kind = "detection.shape", e.severity = Severity::Warning;
         e.component = row < context.component_of_row.size() ? context.component_of_row[row] : kNoIndex;
@@ -33,34 +31,23 @@ void OdeRows::describe(Schema& s)
     s.role(resolution, "resolution", {Facet::Component}, "finds the time of an impact")
         .family("Resolution/")
         .default_type("Resolution/Bisection");
-    s.role(response, "response", {Facet::Component}, "answers contacts")
-        .family("Response/")
-        .default_type("Response/Impulse");
-    s.param(space, "space", unit::one,
-            "ODE's collision space: simple tests all pairs, hash and sweep_and_prune leave out far ones")
+    s.role(response, "response", {Facet::Component}, "answers contacts").family("Response/").default_type("Response/Impulse");
+    s.param(space, "space", unit::one, "ODE's collision space: simple tests all pairs, hash and sweep_and_prune leave out far ones")
         .or_else("hash")
         .one_of({"simple", "hash", "sweep_and_prune"});
     s.output(pairs, "pairs", unit::one, "pairs of shapes whose bounds overlapped, in the last look");
     s.output(penetration, "penetration", unit::metre, "deepest overlap in the last look").reported_as_error();
-    s.scratch(scene, "scene",
-              "geometries of ODE, one per body and shape; made anew from bodies and shapes when needed");
+    s.scratch(scene, "scene", "geometries of ODE, one per body and shape; made anew from bodies and shapes when needed");
 }
 
-void prepare(Row row, OdeRows& rows)
-{
-    rows.scene[row].reset();
-}
+void prepare(Row row, OdeRows& rows) { rows.scene[row].reset(); }
 
-Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes,
-                    ContactSink& sink)
+Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes, ContactSink& sink)
 {
-    if (!start_ode())
-        return reason("the ODE library did not start");
+    if (!start_ode()) return reason("the ODE library did not start");
     auto& scene = rows.scene[row];
-    if (!scene)
-        scene = std::make_unique<OdeScene>();
-    if (scene->update(rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink))
-        report_complaints(context, row, *scene);
+    if (!scene) scene = std::make_unique<OdeScene>();
+    if (scene->update(rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink)) report_complaints(context, row, *scene);
     scene->detect(context, bodies, sink);
     rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());
     rows.penetration[row] = scene->penetration();

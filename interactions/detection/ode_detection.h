@@ -26,7 +26,6 @@ struct OdeRows
 /// Phase::Prepare: forgets what was built; bodies and shapes may not be ready yet, so detect builds.
 void prepare(Row row, OdeRows& rows);
 /// Phase::Detect.
-Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes,
-                    ContactSink& sink);
+Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes, ContactSink& sink);
 
 }  // namespace plab::detection

@@ -16,33 +16,28 @@ std::uint32_t feature_of(std::uint32_t slot_a, std::uint32_t slot_b, std::uint32
 
 bool same_shapes(const RefList& now, std::span<const std::uint32_t> built)
 {
-    return std::equal(now.begin(), now.end(), built.begin(), built.end(),
-                      [](const Ref& r, std::uint32_t s) { return r.index == s; });
+    return std::equal(now.begin(), now.end(), built.begin(), built.end(), [](const Ref& r, std::uint32_t s) { return r.index == s; });
 }
 }  // namespace
 
-bool OdeScene::is_current(const std::string& space, const RefList& between, const RefList& against,
-                          const Bodies& bodies, const Shapes& shapes, const ContactSink& order) const
+bool OdeScene::is_current(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies,
+                          const Shapes& shapes, const ContactSink& order) const
 {
-    if (space != space_ || between != between_ || against != against_ || member_of_body_.size() != bodies.size())
-        return false;
+    if (space != space_ || between != between_ || against != against_ || member_of_body_.size() != bodies.size()) return false;
     for (std::size_t i = 0; i < members_.size(); ++i)
     {
         const Member& m = members_[i];
         const std::span built(body_shapes_.data() + m.first_part, m.end_part - m.first_part);
-        if (bodies.dynamic(m.body) != m.membership.dynamic || !same_shapes(bodies.shapes[m.body], built))
-            return false;
-        if (i > 0 && !against.empty() && !order.precedes({Facet::Body, members_[i - 1].body}, {Facet::Body, m.body}))
-            return false;
+        if (bodies.dynamic(m.body) != m.membership.dynamic || !same_shapes(bodies.shapes[m.body], built)) return false;
+        if (i > 0 && !against.empty() && !order.precedes({Facet::Body, members_[i - 1].body}, {Facet::Body, m.body})) return false;
     }
     for (std::size_t c = 0; c < colliders_.size(); ++c)
-        if (!colliders_[c].built_from(shapes.geometry[shape_of_collider_[c]]))
-            return false;
+        if (!colliders_[c].built_from(shapes.geometry[shape_of_collider_[c]])) return false;
     return true;
 }
 
-bool OdeScene::update(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies,
-                      const Shapes& shapes, const ContactSink& order)
+bool OdeScene::update(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies, const Shapes& shapes,
+                      const ContactSink& order)
 {
     const bool rebuilds = !is_current(space, between, against, bodies, shapes, order);
     if (rebuilds)
@@ -59,8 +54,7 @@ void OdeScene::add_members(const RefList& bodies, bool between, const Bodies& ta
     for (const Ref& r : bodies)
     {
         std::uint32_t& index = member_of_body_[r.index];
-        if (index != kNoIndex)
-            continue;  // between and against: between says more
+        if (index != kNoIndex) continue;  // between and against: between says more
         index = static_cast<std::uint32_t>(members_.size());
         members_.push_back({r.index, {between, table.dynamic(r.index)}, 0, 0, {}, {}});
     }
@@ -71,8 +65,7 @@ void OdeScene::add_colliders(const Bodies& bodies, const Shapes& shapes)
     for (const Member& m : members_)
         for (const Ref& shape : bodies.shapes[m.body]) shape_of_collider_.push_back(shape.index);
     std::sort(shape_of_collider_.begin(), shape_of_collider_.end());
-    shape_of_collider_.erase(std::unique(shape_of_collider_.begin(), shape_of_collider_.end()),
-                             shape_of_collider_.end());
+    shape_of_collider_.erase(std::unique(shape_of_collider_.begin(), shape_of_collider_.end()), shape_of_collider_.end());
     colliders_.reserve(shape_of_collider_.size());
     for (const std::uint32_t shape : shape_of_collider_) colliders_.emplace_back(shapes.geometry[shape]);
 }
@@ -102,8 +95,7 @@ void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const Contact
         m.end_part = static_cast<std::uint32_t>(parts_.size());
     }
     broad_.reset(space_, parts_.size());
-    for (const Part& part : parts_)
-        broad_.add(colliders_[part.collider], part.member, members_[part.member].membership);
+    for (const Part& part : parts_) broad_.add(colliders_[part.collider], part.member, members_[part.member].membership);
 }
 
 void OdeScene::move_parts(const Bodies& bodies, bool all)
@@ -111,8 +103,7 @@ void OdeScene::move_parts(const Bodies& bodies, bool all)
     for (Member& m : members_)
     {
         // Compared rather than asked who is active: a request or a rewind moves bodies too.
-        if (!all && m.position == bodies.position[m.body] && m.orientation == bodies.orientation[m.body])
-            continue;
+        if (!all && m.position == bodies.position[m.body] && m.orientation == bodies.orientation[m.body]) continue;
         m.position = bodies.position[m.body], m.orientation = bodies.orientation[m.body];
         const Pose X_WB = bodies.pose(m.body);
         for (std::uint32_t p = m.first_part; p < m.end_part; ++p)
@@ -125,10 +116,8 @@ void OdeScene::move_parts(const Bodies& bodies, bool all)
 
 bool OdeScene::may_meet(const Member& a, const Member& b, const StepContext& context) const
 {
-    if (a.body == b.body || !(a.membership.dynamic || b.membership.dynamic))
-        return false;
-    if (!(a.membership.between || b.membership.between))
-        return false;
+    if (a.body == b.body || !(a.membership.dynamic || b.membership.dynamic)) return false;
+    if (!(a.membership.between || b.membership.between)) return false;
     return context.active({Facet::Body, a.body}) || context.active({Facet::Body, b.body});
 }
 
@@ -137,24 +126,19 @@ void OdeScene::collect_standing(const StepContext& context, const ContactSink& s
     standing_.clear();
     for (const StandingPair& pair : sink.standing())
     {
-        if (pair.a.index >= member_of_body_.size() || pair.b.index >= member_of_body_.size())
-            continue;
+        if (pair.a.index >= member_of_body_.size() || pair.b.index >= member_of_body_.size()) continue;
         Standing s{member_of_body_[pair.a.index], member_of_body_[pair.b.index], pair.shift};
-        if (s.a == kNoIndex || s.b == kNoIndex || !may_meet(members_[s.a], members_[s.b], context))
-            continue;
-        if (s.a > s.b)
-            std::swap(s.a, s.b), s.shift = -s.shift;
+        if (s.a == kNoIndex || s.b == kNoIndex || !may_meet(members_[s.a], members_[s.b], context)) continue;
+        if (s.a > s.b) std::swap(s.a, s.b), s.shift = -s.shift;
         standing_.push_back(s);
     }
     const auto key = [](const Standing& s) { return std::tie(s.a, s.b); };
-    std::sort(standing_.begin(), standing_.end(),
-              [&](const Standing& x, const Standing& y) { return key(x) < key(y); });
+    std::sort(standing_.begin(), standing_.end(), [&](const Standing& x, const Standing& y) { return key(x) < key(y); });
 }
 
 bool OdeScene::is_standing(std::uint32_t a, std::uint32_t b) const
 {
-    const auto before = [](const Standing& s, const BroadPhase::Pair& p)
-    { return std::tie(s.a, s.b) < std::tie(p.first, p.second); };
+    const auto before = [](const Standing& s, const BroadPhase::Pair& p) { return std::tie(s.a, s.b) < std::tie(p.first, p.second); };
     const auto at = std::lower_bound(standing_.begin(), standing_.end(), BroadPhase::Pair{a, b}, before);
     return at != standing_.end() && at->a == a && at->b == b;
 }
@@ -208,28 +192,22 @@ void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactS
     for (std::size_t i = 0; i < standing_.size(); ++i)
     {
         const Standing& s = standing_[i];
-        if (i > 0 && s.a == standing_[i - 1].a && s.b == standing_[i - 1].b)
-            continue;
+        if (i > 0 && s.a == standing_[i - 1].a && s.b == standing_[i - 1].b) continue;
         const Member &a = members_[s.a], &b = members_[s.b];
         for (std::uint32_t p = a.first_part; p < a.end_part; ++p)
             for (std::uint32_t q = b.first_part; q < b.end_part; ++q) look(p, q, s.shift, bodies);
         flush(a, b, length(s.shift), sink);
     }
 
-    if (sink.only_standing())
-        return;
+    if (sink.only_standing()) return;
     const auto& near = broad_.find_pairs();
     pairs_ = near.size();
-    const auto members = [&](const BroadPhase::Pair& p) {
-        return BroadPhase::Pair{parts_[p.first].member, parts_[p.second].member};
-    };
+    const auto members = [&](const BroadPhase::Pair& p) { return BroadPhase::Pair{parts_[p.first].member, parts_[p.second].member}; };
     for (std::size_t i = 0; i < near.size(); ++i)
     {
         const auto [a, b] = members(near[i]);
-        if (may_meet(members_[a], members_[b], context) && !is_standing(a, b))
-            look(near[i].first, near[i].second, {}, bodies);
-        if (i + 1 == near.size() || members(near[i + 1]) != BroadPhase::Pair{a, b})
-            flush(members_[a], members_[b], 0, sink);
+        if (may_meet(members_[a], members_[b], context) && !is_standing(a, b)) look(near[i].first, near[i].second, {}, bodies);
+        if (i + 1 == near.size() || members(near[i + 1]) != BroadPhase::Pair{a, b}) flush(members_[a], members_[b], 0, sink);
     }
 }
 

@@ -18,8 +18,8 @@ class OdeScene
 {
 public:
     /// Brings parts and poses up to date. Returns whether it had to be rebuilt.
-    bool update(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies,
-                const Shapes& shapes, const ContactSink& order);
+    bool update(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies, const Shapes& shapes,
+                const ContactSink& order);
     /// Contacts of all pairs of which `context` advances one, standing pairs first.
     void detect(const StepContext& context, const Bodies& bodies, ContactSink& sink);
 
@@ -48,8 +48,8 @@ private:
         Vec3 shift;
     };
 
-    bool is_current(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies,
-                    const Shapes& shapes, const ContactSink& order) const;
+    bool is_current(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies, const Shapes& shapes,
+                    const ContactSink& order) const;
     void rebuild(const Bodies& bodies, const Shapes& shapes, const ContactSink& order);
     void add_members(const RefList& bodies, bool between, const Bodies& table);
     void add_colliders(const Bodies& bodies, const Shapes& shapes);

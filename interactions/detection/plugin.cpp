@@ -5,10 +5,8 @@ PLAB_PLUGIN("detection", registrar)
 {
     using namespace plab;
     registrar
-        .component<detection::OdeRows>(
-            "CDetection/ODE", "finds contacts of rigid bodies with the Open Dynamics Engine's collision spaces")
-        .command<detection::prepare>(Phase::Prepare, "CDetection/Prepare",
-                                     "forgets the geometries; they are made anew at the next look")
+        .component<detection::OdeRows>("CDetection/ODE", "finds contacts of rigid bodies with the Open Dynamics Engine's collision spaces")
+        .command<detection::prepare>(Phase::Prepare, "CDetection/Prepare", "forgets the geometries; they are made anew at the next look")
         .host_command(Phase::Prepare, "CDetection/Add", "adds the bodies' shapes to the space; done inside Handle")
         .host_command(Phase::Advance, "CDetection/Update", "moves the geometries with their bodies; done inside Handle")
         .command<detection::detect>(Phase::Detect, "CDetection/Handle", "finds where bodies touch")

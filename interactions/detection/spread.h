@@ -18,10 +18,8 @@ public:
     void offer(const Touch& touch)
     {
         constexpr double kDiagonal = 0.70710678118654752;
-        constexpr std::array<std::array<double, 2>, 4> kAxes{
-            {{1, 0}, {kDiagonal, kDiagonal}, {0, 1}, {-kDiagonal, kDiagonal}}};
-        if (!(touch.depth > 0))
-            return;
+        constexpr std::array<std::array<double, 2>, 4> kAxes{{{1, 0}, {kDiagonal, kDiagonal}, {0, 1}, {-kDiagonal, kDiagonal}}};
+        if (!(touch.depth > 0)) return;
         const double x = dot(t1_, touch.point), y = dot(t2_, touch.point);
         for (std::size_t k = 0; k < kAxes.size(); ++k)
         {
@@ -36,13 +34,10 @@ public:
     /// Adds what was kept, each feature once, in the order of features.
     void take(Touches& out)
     {
-        if (!any_)
-            return;
-        std::sort(best_.begin(), best_.end(),
-                  [](const Best& a, const Best& b) { return a.touch.feature < b.touch.feature; });
+        if (!any_) return;
+        std::sort(best_.begin(), best_.end(), [](const Best& a, const Best& b) { return a.touch.feature < b.touch.feature; });
         for (std::size_t i = 0; i < best_.size(); ++i)
-            if (i == 0 || best_[i].touch.feature != best_[i - 1].touch.feature)
-                out.add(best_[i].touch);
+            if (i == 0 || best_[i].touch.feature != best_[i - 1].touch.feature) out.add(best_[i].touch);
     }
 
 private:
@@ -54,8 +49,7 @@ private:
     };
     void keep(std::size_t k, double value, const Touch& touch)
     {
-        if (!any_ || value > best_[k].value)
-            best_[k] = {value, touch};
+        if (!any_ || value > best_[k].value) best_[k] = {value, touch};
     }
 
     Vec3 t1_, t2_;

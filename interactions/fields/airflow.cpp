@@ -14,8 +14,7 @@ constexpr Unit kSquareMetre{"m^2", {{2, 0, 0, 0}}};
 /// 1 at 0, 0 from 1 on, level at both.
 double smooth_edge(double x)
 {
-    if (x >= 1)
-        return 0;
+    if (x >= 1) return 0;
     const double c = std::cos(0.5 * std::numbers::pi * x);
     return c * c;
 }
@@ -25,8 +24,7 @@ Jet jet_of(Row row, const AirflowRows& airflow, const Shafts& shafts)
     const std::uint32_t fan = airflow.driver[row].index;
     const double speed = airflow.pitch[row] * shafts.speed[fan];
     const Vec3 axis_W = shafts.axis_W(fan);
-    return {shafts.axle[fan].p, speed < 0 ? -axis_W : axis_W, std::fabs(speed), airflow.radius[row],
-            std::tan(airflow.half_angle[row])};
+    return {shafts.axle[fan].p, speed < 0 ? -axis_W : axis_W, std::fabs(speed), airflow.radius[row], std::tan(airflow.half_angle[row])};
 }
 
 }  // namespace
@@ -37,16 +35,12 @@ void AirflowRows::describe(Schema& schema)
     schema.role(between, "between", {Facet::Body}, "bodies that the air can carry").writes().independent();
     schema.param(pitch, "pitch", kMetrePerRadian, "way of the air through the fan per turn by one radian").nonzero();
     schema.param(radius, "radius", unit::metre, "of the fan").positive();
-    schema
-        .param(half_angle, "half_angle", unit::radian,
-               "by which the jet widens far from the fan; a free round jet's is about 0.2")
+    schema.param(half_angle, "half_angle", unit::radian, "by which the jet widens far from the fan; a free round jet's is about 0.2")
         .or_else(0.2)
         .not_negative()
         .at_most(1.4);
     schema.param(air_density, "air_density", unit::kilogram_per_metre3, "of the air").or_else(1.2).positive();
-    schema.param(drag_coefficient, "drag_coefficient", unit::one, "of the bodies; a ball's is about 0.47")
-        .or_else(0.47)
-        .not_negative();
+    schema.param(drag_coefficient, "drag_coefficient", unit::one, "of the bodies; a ball's is about 0.47").or_else(0.47).not_negative();
     schema.param(area, "area", kSquareMetre, "that a body turns to the air").not_negative();
 }
 
@@ -67,8 +61,8 @@ Air air_at(const Jet& jet, const Vec3& p_W)
     return air;
 }
 
-void apply_airflow(const StepContext& context, Rows rows, const AirflowRows& airflow, const Bodies& bodies,
-                   const Shafts& shafts, Wrenches& wrenches)
+void apply_airflow(const StepContext& context, Rows rows, const AirflowRows& airflow, const Bodies& bodies, const Shafts& shafts,
+                   Wrenches& wrenches)
 {
     for (const Row row : rows)
     {
@@ -77,11 +71,9 @@ void apply_airflow(const StepContext& context, Rows rows, const AirflowRows& air
         const double factor = 0.5 * airflow.air_density[row] * airflow.drag_coefficient[row] * airflow.area[row];
         for (const Ref body : airflow.between[row])
         {
-            if (!bodies.dynamic(body.index) || !context.active(body))
-                continue;
+            if (!bodies.dynamic(body.index) || !context.active(body)) continue;
             const Air air = air_at(jet, bodies.position[body.index]);
-            if (air.share == 0)
-                continue;
+            if (air.share == 0) continue;
             const Vec3 slip = air.velocity_W - bodies.velocity[body.index];
             wrenches.add_force(body, slip * (factor * air.share * air.speed));
         }

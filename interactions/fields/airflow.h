@@ -54,7 +54,7 @@ struct Air
 
 Air air_at(const Jet& jet, const Vec3& p_W);
 
-void apply_airflow(const StepContext& context, Rows rows, const AirflowRows& airflow, const Bodies& bodies,
-                   const Shafts& shafts, Wrenches& wrenches);
+void apply_airflow(const StepContext& context, Rows rows, const AirflowRows& airflow, const Bodies& bodies, const Shafts& shafts,
+                   Wrenches& wrenches);
 
 }  // namespace plab::fields

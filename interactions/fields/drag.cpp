@@ -6,33 +6,23 @@ namespace
 {
 
 /// -(c1 + c2 |v|) v.
-Vec3 resistance(double linear, double quadratic, const Vec3& v)
-{
-    return v * -(linear + quadratic * length(v));
-}
+Vec3 resistance(double linear, double quadratic, const Vec3& v) { return v * -(linear + quadratic * length(v)); }
 
 }  // namespace
 
 void DragRows::describe(Schema& schema)
 {
-    schema.role(between, "between", {Facet::Body, Facet::Shaft}, "bodies and shafts in the medium")
-        .writes()
-        .independent();
+    schema.role(between, "between", {Facet::Body, Facet::Shaft}, "bodies and shafts in the medium").writes().independent();
     schema.param(linear, "linear", unit::kilogram_per_second, "force per speed").or_else(0).not_negative();
     schema.param(quadratic, "quadratic", unit::kilogram_per_metre, "force per speed squared").or_else(0).not_negative();
-    schema.param(rotational, "rotational", unit::newton_metre_second_per_radian, "torque per angular speed")
-        .or_else(0)
-        .not_negative();
-    schema
-        .param(rotational_quadratic, "rotational_quadratic", unit::newton_metre_second2_per_radian2,
-               "torque per angular speed squared")
+    schema.param(rotational, "rotational", unit::newton_metre_second_per_radian, "torque per angular speed").or_else(0).not_negative();
+    schema.param(rotational_quadratic, "rotational_quadratic", unit::newton_metre_second2_per_radian2, "torque per angular speed squared")
         .or_else(0)
         .not_negative();
     schema.param(medium_velocity, "medium_velocity", unit::metre_per_second, "wind, in the world").or_else({});
 }
 
-void apply_drag(const StepContext& context, Rows rows, const DragRows& drag, const Bodies& bodies, const Shafts& shafts,
-                Wrenches& wrenches)
+void apply_drag(const StepContext& context, Rows rows, const DragRows& drag, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches)
 {
     for (const Row row : rows)
     {
@@ -40,18 +30,15 @@ void apply_drag(const StepContext& context, Rows rows, const DragRows& drag, con
         const double d1 = drag.rotational[row], d2 = drag.rotational_quadratic[row];
         for (const Ref part : drag.between[row])
         {
-            if (!context.active(part))
-                continue;
+            if (!context.active(part)) continue;
             const std::uint32_t i = part.index;
             if (part.facet == Facet::Shaft)
             {
                 const double speed = shafts.speed[i];
-                if (shafts.dynamic(i))
-                    wrenches.add_shaft_torque(part, -(d1 + d2 * std::fabs(speed)) * speed);
+                if (shafts.dynamic(i)) wrenches.add_shaft_torque(part, -(d1 + d2 * std::fabs(speed)) * speed);
                 continue;
             }
-            if (!bodies.dynamic(i))
-                continue;
+            if (!bodies.dynamic(i)) continue;
             const Vec3 relative = bodies.velocity[i] - drag.medium_velocity[row];
             wrenches.add_force(part, resistance(drag.linear[row], drag.quadratic[row], relative));
             wrenches.add_torque(part, resistance(d1, d2, bodies.angular_velocity[i]));

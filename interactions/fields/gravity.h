@@ -14,8 +14,7 @@ struct GravityRows
     void describe(Schema& schema);
 };
 
-void apply_gravity(const StepContext& context, Rows rows, const GravityRows& gravity, const Bodies& bodies,
-                   Wrenches& wrenches);
+void apply_gravity(const StepContext& context, Rows rows, const GravityRows& gravity, const Bodies& bodies, Wrenches& wrenches);
 
 /// V = -sum m g . p_WC, J: zero at the origin of W.
 void stored_by_gravity(Rows rows, const GravityRows& gravity, const Bodies& bodies, StoredEnergy& energy);

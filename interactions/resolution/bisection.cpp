@@ -5,10 +5,7 @@
 namespace plab::resolution
 {
 
-void accept_end(const StepContext&, Row, const NoneRows&, Trial& trial)
-{
-    trial.decision = Trial::Decision::Accept;
-}
+void accept_end(const StepContext&, Row, const NoneRows&, Trial& trial) { trial.decision = Trial::Decision::Accept; }
 
 void BisectionRows::describe(Schema& s)
 {
@@ -26,8 +23,7 @@ void bisect(const StepContext& context, Row row, const BisectionRows& rows, Tria
     const double length = trial.end - trial.begin;
     const double middle = trial.begin + 0.5 * length;
     trial.decision = Trial::Decision::Accept;
-    if (length <= tolerance || !(middle > trial.begin && middle < trial.end))
-        return;
+    if (length <= tolerance || !(middle > trial.begin && middle < trial.end)) return;
     if (trial.iteration < rows.max_iterations[row])
     {
         trial.decision = Trial::Decision::Try;

@@ -10,8 +10,7 @@ PLAB_PLUGIN("resolution", registrar)
         .cost("nothing")
         .limits("bodies overlap by up to speed x step when they meet; times of impact are right to one step");
     registrar
-        .component<BisectionRows>("Resolution/Bisection",
-                                  "finds the time of impact by halving; the whole world is rewound for each trial")
+        .component<BisectionRows>("Resolution/Bisection", "finds the time of impact by halving; the whole world is rewound for each trial")
         .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket of the time of impact")
         .locates()
         .order(1)
@@ -21,8 +20,7 @@ PLAB_PLUGIN("resolution", registrar)
             "Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, UC Berkeley (1996), section "
             "2");
     registrar
-        .component<BisectionRows>("Resolution/LocalBisection",
-                                  "finds the time of impact by halving; only the touched group is rewound")
+        .component<BisectionRows>("Resolution/LocalBisection", "finds the time of impact by halving; only the touched group is rewound")
         .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket of the time of impact")
         .locates()
         .local()

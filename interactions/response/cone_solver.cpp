@@ -17,8 +17,7 @@ public:
     std::optional<Vec3> impulse(double c, double s) const
     {
         const double stiffness = K_(2, 2) - mu_ * (K_(2, 0) * c + K_(2, 1) * s);
-        if (!(stiffness > 0))
-            return {};  // pressing harder would close it faster (Painleve)
+        if (!(stiffness > 0)) return {};  // pressing harder would close it faster (Painleve)
         const double j = (least_ - r_.z) / stiffness;
         return Vec3{-mu_ * c * j, -mu_ * s * j, j};
     }
@@ -46,15 +45,12 @@ std::optional<Vec3> Sliding::settle(double c, double s) const
     for (int i = 0; i < kTrials; ++i)
     {
         const auto j = impulse(c, s);
-        if (!j)
-            return {};
+        if (!j) return {};
         const Vec3 u = slip(*j);
         const double speed = std::hypot(u.x, u.y);
-        if (!(speed > 0))
-            return {};
+        if (!(speed > 0)) return {};
         const double turn = (c * u.y - s * u.x) / speed;
-        if (c * u.x + s * u.y > 0 && std::fabs(turn) <= kSettled)
-            return j;
+        if (c * u.x + s * u.y > 0 && std::fabs(turn) <= kSettled) return j;
         c = u.x / speed, s = u.y / speed;
     }
     return {};
@@ -64,8 +60,7 @@ double Sliding::miss(double angle) const
 {
     const double c = std::cos(angle), s = std::sin(angle);
     const auto j = impulse(c, s);
-    if (!j)
-        return NAN;
+    if (!j) return NAN;
     const Vec3 u = slip(*j);
     return c * u.y - s * u.x;
 }
@@ -78,8 +73,7 @@ std::optional<Vec3> Sliding::scan() const
     {
         double lo = i * kStep, hi = (i + 1) * kStep;
         const double f_lo = miss(lo), f_hi = miss(hi);
-        if (std::isnan(f_lo) || std::isnan(f_hi) || (f_lo < 0) == (f_hi < 0))
-            continue;
+        if (std::isnan(f_lo) || std::isnan(f_hi) || (f_lo < 0) == (f_hi < 0)) continue;
         for (int k = 0; k < 60; ++k)
         {
             const double middle = 0.5 * (lo + hi);
@@ -87,11 +81,9 @@ std::optional<Vec3> Sliding::scan() const
         }
         const double c = std::cos(lo), s = std::sin(lo);
         const auto j = impulse(c, s);
-        if (!j)
-            continue;
+        if (!j) continue;
         const Vec3 u = slip(*j);
-        if (c * u.x + s * u.y > 0)
-            return j;
+        if (c * u.x + s * u.y > 0) return j;
     }
     return {};
 }
@@ -99,20 +91,15 @@ std::optional<Vec3> Sliding::scan() const
 
 Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction)
 {
-    if (r.z >= least)
-        return {};
-    if (friction == 0)
-        return {0, 0, (least - r.z) / K(2, 2)};
+    if (r.z >= least) return {};
+    if (friction == 0) return {0, 0, (least - r.z) / K(2, 2)};
     const Vec3 stick = inverse(K) * (Vec3{0, 0, least} - r);
     const double hold = std::hypot(stick.x, stick.y);
-    if (stick.z > 0 && hold <= friction * stick.z)
-        return stick;
+    if (stick.z > 0 && hold <= friction * stick.z) return stick;
     const Sliding sliding(K, r, least, friction);
     if (const double slip = std::hypot(r.x, r.y); slip > 0)
-        if (const auto j = sliding.settle(r.x / slip, r.y / slip))
-            return *j;
-    if (const auto j = sliding.scan())
-        return *j;
+        if (const auto j = sliding.settle(r.x / slip, r.y / slip)) return *j;
+    if (const auto j = sliding.scan()) return *j;
     // No sliding fits: the sticking impulse brought back to the cone keeps the contact from closing.
     const double normal = std::max(stick.z, (least - r.z) / K(2, 2));
     const double share = hold > 0 ? std::min(1.0, friction * normal / hold) : 0.0;
@@ -132,8 +119,7 @@ ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double t
             const Vec3 r = c.point->velocity(bodies) - c.point->K() * before;
             c.impulse = solve_cone(c.point->K(), r, c.least, c.friction);
             const Vec3 change = c.impulse - before;
-            if (change == Vec3{})
-                continue;
+            if (change == Vec3{}) continue;
             const Vec3 kick = c.point->K() * change;
             c.point->apply(bodies, change, c.impulse.z > 0 ? c.least : r.z);
             largest = std::max({largest, std::fabs(kick.x), std::fabs(kick.y), std::fabs(kick.z)});

@@ -19,8 +19,7 @@ ContactPoint::ContactPoint(const Contact& contact, const Bodies& bodies)
 /// K += -[r] I^-1 [r]; the mass is added last, so that the turning part is known by itself.
 void ContactPoint::add_body(const Bodies& bodies, std::uint32_t body)
 {
-    if (!bodies.dynamic(body))
-        return;
+    if (!bodies.dynamic(body)) return;
     inverse_mass_ += bodies.inverse_mass[body];
     const Mat3 inverse_inertia = bodies.inverse_inertia_W(body);
     const Vec3 r = point_ - bodies.position[body];
@@ -47,12 +46,10 @@ void ContactPoint::apply(Bodies& bodies, const Vec3& j, double normal_velocity) 
     const Vec3 j_W = to_world(j);
     bodies.apply_impulse(a_, -j_W, point_);
     bodies.apply_impulse(b_, j_W, point_);
-    if (!central_)
-        return;
+    if (!central_) return;
     const auto set_normal = [&](std::uint32_t body, double v)
     {
-        if (!bodies.dynamic(body))
-            return;
+        if (!bodies.dynamic(body)) return;
         Vec3& velocity = bodies.velocity[body];
         velocity = (velocity - n_ * dot(n_, velocity)) + n_ * v;
     };

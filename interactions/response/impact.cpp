@@ -52,8 +52,7 @@ void ImpactSequence::prepare()
     {
         contacts_[i].impulse = {};
         work_.points.emplace_back(contacts_[i], bodies_);
-        if (!work_.points.back().moves())
-            continue;
+        if (!work_.points.back().moves()) continue;
         work_.order.push_back(i);
         speed = std::max(speed, length(work_.points.back().velocity(bodies_)));
     }
@@ -67,15 +66,11 @@ void ImpactSequence::group()
     const auto pair_of = [&](std::uint32_t i) { return std::tie(contacts_[i].a, contacts_[i].b); };
     std::sort(order.begin(), order.end(),
               [&](auto i, auto j)
-              {
-                  return std::tuple_cat(pair_of(i), std::tie(contacts_[i].id)) <
-                         std::tuple_cat(pair_of(j), std::tie(contacts_[j].id));
-              });
+              { return std::tuple_cat(pair_of(i), std::tie(contacts_[i].id)) < std::tuple_cat(pair_of(j), std::tie(contacts_[j].id)); });
     work_.patches.clear();
     for (std::uint32_t k = 0; k < order.size(); ++k)
     {
-        if (k == 0 || pair_of(order[k]) != pair_of(order[k - 1]))
-            work_.patches.push_back({k, k, contacts_[order[k]].id});
+        if (k == 0 || pair_of(order[k]) != pair_of(order[k - 1])) work_.patches.push_back({k, k, contacts_[order[k]].id});
         work_.patches.back().end = k + 1;
     }
     std::sort(work_.patches.begin(), work_.patches.end(), [](const Patch& p, const Patch& q) { return p.id < q.id; });
@@ -91,11 +86,9 @@ double ImpactSequence::closing_speed(const Patch& patch) const
 /// Whether a contact that parts at `speed` stays: h = v^2 / 2a, and no lower than what its position can tell apart.
 bool ImpactSequence::rests(const Contact& contact, double speed) const
 {
-    if (speed < 0)
-        return false;
+    if (speed < 0) return false;
     const double pressing = -contact.normal_acceleration;
-    if (!(pressing > 0))
-        return speed <= settings_.rest_speed;
+    if (!(pressing > 0)) return speed <= settings_.rest_speed;
     const double height = std::max(settings_.rest_height, 0x1p-48 * length(contact.point));
     return speed * speed <= 2 * pressing * height;
 }
@@ -108,8 +101,7 @@ void ImpactSequence::hit(const Patch& patch, bool plastic)
     {
         const Contact& c = contacts_[work_.order[k]];
         restitution = std::min(restitution, c.restitution);
-        if (rests(c, c.restitution * closing))
-            restitution = 0;
+        if (rests(c, c.restitution * closing)) restitution = 0;
     }
     if (patch.end - patch.first == 1)
         hit_point(work_.order[patch.first], restitution);
@@ -187,10 +179,8 @@ void ImpactSequence::run(Impact& impact)
         const Patch* next = nullptr;
         fastest = threshold_;
         for (const Patch& p : work_.patches)
-            if (const double v = closing_speed(p); v > fastest)
-                fastest = v, next = &p;
-        if (!next)
-            break;
+            if (const double v = closing_speed(p); v > fastest) fastest = v, next = &p;
+        if (!next) break;
         // Bodies caught between others may bounce for ever; what is left by then is taken out without bounce.
         hit(*next, impact.iterations > budget / 2);
     }

@@ -19,8 +19,7 @@ constexpr double kStraight = 1e-14;
 class Collision
 {
 public:
-    Collision(const Mat3& K, const Vec3& u, double friction, double restitution)
-        : law_{K, friction}, restitution_(restitution)
+    Collision(const Mat3& K, const Vec3& u, double friction, double restitution) : law_{K, friction}, restitution_(restitution)
     {
         state_.u = u;
     }
@@ -49,8 +48,7 @@ ImpactResult Collision::run()
         slide();
     else
         state_.u.x = state_.u.y = 0;
-    if (!done_)
-        stick_or_restart();
+    if (!done_) stick_or_restart();
     return {state_.impulse, state_.u};
 }
 
@@ -58,12 +56,10 @@ ImpactResult Collision::run()
 double Collision::to_phase_end(double rate) const
 {
     const double u_n = state_.u.z;
-    if (compressing_)
-        return rate > 0 ? std::max(0.0, -u_n / rate) : HUGE_VAL;
+    if (compressing_) return rate > 0 ? std::max(0.0, -u_n / rate) : HUGE_VAL;
     const double left = goal_ - state_.work;
     const double square = u_n * u_n + 2 * rate * left;
-    if (square < 0)
-        return HUGE_VAL;
+    if (square < 0) return HUGE_VAL;
     const double sum = u_n + std::sqrt(square);
     return sum > 0 ? 2 * left / sum : HUGE_VAL;
 }
@@ -97,8 +93,7 @@ bool Collision::go_straight(const Vec3& force, double to_stick)
         state_.work += amount * (state_.u.z + 0.5 * rate.z * amount);
         state_.u += rate * amount;
         state_.impulse += force * amount;
-        if (to_stick <= to_end)
-            return true;
+        if (to_stick <= to_end) return true;
         to_stick -= amount;
         finish_phase();
     }
@@ -115,8 +110,7 @@ void Collision::slide()
         if (std::fabs(rates.turn) <= kStraight * law_.scale())
         {
             const double to_stick = rates.grow < 0 ? -slip / rates.grow : HUGE_VAL;
-            if (!go_straight({-law_.friction * c, -law_.friction * s, 1}, to_stick))
-                return;
+            if (!go_straight({-law_.friction * c, -law_.friction * s, 1}, to_stick)) return;
             state_.u.x = state_.u.y = 0;
             return;
         }
@@ -140,8 +134,7 @@ void Collision::stick_or_restart()
     if (std::hypot(hold.x, hold.y) <= law_.friction * (1 + 1e-12))
     {
         go_straight(hold, HUGE_VAL);
-        if (state_.u.x != 0 || state_.u.y != 0)
-            state_.u.x = state_.u.y = 0;
+        if (state_.u.x != 0 || state_.u.y != 0) state_.u.x = state_.u.y = 0;
         return;
     }
     const auto [c, s] = law_.leaving_direction();
@@ -161,8 +154,7 @@ ImpactResult solve_along_slip(const Mat3& K, const Vec3& u, double friction, dou
 
 ImpactResult solve_impact(const Mat3& K, const Vec3& u, double friction, double restitution)
 {
-    if (friction > 0)
-        return solve_along_slip(K, u, friction, restitution);
+    if (friction > 0) return solve_along_slip(K, u, friction, restitution);
     const double j = -(1 + restitution) * u.z / K(2, 2);
     return {{0, 0, j}, {u.x + K(0, 2) * j, u.y + K(1, 2) * j, -restitution * u.z}};
 }

@@ -8,26 +8,21 @@ namespace plab::response
 
 void ImpulseRows::describe(Schema& s)
 {
-    s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise")
-        .or_else(0)
-        .not_negative();
+    s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise").or_else(0).not_negative();
     s.param(restitution, "restitution", unit::one,
             "share of the approach speed that an impact gives back, where no Material/Pair says otherwise")
         .or_else(0)
         .not_negative()
         .at_most(1);
-    s.param(rest_height, "rest_height", unit::metre,
-            "a bounce that would rise less than this does not happen: the contact rests")
+    s.param(rest_height, "rest_height", unit::metre, "a bounce that would rise less than this does not happen: the contact rests")
         .or_else(1e-14)
         .not_negative();
-    s.param(rest_speed, "rest_speed", unit::metre_per_second,
-            "a rebound up to this speed does not happen where no force presses together")
+    s.param(rest_speed, "rest_speed", unit::metre_per_second, "a rebound up to this speed does not happen where no force presses together")
         .or_else(1e-9)
         .not_negative();
     s.param(tolerance, "tolerance", unit::metre_per_second, "closing speed that may be left").or_else(1e-12).positive();
     s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(500).positive();
-    s.output(residual, "residual", unit::metre_per_second, "largest closing speed left in this step")
-        .reported_as_error();
+    s.output(residual, "residual", unit::metre_per_second, "largest closing speed left in this step").reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps and single impacts in this step");
     s.scratch(workspace, "workspace", "working memory");
 }
@@ -46,8 +41,7 @@ void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bod
         const Vec3 u = work.points[i].velocity(bodies);
         impact.contacts[i].slip = std::hypot(u.x, u.y);
     }
-    if (work.tick != context.tick)
-        rows.residual[row] = 0, rows.iterations[row] = 0, work.tick = context.tick;
+    if (work.tick != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, work.tick = context.tick;
     rows.residual[row] = std::max(rows.residual[row], impact.residual);
     rows.iterations[row] += impact.iterations;
 }

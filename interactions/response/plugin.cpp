@@ -9,10 +9,8 @@ PLAB_PLUGIN("response", registrar)
         .host_command(Phase::Respond, "Response/Respond", "nothing: the host reports the contacts")
         .cost("nothing");
     registrar
-        .component<ImpulseRows>("Response/Impulse",
-                                "impulses with Coulomb friction and restitution; contacts that no longer bounce rest")
-        .command<respond>(Phase::Respond, "Response/Respond",
-                          "applies the impulses of an impact, or of resting contacts over a step")
+        .component<ImpulseRows>("Response/Impulse", "impulses with Coulomb friction and restitution; contacts that no longer bounce rest")
+        .command<respond>(Phase::Respond, "Response/Respond", "applies the impulses of an impact, or of resting contacts over a step")
         .cost("one 3x3 solve per contact and sweep")
         .limits(
             "Gauss-Seidel: sweeps grow with the height of a stack and the mass ratio within it; impacts of several "

@@ -91,10 +91,7 @@ Vector8 units_of(const SlipLaw& law, const ImpactState& state)
 }
 
 /// < 0 before the end of the phase.
-double before_end(bool compressing, double goal, const Vector8& y)
-{
-    return compressing ? y[kNormal] : y[kWork] - goal;
-}
+double before_end(bool compressing, double goal, const Vector8& y) { return compressing ? y[kNormal] : y[kWork] - goal; }
 
 /// The step length in (0, h] at which the phase ends (Illinois variant of false position).
 Vector8 find_end(const SlipLaw& law, const Vector8& y, double h, const Vector8& unit, bool compressing, double goal)
@@ -105,8 +102,7 @@ Vector8 find_end(const SlipLaw& law, const Vector8& y, double h, const Vector8& 
     for (int i = 0; i < 100 && hi - lo > 1e-16 * h && f_hi != 0; ++i)
     {
         const double middle = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
-        if (!(middle > lo && middle < hi))
-            break;
+        if (!(middle > lo && middle < hi)) break;
         const Vector8 trial = advance(law, y, middle, unit).y;
         const double f = before_end(compressing, goal, trial);
         if (f < 0)
@@ -132,10 +128,7 @@ SlipRates SlipLaw::rates(double c, double s) const
     return {c * f1 + s * f2, c * f2 - s * f1, K(2, 2) - friction * (K(2, 0) * c + K(2, 1) * s)};
 }
 
-double SlipLaw::scale() const
-{
-    return friction * (std::fabs(K(0, 0)) + std::fabs(K(1, 1))) + std::fabs(K(0, 2)) + std::fabs(K(1, 2));
-}
+double SlipLaw::scale() const { return friction * (std::fabs(K(0, 0)) + std::fabs(K(1, 1))) + std::fabs(K(0, 2)) + std::fabs(K(1, 2)); }
 
 Vec3 SlipLaw::holding_force() const
 {
@@ -151,16 +144,14 @@ std::pair<double, double> SlipLaw::leaving_direction() const
     for (int i = 0; i < kSamples; ++i)
     {
         double lo = i * kStep, hi = (i + 1) * kStep;
-        if ((turn(lo) < 0) == (turn(hi) < 0))
-            continue;
+        if ((turn(lo) < 0) == (turn(hi) < 0)) continue;
         const bool rising = turn(hi) >= 0;
         for (int k = 0; k < 60; ++k)
         {
             const double middle = 0.5 * (lo + hi);
             ((turn(middle) >= 0) == rising ? hi : lo) = middle;
         }
-        if (rates(std::cos(lo), std::sin(lo)).grow > 0)
-            return {std::cos(lo), std::sin(lo)};
+        if (rates(std::cos(lo), std::sin(lo)).grow > 0) return {std::cos(lo), std::sin(lo)};
     }
     // No such ray: friction holds after all. The direction of the force that wants to move it is the nearest to one.
     const double size = std::hypot(K(0, 2), K(1, 2));
@@ -171,8 +162,7 @@ SlipEnd follow_slip(const SlipLaw& law, bool compressing, double goal, ImpactSta
 {
     const double slip = std::hypot(state.u.x, state.u.y);
     const Vector8 unit = units_of(law, state);
-    Vector8 y{state.u.x / slip, state.u.y / slip, slip,           state.u.z, state.work,
-              state.impulse.x,  state.impulse.y,  state.impulse.z};
+    Vector8 y{state.u.x / slip, state.u.y / slip, slip, state.u.z, state.work, state.impulse.x, state.impulse.y, state.impulse.z};
     double h = 0.1 / law.scale();
     for (int i = 0; i < kMaxSteps; ++i)
     {
@@ -190,10 +180,8 @@ SlipEnd follow_slip(const SlipLaw& law, bool compressing, double goal, ImpactSta
         }
         y = step.y;
         store(y, state);
-        if (y[kSlip] <= kStopped * slip)
-            return SlipEnd::Stopped;
-        if (std::fabs(law.rates(y[kCos], y[kSin]).turn) <= kStraight * law.scale())
-            return SlipEnd::Straight;
+        if (y[kSlip] <= kStopped * slip) return SlipEnd::Stopped;
+        if (std::fabs(law.rates(y[kCos], y[kSin]).turn) <= kStraight * law.scale()) return SlipEnd::Straight;
         h *= factor;
     }
     return SlipEnd::Stopped;

@@ -13,10 +13,7 @@ void ScriptRows::describe(Schema& s)
         .or_else(100'000)
         .at_least(100)
         .at_most(1e12);
-    s.param(memory_limit, "memory_limit", unit::one, "bytes that the script may hold")
-        .or_else(4 << 20)
-        .at_least(64 << 10)
-        .at_most(1 << 30);
+    s.param(memory_limit, "memory_limit", unit::one, "bytes that the script may hold").or_else(4 << 20).at_least(64 << 10).at_most(1 << 30);
     s.state(state, "state", unit::one, "named values that live across steps; read and written as state.name");
     s.state(random_state, "random_state", unit::one, "state of math.random; 0 takes one from seed and component");
     s.state(quarantined, "quarantined", unit::one, "the script failed and is not called; false calls it again");
@@ -24,9 +21,7 @@ void ScriptRows::describe(Schema& s)
     s.output(memory_used, "memory_used", unit::one, "bytes that the script holds");
     s.role(driver, "driver", {Facet::Body, Facet::Shaft}, "is only read").optional();
     s.role(driven, "driven", {Facet::Body, Facet::Shaft}, "takes forces").optional().writes();
-    s.role(between, "between", {Facet::Body, Facet::Shaft}, "take forces, as between[i] in the order of ids")
-        .optional()
-        .writes();
+    s.role(between, "between", {Facet::Body, Facet::Shaft}, "take forces, as between[i] in the order of ids").optional().writes();
     s.scratch(machine, "machine", "the Lua state; made from the fields above by Script/Prepare");
 }
 
@@ -46,8 +41,7 @@ Call make_call(EntryPoint entry, const StepContext& context, const ScriptRows& r
 void report(const StepContext& context, Row row, Machine& machine)
 {
     const Failure& failure = *machine.failure();
-    if (failure.reported)
-        return;
+    if (failure.reported) return;
     StepContext then = context;
     then.tick = failure.tick, then.time = failure.time;
     then.emit(row, failure.kind, Severity::Failure, failure.message);
@@ -66,8 +60,7 @@ void quarantine(const StepContext& context, Row row, ScriptRows& rows)
 /// comes before everything else of that step.
 bool is_before(const StepContext& context, EntryPoint entry, const Failure& failure)
 {
-    if (context.tick != failure.tick)
-        return context.tick < failure.tick;
+    if (context.tick != failure.tick) return context.tick < failure.tick;
     return entry == EntryPoint::Drive || context.time < failure.time;
 }
 
@@ -77,14 +70,11 @@ bool is_before(const StepContext& context, EntryPoint entry, const Failure& fail
 bool is_ready(const StepContext& context, const ScriptRows& rows, Row row, EntryPoint entry)
 {
     Machine& machine = *rows.machine[row];
-    if (rows.quarantined[row])
-        return false;
-    if (!machine.failure())
-        return true;
+    if (rows.quarantined[row]) return false;
+    if (!machine.failure()) return true;
     if (machine.failure()->booked || is_before(context, entry, *machine.failure()))
         return machine.load(rows.code[row], make_call(EntryPoint::Load, context, rows, row)).ok();
-    if (context.tick > machine.failure()->tick)
-        report(context, row, machine);  // the scene leaves Script/Finish out
+    if (context.tick > machine.failure()->tick) report(context, row, machine);  // the scene leaves Script/Finish out
     return false;
 }
 
@@ -92,11 +82,9 @@ bool is_ready(const StepContext& context, const ScriptRows& rows, Row row, Entry
 bool acts(const StepContext& context, const ScriptRows& rows, Row row)
 {
     const Ref driven = rows.driven[row];
-    if (driven.valid() && context.active(driven))
-        return true;
+    if (driven.valid() && context.active(driven)) return true;
     for (const Ref r : rows.between[row])
-        if (context.active(r))
-            return true;
+        if (context.active(r)) return true;
     return false;
 }
 
@@ -121,8 +109,7 @@ Result<void> prepare(const StepContext& context, Row row, ScriptRows& rows)
 {
     const Limits limits{rows.instruction_budget[row], static_cast<std::size_t>(rows.memory_limit[row])};
     auto machine = std::make_unique<Machine>(limits);
-    if (auto loaded = machine->load(rows.code[row], make_call(EntryPoint::Load, context, rows, row)); !loaded)
-        return loaded;
+    if (auto loaded = machine->load(rows.code[row], make_call(EntryPoint::Load, context, rows, row)); !loaded) return loaded;
     rows.machine[row] = std::move(machine);
     return {};
 }
@@ -133,34 +120,28 @@ void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodie
     {
         assert(rows.machine[row] && "Script/Prepare comes first");
         Machine& machine = *rows.machine[row];
-        if (!is_ready(context, rows, row, EntryPoint::Drive))
-            continue;
+        if (!is_ready(context, rows, row, EntryPoint::Drive)) continue;
         Call call = make_call(EntryPoint::Drive, context, rows, row);
         call.bodies = &bodies, call.shafts = &shafts;
         call.writable_state = &rows.state[row], call.random_state = &rows.random_state[row];
-        if (!machine.has_drive() || machine.drive(call))
-            continue;
+        if (!machine.has_drive() || machine.drive(call)) continue;
         quarantine(context, row, rows);
     }
 }
 
-void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
-           Wrenches& wrenches)
+void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches)
 {
     for (const Row row : which)
     {
         assert(rows.machine[row] && "Script/Prepare comes first");
         Machine& machine = *rows.machine[row];
-        if (!acts(context, rows, row) || !is_ready(context, rows, row, EntryPoint::Force) || !machine.has_force())
-            continue;
+        if (!acts(context, rows, row) || !is_ready(context, rows, row, EntryPoint::Force) || !machine.has_force()) continue;
         Call call = make_call(EntryPoint::Force, context, rows, row);
         call.bodies = &bodies, call.shafts = &shafts;
-        if (!machine.force(call))
-            continue;
+        if (!machine.force(call)) continue;
         wrenches.begin(row < context.component_of_row.size() ? context.component_of_row[row] : kNoIndex);
         for (const Action& action : machine.actions())
-            if (context.active(action.on))
-                apply(action, wrenches);
+            if (context.active(action.on)) apply(action, wrenches);
     }
 }
 
@@ -172,8 +153,7 @@ void finish(const StepContext& context, Rows which, ScriptRows& rows)
         Machine& machine = *rows.machine[row];
         rows.instructions_used[row] = machine.take_instructions();
         rows.memory_used[row] = static_cast<std::int64_t>(machine.memory_used());
-        if (rows.quarantined[row] || !machine.failure())
-            continue;
+        if (rows.quarantined[row] || !machine.failure()) continue;
         quarantine(context, row, rows);
     }
 }

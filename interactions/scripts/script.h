@@ -44,8 +44,7 @@ struct ScriptRows
 /// Builds the machine anew. On an error the old one stays.
 Result<void> prepare(const StepContext& context, Row row, ScriptRows& rows);
 void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodies& bodies, const Shafts& shafts);
-void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
-           Wrenches& wrenches);
+void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches);
 /// Books what force could not: outputs, and the quarantine of a script that failed in it.
 void finish(const StepContext& context, Rows which, ScriptRows& rows);
 

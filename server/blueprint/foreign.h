@@ -28,15 +28,13 @@ public:
     void add(ForeignHandler handler)
     {
         for (ForeignHandler& h : handlers_)
-            if (h.element == handler.element)
-                return void(h = std::move(handler));
+            if (h.element == handler.element) return void(h = std::move(handler));
         handlers_.push_back(std::move(handler));
     }
     const ForeignHandler* find(std::string_view element) const
     {
         for (const ForeignHandler& h : handlers_)
-            if (h.element == element)
-                return &h;
+            if (h.element == element) return &h;
         return nullptr;
     }
     const std::vector<ForeignHandler>& all() const { return handlers_; }

@@ -21,43 +21,37 @@ struct FileCloser
 Result<std::string> read_bytes(const std::string& path, std::size_t most)
 {
     const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
-    if (!file)
-        return Error{{path, 0, 0}, {}, std::string("cannot be opened: ") + std::strerror(errno)};
+    if (!file) return Error{{path, 0, 0}, {}, std::string("cannot be opened: ") + std::strerror(errno)};
     std::string bytes;
     char buffer[1 << 16];
     while (bytes.size() <= most)
     {
         const std::size_t n = std::fread(buffer, 1, sizeof buffer, file.get());
-        if (n == 0)
-            break;
+        if (n == 0) break;
         bytes.append(buffer, n);
     }
-    if (std::ferror(file.get()))
-        return Error{{path, 0, 0}, {}, std::string("cannot be read: ") + std::strerror(errno)};
+    if (std::ferror(file.get())) return Error{{path, 0, 0}, {}, std::string("cannot be read: ") + std::strerror(errno)};
     return bytes;
 }
 
 }  // namespace
 
-Result<model::Blueprint> read_blueprint(std::string_view text, const std::string& file_name,
-                                        const ForeignHandlers& handlers, const XmlLimits& limits)
+Result<model::Blueprint> read_blueprint(std::string_view text, const std::string& file_name, const ForeignHandlers& handlers,
+                                        const XmlLimits& limits)
 {
     Complaints complaints(file_name);
     TreeReader tree(file_name, handlers, complaints);
     Errors form;
     parse_xml(text, limits, tree, form);
     for (Error& error : form) complaints.add(std::move(error));
-    if (complaints.any())
-        return complaints.take();
+    if (complaints.any()) return complaints.take();
     return tree.take();
 }
 
-Result<model::Blueprint> read_blueprint_file(const std::string& path, const ForeignHandlers& handlers,
-                                             const XmlLimits& limits)
+Result<model::Blueprint> read_blueprint_file(const std::string& path, const ForeignHandlers& handlers, const XmlLimits& limits)
 {
     Result<std::string> text = read_bytes(path, limits.bytes);
-    if (!text)
-        return text.errors();
+    if (!text) return text.errors();
     return read_blueprint(*text, path, handlers, limits);
 }
 

@@ -57,8 +57,7 @@ std::string rules_of(const Field& field)
 {
     std::string out;
     for (const Rule& rule : field.rules) out += (out.empty() ? "" : ", ") + words_of(rule);
-    if (field.may_be_infinite)
-        out += std::string(out.empty() ? "" : ", ") + "may be infinite";
+    if (field.may_be_infinite) out += std::string(out.empty() ? "" : ", ") + "may be infinite";
     return out;
 }
 
@@ -70,10 +69,8 @@ std::string_view name_of_kind(FieldKind kind)
 
 std::string default_of(const Field& field)
 {
-    if (field.kind == FieldKind::Output)
-        return "";
-    if (field.required)
-        return "required";
+    if (field.kind == FieldKind::Output) return "";
+    if (field.required) return "required";
     const std::string text = model::format_value(field.fallback);
     return text.empty() ? "empty" : "`" + text + "`";
 }
@@ -83,11 +80,9 @@ std::string fields_of(const Schema& schema)
     std::string rows;
     for (const Field& f : schema.fields())
         if (f.kind != FieldKind::Scratch)
-            rows += row({"`" + f.name + "`", std::string(name_of_kind(f.kind)),
-                         std::string(kTypeNames[static_cast<std::size_t>(f.type)]), std::string(f.unit.symbol),
-                         default_of(f), rules_of(f), f.doc});
-    if (rows.empty())
-        return {};
+            rows += row({"`" + f.name + "`", std::string(name_of_kind(f.kind)), std::string(kTypeNames[static_cast<std::size_t>(f.type)]),
+                         std::string(f.unit.symbol), default_of(f), rules_of(f), f.doc});
+    if (rows.empty()) return {};
     return "\n| field | kind | type | unit | default | rule | meaning |\n|---|---|---|---|---|---|---|\n" + rows;
 }
 
@@ -95,15 +90,13 @@ std::string takers_of(const Role& role)
 {
     constexpr std::string_view names[] = {"component", "body", "shaft", "shape"};
     std::string out;
-    for (const Facet f : role.facets)
-        out += (out.empty() ? "" : " or ") + std::string(names[static_cast<std::size_t>(f)]);
+    for (const Facet f : role.facets) out += (out.empty() ? "" : " or ") + std::string(names[static_cast<std::size_t>(f)]);
     return role.family.empty() ? out : out + " `" + role.family + "...`";
 }
 
 std::string arity_of(const Role& role)
 {
-    if (role.many)
-        return role.min == 0 ? "any number" : std::to_string(role.min) + " or more";
+    if (role.many) return role.min == 0 ? "any number" : std::to_string(role.min) + " or more";
     return role.min == 0 ? "0 or 1" : "1";
 }
 
@@ -113,14 +106,11 @@ std::string roles_of(const Schema& schema)
     for (const Role& r : schema.roles())
     {
         std::string meaning = r.doc;
-        if (!r.default_type.empty())
-            meaning += "; by default a `" + r.default_type + "`";
-        if (r.exclusive)
-            meaning += "; no second component may act on it so";
+        if (!r.default_type.empty()) meaning += "; by default a `" + r.default_type + "`";
+        if (r.exclusive) meaning += "; no second component may act on it so";
         rows += row({"`" + r.name + "`", takers_of(r), arity_of(r), r.writes ? "acts on it" : "reads it", meaning});
     }
-    if (rows.empty())
-        return {};
+    if (rows.empty()) return {};
     return "\n| role | takes | how many | access | meaning |\n|---|---|---|---|---|\n" + rows;
 }
 
@@ -128,10 +118,8 @@ std::string commands_of(const TypeInfo& info)
 {
     std::string rows;
     for (const CommandInfo& c : info.commands)
-        rows +=
-            row({"`" + c.name + "`", std::string(name_of(stage_of(c.phase))), std::string(name_of(c.phase)), c.doc});
-    if (rows.empty())
-        return {};
+        rows += row({"`" + c.name + "`", std::string(name_of(stage_of(c.phase))), std::string(name_of(c.phase)), c.doc});
+    if (rows.empty()) return {};
     return "\n| command | stage | phase | meaning |\n|---|---|---|---|\n" + rows;
 }
 
@@ -140,8 +128,7 @@ std::string facts_of(const TypeInfo& info)
     std::string out;
     const auto fact = [&](std::string_view name, const std::string& value)
     {
-        if (!value.empty())
-            out += "- " + std::string(name) + ": " + value + "\n";
+        if (!value.empty()) out += "- " + std::string(name) + ": " + value + "\n";
     };
     fact("exchangeable within", "`" + info.family + "`");
     fact("order of convergence", info.order > 0 ? std::to_string(info.order) : "");
@@ -155,13 +142,11 @@ std::string facts_of(const TypeInfo& info)
 
 std::string write_reference(model::TypeSource& types)
 {
-    std::string out =
-        "# Component types\n\nGenerated from the types' own declarations. Values are in SI units and radians.\n";
+    std::string out = "# Component types\n\nGenerated from the types' own declarations. Values are in SI units and radians.\n";
     std::string kind;
     for (const std::string& name : types.names())
     {
-        if (const std::string its = name.substr(0, name.find('/')); its != kind)
-            out += "\n## " + (kind = its) + "\n";
+        if (const std::string its = name.substr(0, name.find('/')); its != kind) out += "\n## " + (kind = its) + "\n";
         out += "\n### " + name + "\n\n";
         const auto type = types.require(name);
         if (!type)

@@ -42,14 +42,11 @@ constexpr Word kWords[] = {
 
 void TreeReader::misplaced(const XmlElement& e, const std::string& parent)
 {
-    if (complaints_.full())
-        return complaints_.add(e.where, {}, {});
+    if (complaints_.full()) return complaints_.add(e.where, {}, {});
     for (const Word& w : kWords)
     {
-        if (w.name != e.name)
-            continue;
-        const std::string right =
-            w.parents.empty() ? "it is the root element" : "it belongs in " + std::string(w.parents);
+        if (w.name != e.name) continue;
+        const std::string right = w.parents.empty() ? "it is the root element" : "it belongs in " + std::string(w.parents);
         return complaints_.add(e.where, in_tags(e.name), "cannot stand in " + parent + "; " + right);
     }
     std::vector<std::string> known;
@@ -64,21 +61,18 @@ void TreeReader::check_attributes(const XmlElement& e, std::initializer_list<std
 {
     for (const XmlAttribute& a : e.attributes)
     {
-        if (std::find(allowed.begin(), allowed.end(), a.name) != allowed.end())
-            continue;
+        if (std::find(allowed.begin(), allowed.end(), a.name) != allowed.end()) continue;
         const std::vector<std::string> known(allowed.begin(), allowed.end());
-        const std::string list = known.empty() ? " (the element has none)"
-                                               : std::string(known.size() > 1 ? " (known are " : " (known is ") +
-                                                     model::quoted_list(known) + ")";
-        complaints_.add(e.where, in_tags(e.name),
-                        "unknown attribute " + model::quoted(a.name) + model::did_you_mean(a.name, known) + list);
+        const std::string list = known.empty()
+                                     ? " (the element has none)"
+                                     : std::string(known.size() > 1 ? " (known are " : " (known is ") + model::quoted_list(known) + ")";
+        complaints_.add(e.where, in_tags(e.name), "unknown attribute " + model::quoted(a.name) + model::did_you_mean(a.name, known) + list);
     }
 }
 
 void TreeReader::refuse_text(const XmlElement& e)
 {
-    if (e.text_where.line == 0)
-        return;
+    if (e.text_where.line == 0) return;
     const std::string_view text = model::trimmed(e.text);
     complaints_.add(e.text_where, in_tags(e.name), "stray text " + model::quoted(text.substr(0, text.find('\n'))));
 }
@@ -91,8 +85,7 @@ void TreeReader::refuse_children(const XmlElement& e)
 std::string TreeReader::name_attribute(const XmlElement& e, std::string_view name)
 {
     const std::string* value = e.find_attribute(name);
-    if (!value)
-        return {};
+    if (!value) return {};
     if (value->size() > kLongestName)
     {
         complaints_.add(e.where, in_tags(e.name),
@@ -101,15 +94,13 @@ std::string TreeReader::name_attribute(const XmlElement& e, std::string_view nam
         return value->substr(0, kLongestName);
     }
     const std::string out(model::trimmed(*value));
-    if (out.empty())
-        complaints_.add(e.where, in_tags(e.name), std::string(name) + " must not be empty");
+    if (out.empty()) complaints_.add(e.where, in_tags(e.name), std::string(name) + " must not be empty");
     return out;
 }
 
 std::string TreeReader::required_name(const XmlElement& e, std::string_view name)
 {
-    if (!e.find_attribute(name))
-        complaints_.add(e.where, in_tags(e.name), "needs an attribute " + model::quoted(name));
+    if (!e.find_attribute(name)) complaints_.add(e.where, in_tags(e.name), "needs an attribute " + model::quoted(name));
     return name_attribute(e, name);
 }
 
@@ -118,12 +109,11 @@ std::string TreeReader::reference(const XmlElement& e)
     check_attributes(e, {});
     refuse_children(e);
     const std::string_view id = model::trimmed(e.text);
-    if (id.empty())
-        complaints_.add(e.where, in_tags(e.name), "needs an id as its text");
+    if (id.empty()) complaints_.add(e.where, in_tags(e.name), "needs an id as its text");
     if (id.size() > kLongestName)
-        complaints_.add(e.where, in_tags(e.name),
-                        "the id has " + std::to_string(id.size()) + " characters; at most " +
-                            std::to_string(kLongestName) + " are allowed");
+        complaints_.add(
+            e.where, in_tags(e.name),
+            "the id has " + std::to_string(id.size()) + " characters; at most " + std::to_string(kLongestName) + " are allowed");
     return std::string(id.substr(0, kLongestName));
 }
 
@@ -133,24 +123,20 @@ bool TreeReader::begin(const XmlElement& root)
     known_root_ = root.name == "plab" || root.name == "component";
     if (!known_root_)
     {
-        complaints_.add(root.where, in_tags(root.name),
-                        "the root element must be <plab version=\"1\">, or <component> in a fragment");
+        complaints_.add(root.where, in_tags(root.name), "the root element must be <plab version=\"1\">, or <component> in a fragment");
         return true;
     }
-    if (root.name == "component")
-        return false;
+    if (root.name == "component") return false;
     check_attributes(root, {"version"});
     const std::string version = required_name(root, "version");
     if (!version.empty() && version != "1")
-        complaints_.add(root.where, "<plab>",
-                        "version " + model::quoted(version) + " is unknown; this pLab reads version '1'");
+        complaints_.add(root.where, "<plab>", "version " + model::quoted(version) + " is unknown; this pLab reads version '1'");
     return true;
 }
 
 void TreeReader::child(XmlElement e)
 {
-    if (!known_root_)
-        return;
+    if (!known_root_) return;
     if (e.name == "scene")
         scene(e);
     else if (e.name == "component")
@@ -163,8 +149,7 @@ void TreeReader::child(XmlElement e)
 
 void TreeReader::end(XmlElement root)
 {
-    if (!known_root_)
-        return;
+    if (!known_root_) return;
     if (root.name == "component")
         blueprint_.components.push_back(component(root));
     else
@@ -174,11 +159,9 @@ void TreeReader::end(XmlElement root)
 void TreeReader::scene(const XmlElement& e)
 {
     if (scene_at_.line > 0)
-        return complaints_.add(e.where, "<scene>",
-                               "a second <scene>; the first is in line " + std::to_string(scene_at_.line));
+        return complaints_.add(e.where, "<scene>", "a second <scene>; the first is in line " + std::to_string(scene_at_.line));
     scene_at_ = e.where;
-    for (const XmlAttribute& a : e.attributes)
-        blueprint_.settings.push_back({a.name, a.value, {}, {}, {}, at(e.where)});
+    for (const XmlAttribute& a : e.attributes) blueprint_.settings.push_back({a.name, a.value, {}, {}, {}, at(e.where)});
     refuse_text(e);
     for (const XmlElement& c : e.children)
         if (c.name == "camera")
@@ -222,8 +205,7 @@ ComponentNode TreeReader::component(const XmlElement& e)
     out.where = at(e.where);
     out.id = name_attribute(e, "id"), out.name = name_attribute(e, "name"), out.type = name_attribute(e, "type");
     for (const XmlAttribute& a : e.attributes)
-        if (a.name != "id" && a.name != "name" && a.name != "type")
-            out.attributes.push_back({a.name, a.value, {}, {}, {}, at(e.where)});
+        if (a.name != "id" && a.name != "name" && a.name != "type") out.attributes.push_back({a.name, a.value, {}, {}, {}, at(e.where)});
     refuse_text(e);
     bool after_command = false;
     for (const XmlElement& c : e.children)
@@ -270,8 +252,7 @@ void TreeReader::foreign(const XmlElement& e, const ForeignHandler& handler, Com
         v.where.file = blueprint_.file;
         out.values.push_back(std::move(v));
     }
-    if (out.type.empty())
-        out.type = handler.implied_type;
+    if (out.type.empty()) out.type = handler.implied_type;
 }
 
 void TreeReader::state(const XmlElement& e, ComponentNode& out)
@@ -291,14 +272,11 @@ void TreeReader::add_entry(const XmlElement& e, TextNode& out)
     check_attributes(e, {"name"});
     refuse_children(e);
     const std::string name = required_name(e, "name");
-    if (name.empty())
-        return;
+    if (name.empty()) return;
     for (const Entry& other : out.entries)
-        if (other.name == name)
-            return complaints_.add(e.where, in_tags(e.name), model::quoted(name) + " is given twice");
+        if (other.name == name) return complaints_.add(e.where, in_tags(e.name), model::quoted(name) + " is given twice");
     auto value = parse_entry(e.text);
-    if (!value)
-        return complaints_.add(e.where, in_tags(e.name), model::quoted(name) + ": " + value.error().reason);
+    if (!value) return complaints_.add(e.where, in_tags(e.name), model::quoted(name) + ": " + value.error().reason);
     out.entries.push_back({name, value.take()});
 }
 
@@ -362,8 +340,7 @@ TextNode TreeReader::command_parameter(const XmlElement& e)
             misplaced(c, "<cmdparam>");
         else if (++values == 1)
             command_value(c, out);
-    if (values != 1)
-        complaints_.add(e.where, "<cmdparam>", "needs one <udata>, not " + std::to_string(values));
+    if (values != 1) complaints_.add(e.where, "<cmdparam>", "needs one <udata>, not " + std::to_string(values));
     return out;
 }
 

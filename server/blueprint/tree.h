@@ -22,8 +22,7 @@ public:
     }
     void add(Error error)
     {
-        if (error.where.file.empty())
-            error.where.file = file_;
+        if (error.where.file.empty()) error.where.file = file_;
         if (errors_.size() < kMost)
             errors_.push_back(std::move(error));
         else
@@ -35,8 +34,7 @@ public:
     /// All errors; a last one tells how many are not shown.
     Errors take()
     {
-        if (omitted_ > 0)
-            errors_.push_back({{file_, 0, 0}, {}, std::to_string(omitted_) + " more errors are not shown"});
+        if (omitted_ > 0) errors_.push_back({{file_, 0, 0}, {}, std::to_string(omitted_) + " more errors are not shown"});
         return std::move(errors_);
     }
 

@@ -38,17 +38,13 @@ std::string attribute(std::string_view name, std::string_view value)
 }
 
 /// Ids that can stand in a blank-separated list.
-bool fits_in_list(const std::string& id)
-{
-    return id != "*" && id.find_first_of(" \t\r\n") == id.npos;
-}
+bool fits_in_list(const std::string& id) { return id != "*" && id.find_first_of(" \t\r\n") == id.npos; }
 
 template <class T>
 const T* find_value(const ComponentSpec& c, std::string_view name)
 {
     for (const FieldSpec& f : c.fields)
-        if (f.name == name)
-            return std::get_if<T>(&f.value);
+        if (f.name == name) return std::get_if<T>(&f.value);
     return nullptr;
 }
 
@@ -58,8 +54,7 @@ public:
     LongForm(const model::SceneSpec& scene, model::TypeSource& types) : scene_(scene), types_(types)
     {
         for (const ComponentSpec& c : scene.components) ids_.insert(c.id);
-        for (const ComponentSpec& c : scene.components)
-            children_[ids_.contains(c.parent) ? c.parent : std::string()].push_back(&c);
+        for (const ComponentSpec& c : scene.components) children_[ids_.contains(c.parent) ? c.parent : std::string()].push_back(&c);
     }
 
     std::string run()
@@ -81,44 +76,37 @@ private:
             out_ += attribute("solver", s.solver);
         else if (s.solver_type != model::SceneSettings{}.solver_type)
             out_ += attribute("solver", s.solver_type);
-        if (!s.title.empty())
-            out_ += attribute("title", s.title);
+        if (!s.title.empty()) out_ += attribute("title", s.title);
         out_ += s.cameras.empty() ? "/>\n" : ">\n";
         for (const model::Camera& c : s.cameras)
             out_ += "    <camera" + attribute("id", c.name) + attribute("position", model::format_value(c.position)) +
                     attribute("look_at", model::format_value(c.look_at)) + attribute("up", model::format_value(c.up)) +
                     attribute("field_of_view", model::format_real(c.field_of_view)) + "/>\n";
-        if (!s.cameras.empty())
-            out_ += "  </scene>\n";
+        if (!s.cameras.empty()) out_ += "  </scene>\n";
     }
 
     static std::string step_length(const model::StepLength& dt)
     {
-        if (dt.denominator <= 0)
-            return model::format_real(dt.seconds);
+        if (dt.denominator <= 0) return model::format_real(dt.seconds);
         return std::to_string(dt.numerator) + "/" + std::to_string(dt.denominator);
     }
 
     void component(const ComponentSpec& c, std::size_t depth, bool top)
     {
         out_ += indent(depth) + "<component" + attribute("id", c.id);
-        if (!c.name.empty())
-            out_ += attribute("name", c.name);
-        if (!c.type.empty())
-            out_ += attribute("type", c.type);
+        if (!c.name.empty()) out_ += attribute("name", c.name);
+        if (!c.type.empty()) out_ += attribute("type", c.type);
         for (const RoleSpec& r : c.roles) role_attribute(r);
         out_ += ">\n";
         const std::size_t content = out_.size();
 
-        if (!c.alias_of.empty())
-            reference(c.alias_of, depth + 1);
+        if (!c.alias_of.empty()) reference(c.alias_of, depth + 1);
         for (const std::string& id : c.group) reference(id, depth + 1);
         for (const RoleSpec& r : c.roles) role_element(r, depth + 1);
         fields(c, depth + 1);
         if (const auto at = children_.find(c.id); at != children_.end())
             for (const ComponentSpec* child : at->second) component(*child, depth + 1, false);
-        if (top)
-            simulation(c, depth + 1);
+        if (top) simulation(c, depth + 1);
 
         if (out_.size() > content)
             out_ += indent(depth) + "</component>\n";
@@ -126,10 +114,7 @@ private:
             out_.replace(content - 2, 2, "/>\n");
     }
 
-    void reference(const std::string& id, std::size_t depth)
-    {
-        out_ += indent(depth) + "<compref>" + escape_text(id) + "</compref>\n";
-    }
+    void reference(const std::string& id, std::size_t depth) { out_ += indent(depth) + "<compref>" + escape_text(id) + "</compref>\n"; }
 
     static std::string joined(const RoleSpec& r)
     {
@@ -143,22 +128,18 @@ private:
     /// list.
     bool is_list(const RoleSpec& r) const
     {
-        if (r.everyone)
-            return true;
-        return std::all_of(r.members.begin(), r.members.end(), fits_in_list) &&
-               (r.members.size() < 2 || !ids_.contains(joined(r)));
+        if (r.everyone) return true;
+        return std::all_of(r.members.begin(), r.members.end(), fits_in_list) && (r.members.size() < 2 || !ids_.contains(joined(r)));
     }
 
     void role_attribute(const RoleSpec& r)
     {
-        if (is_list(r) && !joined(r).empty())
-            out_ += attribute(r.name, joined(r));
+        if (is_list(r) && !joined(r).empty()) out_ += attribute(r.name, joined(r));
     }
 
     void role_element(const RoleSpec& r, std::size_t depth)
     {
-        if (is_list(r))
-            return;
+        if (is_list(r)) return;
         out_ += indent(depth) + "<param" + attribute("name", r.name) + ">\n";
         for (const std::string& id : r.members) reference(id, depth + 1);
         out_ += indent(depth) + "</param>\n";
@@ -170,16 +151,13 @@ private:
         const Integers* triangles = find_value<Integers>(c, "triangles");
         const bool mesh = vertices && triangles && is_xgl_mesh(*vertices, *triangles);
         for (const FieldSpec& f : c.fields)
-            if (!mesh || (f.name != "vertices" && f.name != "triangles"))
-                field(f, depth);
-        if (mesh)
-            out_ += write_xgl_mesh(*vertices, *triangles, 2 * depth);
+            if (!mesh || (f.name != "vertices" && f.name != "triangles")) field(f, depth);
+        if (mesh) out_ += write_xgl_mesh(*vertices, *triangles, 2 * depth);
     }
 
     void field(const FieldSpec& f, std::size_t depth)
     {
-        if (type_of(f.value) == FieldType::None)
-            return;
+        if (type_of(f.value) == FieldType::None) return;
         const Entries* entries = std::get_if<Entries>(&f.value);
         const std::string open = indent(depth) + "<param" + attribute("name", f.name) + ">";
         if (!entries)
@@ -189,15 +167,12 @@ private:
         }
         const bool is_state = f.name == "state" && !entries->empty();  // an empty record needs a <param> to be given
         const std::string tag = is_state ? "state" : "entry";
-        if (entries->empty())
-            return void(out_ += open + "</param>\n");
-        if (!is_state)
-            out_ += open + "\n";
+        if (entries->empty()) return void(out_ += open + "</param>\n");
+        if (!is_state) out_ += open + "\n";
         for (const Entry& e : *entries)
             out_ += indent(is_state ? depth : depth + 1) + "<" + tag + attribute("name", e.name) + ">" +
                     escape_text(format_entry(e.value)) + "</" + tag + ">\n";
-        if (!is_state)
-            out_ += indent(depth) + "</param>\n";
+        if (!is_state) out_ += indent(depth) + "</param>\n";
     }
 
     void collect(const ComponentSpec& c, Simulation& sim)
@@ -206,8 +181,7 @@ private:
         {
             sim.any_type = true;
             for (const CommandInfo& command : type->info.commands)
-                if (takes_part(c, command))
-                    sim.entries.push_back({command.phase, &c, command.name});
+                if (takes_part(c, command)) sim.entries.push_back({command.phase, &c, command.name});
         }
         if (const auto at = children_.find(c.id); at != children_.end())
             for (const ComponentSpec* child : at->second) collect(*child, sim);
@@ -224,8 +198,7 @@ private:
     static bool takes_part(const ComponentSpec& c, const CommandInfo& command)
     {
         const bool listed = std::find(c.commands.begin(), c.commands.end(), command.name) != c.commands.end();
-        if (command.phase == Phase::Prepare || command.phase == Phase::Connect)
-            return c.explicit_commands && listed;
+        if (command.phase == Phase::Prepare || command.phase == Phase::Connect) return c.explicit_commands && listed;
         return !c.explicit_commands || listed || command.phase == Phase::Measure;
     }
 
@@ -240,17 +213,14 @@ private:
     {
         Simulation sim;
         collect(c, sim);
-        if (!sim.any_type)
-            return;
+        if (!sim.any_type) return;
         // Within a stage, the order of the step; a list that contradicts it would be refused.
         std::stable_sort(sim.entries.begin(), sim.entries.end(),
                          [](const StageEntry& a, const StageEntry& b) { return a.phase < b.phase; });
         out_ += indent(depth) + "<command" + attribute("name", simulation_name(c)) + ">\n";
         bool empty = true;
-        for (int s = 0; s <= static_cast<int>(Stage::Deinit); ++s)
-            empty = !stage(static_cast<Stage>(s), sim, depth + 1) && empty;
-        if (empty)
-            out_ += indent(depth + 1) + "<command name=\"Stage/Init\"/>\n";
+        for (int s = 0; s <= static_cast<int>(Stage::Deinit); ++s) empty = !stage(static_cast<Stage>(s), sim, depth + 1) && empty;
+        if (empty) out_ += indent(depth + 1) + "<command name=\"Stage/Init\"/>\n";
         out_ += indent(depth) + "</command>\n";
     }
 
@@ -259,12 +229,10 @@ private:
         std::string lines;
         for (const StageEntry& e : sim.entries)
             if (stage_of(e.phase) == stage)
-                lines += indent(depth + 1) + "<command" + attribute("subject", e.subject->id) +
-                         attribute("type", e.command) + "/>\n";
-        if (lines.empty())
-            return false;
-        out_ += indent(depth) + "<command" + attribute("name", "Stage/" + std::string(name_of(stage))) + ">\n" + lines +
-                indent(depth) + "</command>\n";
+                lines += indent(depth + 1) + "<command" + attribute("subject", e.subject->id) + attribute("type", e.command) + "/>\n";
+        if (lines.empty()) return false;
+        out_ += indent(depth) + "<command" + attribute("name", "Stage/" + std::string(name_of(stage))) + ">\n" + lines + indent(depth) +
+                "</command>\n";
         return true;
     }
 
@@ -312,19 +280,10 @@ std::string escaped(std::string_view text, bool attribute)
 
 }  // namespace
 
-std::string escape_text(std::string_view text)
-{
-    return escaped(text, false);
-}
+std::string escape_text(std::string_view text) { return escaped(text, false); }
 
-std::string escape_attribute(std::string_view text)
-{
-    return escaped(text, true);
-}
+std::string escape_attribute(std::string_view text) { return escaped(text, true); }
 
-std::string write_long_form(const model::SceneSpec& scene, model::TypeSource& types)
-{
-    return LongForm(scene, types).run();
-}
+std::string write_long_form(const model::SceneSpec& scene, model::TypeSource& types) { return LongForm(scene, types).run(); }
 
 }  // namespace plab::blueprint

@@ -14,16 +14,13 @@ namespace
 {
 
 /// Elements of a mesh that carry looks only.
-constexpr std::string_view kLooks[] = {"N",       "TC",         "MAT",         "SURFACE", "L",   "LINE",
-                                       "TEXTURE", "TEXTURERGB", "TEXTURERGBA", "NAME",    "DATA"};
+constexpr std::string_view kLooks[] = {"N", "TC", "MAT", "SURFACE", "L", "LINE", "TEXTURE", "TEXTURERGB", "TEXTURERGBA", "NAME", "DATA"};
 
 bool is_look(const XmlElement& e)
 {
-    if (e.name.starts_with("EXT"))
-        return true;  // the specification's prefix for applications' own data
+    if (e.name.starts_with("EXT")) return true;  // the specification's prefix for applications' own data
     for (const std::string_view name : kLooks)
-        if (e.name == name)
-            return true;
+        if (e.name == name) return true;
     return false;
 }
 
@@ -33,18 +30,14 @@ bool parse_point(std::string_view text, Reals& out)
     for (int i = 0; i < 3; ++i)
     {
         const std::size_t comma = text.find(',');
-        if ((comma == text.npos) != (i == 2))
-            return false;
+        if ((comma == text.npos) != (i == 2)) return false;
         std::string_view number = model::trimmed(text.substr(0, comma));
-        if (number.starts_with('+'))
-            number.remove_prefix(1);
+        if (number.starts_with('+')) number.remove_prefix(1);
         double value = 0;
         const auto [end, status] = std::from_chars(number.data(), number.data() + number.size(), value);
-        if (status != std::errc() || end != number.data() + number.size() || !std::isfinite(value))
-            return false;
+        if (status != std::errc() || end != number.data() + number.size() || !std::isfinite(value)) return false;
         out.push_back(value);
-        if (i < 2)
-            text.remove_prefix(comma + 1);
+        if (i < 2) text.remove_prefix(comma + 1);
     }
     return true;
 }
@@ -55,37 +48,27 @@ public:
     Result<std::vector<model::ValueNode>> run(const XmlElement& mesh)
     {
         for (const XmlElement& e : mesh.children)
-            if (e.name == "P")
-                point(e);
+            if (e.name == "P") point(e);
         for (const XmlElement& e : mesh.children) part(e, "<MESH>");
-        if (mesh.text_where.line > 0)
-            complain(mesh.text_where, "<MESH>", "stray text");
-        if (faces_ == 0)
-            complain(mesh.where, "<MESH>", "a mesh needs at least one face <F>");
-        if (!errors_.empty())
-            return std::move(errors_);
+        if (mesh.text_where.line > 0) complain(mesh.text_where, "<MESH>", "stray text");
+        if (faces_ == 0) complain(mesh.where, "<MESH>", "a mesh needs at least one face <F>");
+        if (!errors_.empty()) return std::move(errors_);
         const SourceLocation where{{}, mesh.where.line, mesh.where.column};
-        return std::vector<model::ValueNode>{{"vertices", std::move(vertices_), where},
-                                             {"triangles", std::move(triangles_), where}};
+        return std::vector<model::ValueNode>{{"vertices", std::move(vertices_), where}, {"triangles", std::move(triangles_), where}};
     }
 
 private:
     void complain(Place at, std::string element, std::string why)
     {
-        if (errors_.size() < kMostErrors)
-            errors_.push_back({{{}, at.line, at.column}, std::move(element), std::move(why)});
+        if (errors_.size() < kMostErrors) errors_.push_back({{{}, at.line, at.column}, std::move(element), std::move(why)});
     }
 
     void part(const XmlElement& e, const char* parent)
     {
-        if (e.name == "P" || e.name == "N" || e.name == "TC")
-            unique_id(e);
-        if (e.name == "P" || is_look(e))
-            return;
-        if (e.name == "F")
-            return face(e);
-        if (e.name != "PATCH")
-            return complain(e.where, "<" + e.name + ">", std::string("unknown element in ") + parent);
+        if (e.name == "P" || e.name == "N" || e.name == "TC") unique_id(e);
+        if (e.name == "P" || is_look(e)) return;
+        if (e.name == "F") return face(e);
+        if (e.name != "PATCH") return complain(e.where, "<" + e.name + ">", std::string("unknown element in ") + parent);
         for (const XmlElement& f : e.children)
             if (f.name == "F" || is_look(f))
                 part(f, "<PATCH>");
@@ -96,10 +79,8 @@ private:
     void unique_id(const XmlElement& e)
     {
         const std::string* id = e.find_attribute("ID");
-        if (!id)
-            return complain(e.where, "<" + e.name + ">", "needs an attribute 'ID'");
-        if (!ids_.emplace(e.name, *id).second)
-            complain(e.where, "<" + e.name + ">", "ID " + model::quoted(*id) + " is there already");
+        if (!id) return complain(e.where, "<" + e.name + ">", "needs an attribute 'ID'");
+        if (!ids_.emplace(e.name, *id).second) complain(e.where, "<" + e.name + ">", "ID " + model::quoted(*id) + " is there already");
     }
 
     void point(const XmlElement& e)
@@ -108,12 +89,10 @@ private:
         if (!parse_point(e.text, xyz) || !e.children.empty())
         {
             complain(e.where, "<P>",
-                     model::quoted(model::trimmed(e.text)) +
-                         " is no point; three numbers with commas between them are needed");
+                     model::quoted(model::trimmed(e.text)) + " is no point; three numbers with commas between them are needed");
             xyz.assign(3, 0.0);  // keeps its ID known, so that its faces are not blamed too
         }
-        if (const std::string* id = e.find_attribute("ID"))
-            index_of_.emplace(*id, static_cast<std::int64_t>(vertices_.size() / 3));
+        if (const std::string* id = e.find_attribute("ID")) index_of_.emplace(*id, static_cast<std::int64_t>(vertices_.size() / 3));
         vertices_.insert(vertices_.end(), xyz.begin(), xyz.end());
     }
 
@@ -129,19 +108,16 @@ private:
             else if (i >= 0 && i < 3)
                 complain(c.where, "<" + c.name + ">", "the face has this corner already");
             else if (i >= 3 && i < 9)
-                complain(c.where, "<" + c.name + ">",
-                         "a face has three corners, <FV1> to <FV3>; split it into triangles");
+                complain(c.where, "<" + c.name + ">", "a face has three corners, <FV1> to <FV3>; split it into triangles");
             else if (c.name != "MATREF" && c.name != "TEXTUREREF" && !is_look(c))
                 complain(c.where, "<" + c.name + ">", "unknown element in <F>");
         }
         std::int64_t index[3];
         for (int i = 0; i < 3; ++i)
         {
-            if (!corners[i])
-                return complain(e.where, "<F>", "a face needs three corners, <FV1> to <FV3>");
+            if (!corners[i]) return complain(e.where, "<F>", "a face needs three corners, <FV1> to <FV3>");
             index[i] = corner(*corners[i]);
-            if (index[i] < 0)
-                return;
+            if (index[i] < 0) return;
         }
         if (index[0] == index[1] || index[1] == index[2] || index[2] == index[0])
             return complain(e.where, "<F>", "a face needs three different points");
@@ -154,19 +130,16 @@ private:
         const XmlElement* found = nullptr;
         for (const XmlElement& c : e.children)
         {
-            if (c.name == "PREF" && found)
-                return complain(c.where, "<PREF>", "a corner has one point"), -1;
+            if (c.name == "PREF" && found) return complain(c.where, "<PREF>", "a corner has one point"), -1;
             if (c.name == "PREF")
                 found = &c;
             else if (c.name != "NREF" && c.name != "TCREF" && c.name != "N" && c.name != "TC")
                 return complain(c.where, "<" + c.name + ">", "unknown element in <" + e.name + ">"), -1;
         }
-        if (!found)
-            return complain(e.where, "<" + e.name + ">", "a corner needs a <PREF>"), -1;
+        if (!found) return complain(e.where, "<" + e.name + ">", "a corner needs a <PREF>"), -1;
         const std::string_view id = model::trimmed(found->text);
         const auto at = index_of_.find(id);
-        if (at == index_of_.end())
-            return complain(found->where, "<PREF>", "no point <P> has the ID " + model::quoted(id)), -1;
+        if (at == index_of_.end()) return complain(found->where, "<PREF>", "no point <P> has the ID " + model::quoted(id)), -1;
         return at->second;
     }
 
@@ -182,10 +155,7 @@ private:
 
 }  // namespace
 
-Result<std::vector<model::ValueNode>> read_xgl_mesh(const XmlElement& mesh)
-{
-    return MeshReading().run(mesh);
-}
+Result<std::vector<model::ValueNode>> read_xgl_mesh(const XmlElement& mesh) { return MeshReading().run(mesh); }
 
 ForeignHandlers xgl_handlers()
 {
@@ -217,19 +187,15 @@ std::string write_xgl_mesh(const Reals& vertices, const Integers& triangles, std
 bool is_xgl_mesh(const Reals& vertices, const Integers& triangles)
 {
     const std::int64_t points = static_cast<std::int64_t>(vertices.size() / 3);
-    if (vertices.size() % 3 != 0 || triangles.size() % 3 != 0 || triangles.empty())
-        return false;
+    if (vertices.size() % 3 != 0 || triangles.size() % 3 != 0 || triangles.empty()) return false;
     for (const double v : vertices)
-        if (!std::isfinite(v))
-            return false;
+        if (!std::isfinite(v)) return false;
     for (std::size_t f = 0; f < triangles.size(); f += 3)
     {
         const std::int64_t a = triangles[f], b = triangles[f + 1], c = triangles[f + 2];
-        if (a == b || b == c || c == a)
-            return false;
+        if (a == b || b == c || c == a) return false;
         for (const std::int64_t i : {a, b, c})
-            if (i < 0 || i >= points)
-                return false;
+            if (i < 0 || i >= points) return false;
     }
     return true;
 }

@@ -30,10 +30,8 @@ Place place_of(std::string_view text, std::size_t offset)
     Place at{1, 1};
     for (const char c : text.substr(0, offset))
     {
-        if ((static_cast<unsigned char>(c) & 0xC0) != 0x80)
-            ++at.column;
-        if (c == '\n')
-            ++at.line, at.column = 1;
+        if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) ++at.column;
+        if (c == '\n') ++at.line, at.column = 1;
     }
     return at;
 }
@@ -44,10 +42,8 @@ std::size_t utf8_length(std::string_view s)
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < s.size() ? s[i] : '\0'); };
     const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0) == 0x80; };
     const unsigned char a = byte(0), b = byte(1);
-    if (a < 0x80)
-        return 1;
-    if (a >= 0xC2 && a <= 0xDF)
-        return follows(1) ? 2 : 0;
+    if (a < 0x80) return 1;
+    if (a >= 0xC2 && a <= 0xDF) return follows(1) ? 2 : 0;
     if (a >= 0xE0 && a <= 0xEF)
     {
         const bool overlong = a == 0xE0 && b < 0xA0, surrogate = a == 0xED && b > 0x9F;
@@ -71,13 +67,10 @@ std::optional<Error> check_encoding(std::string_view text)
     for (std::size_t i = 0; i < text.size();)
     {
         const std::size_t n = utf8_length(text.substr(i));
-        if (n == 0)
-            return error_at(at, {}, "the text is not valid UTF-8");
-        if (text[i] == '\0')
-            return error_at(at, {}, "a NUL character cannot stand in XML");
+        if (n == 0) return error_at(at, {}, "the text is not valid UTF-8");
+        if (text[i] == '\0') return error_at(at, {}, "a NUL character cannot stand in XML");
         ++at.column;
-        if (text[i] == '\n')
-            ++at.line, at.column = 1;
+        if (text[i] == '\n') ++at.line, at.column = 1;
         i += n;
     }
     return {};
@@ -101,27 +94,19 @@ public:
     bool run(std::string_view text)
     {
         text_ = text;
-        if (XML_Parse(parser_.get(), text.data(), static_cast<int>(text.size()), XML_TRUE) == XML_STATUS_OK)
-            return true;
-        if (!stopped_)
-            errors_.push_back(error_at(place(), {}, "not well-formed XML: " + parser_complaint()));
+        if (XML_Parse(parser_.get(), text.data(), static_cast<int>(text.size()), XML_TRUE) == XML_STATUS_OK) return true;
+        if (!stopped_) errors_.push_back(error_at(place(), {}, "not well-formed XML: " + parser_complaint()));
         return false;
     }
 
 private:
     static Reading& self(void* data) { return *static_cast<Reading*>(data); }
-    static void on_start(void* d, const XML_Char* name, const XML_Char** attributes)
-    {
-        self(d).start(name, attributes);
-    }
+    static void on_start(void* d, const XML_Char* name, const XML_Char** attributes) { self(d).start(name, attributes); }
     static void on_end(void* d, const XML_Char*) { self(d).finish(); }
     static void on_text(void* d, const XML_Char* s, int n) { self(d).add_text({s, static_cast<std::size_t>(n)}); }
     static void on_instruction(void* d, const XML_Char* target, const XML_Char*) { self(d).instruction(target); }
     static void on_doctype(void* d, const XML_Char*, const XML_Char*, const XML_Char*, int) { self(d).doctype(); }
-    static void on_declaration(void* d, const XML_Char*, const XML_Char* encoding, int)
-    {
-        self(d).declaration(encoding);
-    }
+    static void on_declaration(void* d, const XML_Char*, const XML_Char* encoding, int) { self(d).declaration(encoding); }
 
     Place place() const
     {
@@ -132,8 +117,7 @@ private:
     void stop(std::string element, std::string why) { stop_at(place(), std::move(element), std::move(why)); }
     void stop_at(Place where, std::string element, std::string why)
     {
-        if (stopped_)
-            return;
+        if (stopped_) return;
         stopped_ = true;
         errors_.push_back(error_at(where, std::move(element), std::move(why)));
         XML_StopParser(parser_.get(), XML_FALSE);
@@ -146,8 +130,7 @@ private:
         switch (code)
         {
             case XML_ERROR_NO_ELEMENTS:
-                if (open_.empty())
-                    return "the document has no element";
+                if (open_.empty()) return "the document has no element";
                 return in_tags(open_.back().name) + open + " is never closed";
             case XML_ERROR_TAG_MISMATCH:
                 return "a closing tag that does not match the open " + in_tags(open_.back().name) + open;
@@ -162,12 +145,9 @@ private:
 
     void instruction(std::string_view target)
     {
-        if (stopped_)
-            return;
-        errors_.push_back(
-            error_at(place(), "<?" + std::string(target.substr(0, 40)) + "?>", "processing instructions are refused"));
-        if (++instructions_ >= kMostInstructions)
-            stop({}, "too many processing instructions");
+        if (stopped_) return;
+        errors_.push_back(error_at(place(), "<?" + std::string(target.substr(0, 40)) + "?>", "processing instructions are refused"));
+        if (++instructions_ >= kMostInstructions) stop({}, "too many processing instructions");
     }
 
     void doctype()
@@ -181,40 +161,34 @@ private:
 
     void declaration(const XML_Char* encoding)
     {
-        if (!encoding)
-            return;
+        if (!encoding) return;
         const std::string_view e = encoding;
         const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
         constexpr std::string_view wanted = "utf-8";
         bool same = e.size() == wanted.size();
         for (std::size_t i = 0; same && i < e.size(); ++i) same = lower(e[i]) == wanted[i];
-        if (!same)
-            stop("<?xml?>", "encoding " + model::quoted(e) + " is refused; a blueprint must be UTF-8");
+        if (!same) stop("<?xml?>", "encoding " + model::quoted(e) + " is refused; a blueprint must be UTF-8");
     }
 
     bool within_limits(std::string_view name, const XML_Char** attributes)
     {
-        if (++elements_ > limits_.elements)
-            return stop({}, "more than " + std::to_string(limits_.elements) + " elements"), false;
+        if (++elements_ > limits_.elements) return stop({}, "more than " + std::to_string(limits_.elements) + " elements"), false;
         if (name.size() > limits_.name)
             return stop({}, "the name of an element has " + std::to_string(name.size()) + " characters; at most " +
                                 std::to_string(limits_.name) + " are allowed"),
                    false;
         if (open_.size() >= limits_.depth)
-            return stop(in_tags(name), "elements are nested more than " + std::to_string(limits_.depth) + " deep"),
-                   false;
+            return stop(in_tags(name), "elements are nested more than " + std::to_string(limits_.depth) + " deep"), false;
         std::size_t n = 0;
         for (; attributes[2 * n]; ++n)
         {
             if (n >= limits_.attributes)
                 return stop(in_tags(name), "more than " + std::to_string(limits_.attributes) + " attributes"), false;
             if (std::strlen(attributes[2 * n]) > limits_.name)
-                return stop(in_tags(name),
-                            "the name of an attribute has more than " + std::to_string(limits_.name) + " characters"),
-                       false;
+                return stop(in_tags(name), "the name of an attribute has more than " + std::to_string(limits_.name) + " characters"), false;
             if (std::strlen(attributes[2 * n + 1]) > limits_.text)
-                return stop(in_tags(name), "the value of attribute " + model::quoted(attributes[2 * n]) +
-                                               " is longer than " + std::to_string(limits_.text) + " bytes"),
+                return stop(in_tags(name), "the value of attribute " + model::quoted(attributes[2 * n]) + " is longer than " +
+                                               std::to_string(limits_.text) + " bytes"),
                        false;
         }
         return true;
@@ -222,20 +196,17 @@ private:
 
     void start(std::string_view name, const XML_Char** attributes)
     {
-        if (stopped_ || !within_limits(name, attributes))
-            return;
+        if (stopped_ || !within_limits(name, attributes)) return;
         XmlElement e;
         e.name = name, e.where = place();
         for (std::size_t i = 0; attributes[i]; i += 2) e.attributes.push_back({attributes[i], attributes[i + 1]});
-        if (open_.empty())
-            streams_ = sink_.begin(e);
+        if (open_.empty()) streams_ = sink_.begin(e);
         open_.push_back(std::move(e));
     }
 
     void add_text(std::string_view s)
     {
-        if (stopped_ || open_.empty())
-            return;
+        if (stopped_ || open_.empty()) return;
         XmlElement& e = open_.back();
         if (e.text.size() + s.size() > limits_.text)
             return stop(in_tags(e.name), "the text is longer than " + std::to_string(limits_.text) + " bytes");
@@ -252,8 +223,7 @@ private:
 
     void finish()
     {
-        if (stopped_)
-            return;
+        if (stopped_) return;
         XmlElement done = std::move(open_.back());
         open_.pop_back();
         if (open_.empty())
@@ -295,9 +265,6 @@ bool parse_xml(std::string_view text, const XmlLimits& limits, XmlSink& sink, Er
     return Reading(limits, sink, errors).run(text);
 }
 
-std::string in_tags(std::string_view name)
-{
-    return "<" + std::string(name) + ">";
-}
+std::string in_tags(std::string_view name) { return "<" + std::string(name) + ">"; }
 
 }  // namespace plab::blueprint

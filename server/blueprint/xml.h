@@ -42,8 +42,7 @@ struct XmlElement
     const std::string* find_attribute(std::string_view wanted) const
     {
         for (const XmlAttribute& a : attributes)
-            if (a.name == wanted)
-                return &a.value;
+            if (a.name == wanted) return &a.value;
         return nullptr;
     }
 };

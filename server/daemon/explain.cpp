@@ -32,8 +32,8 @@ std::string step_text(const simulation::Stepper& stepper)
     for (const simulation::StepNode& node : simulation::kStepTree)
     {
         const bool needed = (stepper.*node.needed)();
-        out += std::string("  ") + (needed ? "runs      " : "left out  ") + std::string(name_of(node.stage)) + "." + std::string(node.name) + ": " +
-               std::string(node.what) + "\n";
+        out += std::string("  ") + (needed ? "runs      " : "left out  ") + std::string(name_of(node.stage)) + "." +
+               std::string(node.name) + ": " + std::string(node.what) + "\n";
     }
     return out;
 }
@@ -63,8 +63,8 @@ std::string groups_text(const simulation::Simulation& s)
         out += "\n";
     }
     for (const simulation::ShaftTree& t : s.stepper().graph().trees())
-        out += "constraint graph: " + std::to_string(t.count) + " shafts move with " + s.world().id_of(Ref{Facet::Shaft, t.root}) + ", one degree of freedom, " +
-               std::to_string(t.redundant) + " redundant couplings\n";
+        out += "constraint graph: " + std::to_string(t.count) + " shafts move with " + s.world().id_of(Ref{Facet::Shaft, t.root}) +
+               ", one degree of freedom, " + std::to_string(t.redundant) + " redundant couplings\n";
     return out;
 }
 
@@ -93,7 +93,8 @@ std::string explain(const simulation::Simulation& s, const plugins::PluginLibrar
         bodies += s.world().component(i).facet == Facet::Body ? 1 : 0;
         shafts += s.world().component(i).facet == Facet::Shaft ? 1 : 0;
     }
-    std::string out = "objects: " + std::to_string(bodies) + " bodies in space, " + std::to_string(shafts) + " shafts with one degree of freedom\n";
+    std::string out =
+        "objects: " + std::to_string(bodies) + " bodies in space, " + std::to_string(shafts) + " shafts with one degree of freedom\n";
     if (bodies == 0) out += "no 3-D state: no body is in the scene\n";
     return out + plugins_text(library) + step_text(s.stepper()) + groups_text(s) + collision_text(s);
 }

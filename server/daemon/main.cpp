@@ -44,10 +44,17 @@ int carry_out(const plab::daemon::Options& options)
     if (auto loaded = simulation.load(*scene); !loaded) return fail(loaded.errors());
     switch (options.task)
     {
-        case plab::daemon::Task::Check: std::printf("%s: %zu components, no errors\n", options.scene.c_str(), scene->components.size()); return 0;
-        case plab::daemon::Task::Expand: std::fputs(plab::blueprint::write_long_form(*scene, library).c_str(), stdout); return 0;
-        case plab::daemon::Task::Explain: std::fputs(plab::daemon::explain(simulation, library).c_str(), stdout); return 0;
-        default: return plab::daemon::run(simulation, options, stop);
+        case plab::daemon::Task::Check:
+            std::printf("%s: %zu components, no errors\n", options.scene.c_str(), scene->components.size());
+            return 0;
+        case plab::daemon::Task::Expand:
+            std::fputs(plab::blueprint::write_long_form(*scene, library).c_str(), stdout);
+            return 0;
+        case plab::daemon::Task::Explain:
+            std::fputs(plab::daemon::explain(simulation, library).c_str(), stdout);
+            return 0;
+        default:
+            return plab::daemon::run(simulation, options, stop);
     }
 }
 

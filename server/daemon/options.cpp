@@ -75,19 +75,24 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     app.footer(kExamples);
     app.set_version_flag("--version", std::string("plabd ") + PLAB_VERSION);
     app.add_option("scene", options.scene, "blueprint (XML)");
-    app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")->check(CLI::NonNegativeNumber);
+    app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")
+        ->check(CLI::NonNegativeNumber);
     app.add_option("--out", options.out, "write the end state as JSON to FILE (- is standard output)")->type_name("FILE");
     app.add_option("--trace", options.trace, "write the course as CSV to FILE")->type_name("FILE");
-    app.add_option("--every", options.every, "simulated seconds between rows of --trace; default: each step")->check(CLI::NonNegativeNumber);
+    app.add_option("--every", options.every, "simulated seconds between rows of --trace; default: each step")
+        ->check(CLI::NonNegativeNumber);
     app.add_option("--threads", options.threads, "threads that step; the result is the same for any number")->check(CLI::Range(1, 256));
-    app.add_option("--log-level", options.log_level, "what goes to standard error")->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
+    app.add_option("--log-level", options.log_level, "what goes to standard error")
+        ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
     app.add_flag("--table", options.table, "show a live table of the scene's course");
     app.add_flag("--hashes", options.hashes, "print the state hash of each step");
     app.add_flag("--maps", options.maps, "print the libraries that are mapped at the end of the run");
     std::string rate;
     app.add_option("--rate", rate, "real, max, or a factor of real time; default: max with --until, else real");
     std::vector<std::string> swaps, sets;
-    app.add_option("--swap", swaps, "[STEP:]ID=TYPE: exchange a component at a step boundary (may be repeated)")->take_all()->allow_extra_args(false);
+    app.add_option("--swap", swaps, "[STEP:]ID=TYPE: exchange a component at a step boundary (may be repeated)")
+        ->take_all()
+        ->allow_extra_args(false);
     app.add_option("--set", sets, "[STEP:]ID.name=value: set a parameter or state (may be repeated)")->take_all()->allow_extra_args(false);
     bool check = false, expand = false, explain = false, reference = false;
     app.add_flag("--check", check, "only check the blueprint");

@@ -31,15 +31,15 @@ struct Options
 {
     Task task = Task::Run;
     std::string scene;
-    double until = -1;          ///< s; < 0: until a signal
-    std::string out;            ///< JSON of the end state; "-" is standard output
-    std::string trace;          ///< CSV over time
-    double every = 0;           ///< s between trace rows; 0: each step
-    double rate = -1;           ///< 1: real time; 0: as fast as it goes; < 0: not given
+    double until = -1;  ///< s; < 0: until a signal
+    std::string out;    ///< JSON of the end state; "-" is standard output
+    std::string trace;  ///< CSV over time
+    double every = 0;   ///< s between trace rows; 0: each step
+    double rate = -1;   ///< 1: real time; 0: as fast as it goes; < 0: not given
     int threads = 1;
     bool table = false;
-    bool maps = false;          ///< print the mapped libraries at the end
-    bool hashes = false;        ///< print the state hash of each step
+    bool maps = false;    ///< print the mapped libraries at the end
+    bool hashes = false;  ///< print the state hash of each step
     std::string log_level = "info";
     std::vector<ScheduledOperation> operations;
 };

@@ -58,7 +58,8 @@ std::string object_json(const world::World& world, std::uint32_t i)
         return "{\"angle\": " + number(world.host().shafts.angle[c.host_index]) +
                ", \"angular_velocity\": " + number(world.host().shafts.speed[c.host_index]) + "}";
     const auto hosted = [&](const char* name) { return world::get_hosted(world.host(), Facet::Body, c.host_index, name); };
-    return "{\"position\": " + array(std::get<Vec3>(hosted("position"))) + ", \"orientation\": " + array(std::get<Quat>(hosted("orientation"))) +
+    return "{\"position\": " + array(std::get<Vec3>(hosted("position"))) +
+           ", \"orientation\": " + array(std::get<Quat>(hosted("orientation"))) +
            ", \"linear_velocity\": " + array(std::get<Vec3>(hosted("linear_velocity"))) +
            ", \"angular_velocity\": " + array(std::get<Vec3>(hosted("angular_velocity"))) + "}";
 }
@@ -109,7 +110,8 @@ std::string end_state_json(const simulation::Simulation& s)
         if (is_object(world.component(i)))
             objects += (objects.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + object_json(world, i);
         if (is_interaction(world, i))
-            interactions += (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + interaction_json(s, i);
+            interactions +=
+                (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + interaction_json(s, i);
     }
     const auto& cost = s.stepper().cost();
     const double per_step = cost.steps == 0 ? 0 : static_cast<double>(cost.total) / static_cast<double>(cost.steps);
@@ -140,9 +142,10 @@ Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simula
         if (!is_object(c)) continue;
         trace->objects_.push_back({c.id, c.facet == Facet::Shaft ? 2u : 13u});
         const char* const shaft[] = {"angle", "angular_velocity"};
-        const char* const body[] = {"position.x", "position.y", "position.z", "orientation.w", "orientation.x", "orientation.y", "orientation.z",
-                                    "linear_velocity.x", "linear_velocity.y", "linear_velocity.z",
-                                    "angular_velocity.x", "angular_velocity.y", "angular_velocity.z"};
+        const char* const body[] = {"position.x",        "position.y",        "position.z",         "orientation.w",
+                                    "orientation.x",     "orientation.y",     "orientation.z",      "linear_velocity.x",
+                                    "linear_velocity.y", "linear_velocity.z", "angular_velocity.x", "angular_velocity.y",
+                                    "angular_velocity.z"};
         if (c.facet == Facet::Shaft)
             for (const char* name : shaft) header += "," + c.id + "." + name;
         else
@@ -158,8 +161,9 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     last_ = s.tick();
     while (every_ > 0 && next_ <= s.time() * (1 + 1e-12)) next_ += every_;
     const simulation::Totals t = s.totals();
-    std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + hash_text(s.state_hash()) + "," + number(t.kinetic + t.stored) + "," +
-                      number(t.kinetic) + "," + number(t.momentum.x) + "," + number(t.momentum.y) + "," + number(t.momentum.z);
+    std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + hash_text(s.state_hash()) + "," +
+                      number(t.kinetic + t.stored) + "," + number(t.kinetic) + "," + number(t.momentum.x) + "," + number(t.momentum.y) +
+                      "," + number(t.momentum.z);
     for (const auto& [id, columns] : objects_)
     {
         const std::uint32_t i = s.world().find(id);
@@ -189,7 +193,8 @@ std::string table_text(const simulation::Simulation& s)
 {
     const world::World& world = s.world();
     char line[256];
-    std::snprintf(line, sizeof line, "t = %9.4f s   step %" PRId64 "   energy %.6g J\n", s.time(), s.tick(), s.totals().kinetic + s.totals().stored);
+    std::snprintf(line, sizeof line, "t = %9.4f s   step %" PRId64 "   energy %.6g J\n", s.time(), s.tick(),
+                  s.totals().kinetic + s.totals().stored);
     std::string out = line;
     for (const std::uint32_t i : world.in_id_order())
     {
@@ -200,11 +205,12 @@ std::string table_text(const simulation::Simulation& s)
         else if (c.facet == Facet::Body && world.host().bodies.motion[c.host_index] != Motion::Static)
         {
             const Vec3 p = world.host().bodies.pose(c.host_index).p, v = world.host().bodies.velocity[c.host_index];
-            std::snprintf(line, sizeof line, "  %-24.24s (%8.4f %8.4f %8.4f) m  (%8.4f %8.4f %8.4f) m/s\n", c.id.c_str(), p.x, p.y, p.z, v.x, v.y, v.z);
+            std::snprintf(line, sizeof line, "  %-24.24s (%8.4f %8.4f %8.4f) m  (%8.4f %8.4f %8.4f) m/s\n", c.id.c_str(), p.x, p.y, p.z,
+                          v.x, v.y, v.z);
         }
         else if (is_interaction(world, i))
-            std::snprintf(line, sizeof line, "  %-24.24s %-34.34s %8.0f ns/step  error %.2e\n", c.id.c_str(), world.type_of(i)->info.name.c_str(),
-                          cost_per_step(s, i), s.error_of(i));
+            std::snprintf(line, sizeof line, "  %-24.24s %-34.34s %8.0f ns/step  error %.2e\n", c.id.c_str(),
+                          world.type_of(i)->info.name.c_str(), cost_per_step(s, i), s.error_of(i));
         else
             continue;
         out += line;

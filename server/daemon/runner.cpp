@@ -37,11 +37,16 @@ const char* word(simulation::Fate fate)
 {
     switch (fate)
     {
-        case simulation::Fate::Kept: return "kept";
-        case simulation::Fate::Converted: return "converted";
-        case simulation::Fate::Given: return "given";
-        case simulation::Fate::Fresh: return "fresh";
-        case simulation::Fate::Lost: return "lost";
+        case simulation::Fate::Kept:
+            return "kept";
+        case simulation::Fate::Converted:
+            return "converted";
+        case simulation::Fate::Given:
+            return "given";
+        case simulation::Fate::Fresh:
+            return "fresh";
+        case simulation::Fate::Lost:
+            return "lost";
     }
     return "";
 }
@@ -59,9 +64,10 @@ bool report_replies(simulation::Simulation& s)
             std::string fields;
             for (const simulation::FieldFate& f : swap.fields) fields += fmt::format(" {} {}", f.field, word(f.fate));
             spdlog::info("step {}: {} {} -> {}; pause {:.1f} us;{}", r.step, swap.id, swap.from, swap.to, r.pause_ns * 1e-3, fields);
-            spdlog::info("  first step: energy {:.9g} J -> {:.9g} J (old: {:.9g} J), error {:.3g} (old: {:.3g}), cost {:.1f} us (old: {:.1f} us)",
-                         swap.energy_before, swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error,
-                         swap.with_new.cost_ns * 1e-3, swap.with_old.cost_ns * 1e-3);
+            spdlog::info(
+                "  first step: energy {:.9g} J -> {:.9g} J (old: {:.9g} J), error {:.3g} (old: {:.3g}), cost {:.1f} us (old: {:.1f} us)",
+                swap.energy_before, swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error,
+                swap.with_new.cost_ns * 1e-3, swap.with_old.cost_ns * 1e-3);
         }
     }
     return fine;
@@ -88,7 +94,8 @@ public:
     void wait(double simulated)
     {
         if (rate_ <= 0) return;
-        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>((simulated + slipped_) / rate_));
+        const auto due =
+            begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>((simulated + slipped_) / rate_));
         const auto now = Clock::now();
         if (now < due)
         {
@@ -151,7 +158,8 @@ void print_mapped_libraries()
     std::ifstream maps("/proc/self/maps");
     std::set<std::string> libraries;
     for (std::string line; std::getline(maps, line);)
-        if (const std::size_t path = line.find('/'); path != std::string::npos && line.find(".so", path) != std::string::npos) libraries.insert(line.substr(path));
+        if (const std::size_t path = line.find('/'); path != std::string::npos && line.find(".so", path) != std::string::npos)
+            libraries.insert(line.substr(path));
     for (const std::string& library : libraries) std::printf("%s\n", library.c_str());
 }
 

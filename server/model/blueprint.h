@@ -34,8 +34,8 @@ struct ValueNode
 struct CommandNode
 {
     std::string id, name, subject, type;
-    std::string reference;            ///< <cmdref> standing alone in a list: the command with this id
-    std::vector<TextNode> parameters; ///< <cmdparam>, names as written ("SetVelocityFactor")
+    std::string reference;             ///< <cmdref> standing alone in a list: the command with this id
+    std::vector<TextNode> parameters;  ///< <cmdparam>, names as written ("SetVelocityFactor")
     std::vector<CommandNode> children;
     SourceLocation where;
 };
@@ -44,10 +44,10 @@ struct CommandNode
 struct ComponentNode
 {
     std::string id, name, type;
-    std::vector<TextNode> attributes;            ///< short form: all attributes but id, name, type
-    std::vector<TextNode> parameters;            ///< <param>
-    std::vector<ValueNode> values;               ///< from foreign XML
-    std::vector<std::string> references;         ///< <compref>: is the referred component, or, several: a group of them
+    std::vector<TextNode> attributes;     ///< short form: all attributes but id, name, type
+    std::vector<TextNode> parameters;     ///< <param>
+    std::vector<ValueNode> values;        ///< from foreign XML
+    std::vector<std::string> references;  ///< <compref>: is the referred component, or, several: a group of them
     std::vector<SourceLocation> reference_places;
     std::vector<ComponentNode> children;
     std::vector<CommandNode> commands;
@@ -65,7 +65,7 @@ struct RepeatNode
 struct Blueprint
 {
     std::string file;
-    std::vector<TextNode> settings;   ///< attributes of <scene>
+    std::vector<TextNode> settings;      ///< attributes of <scene>
     std::vector<ComponentNode> cameras;  ///< <camera id position look_at ..> inside <scene>
     std::vector<ComponentNode> components;
     std::vector<RepeatNode> repeats;

@@ -21,23 +21,18 @@ namespace
 void move_to_cell(Compilation& c, std::size_t i)
 {
     Draft& d = c.draft(i);
-    if (!d.cell || !d.type || d.type->info.facet == Facet::Shape || d.cell->offset == Vec3{})
-        return;
+    if (!d.cell || !d.type || d.type->info.facet == Facet::Shape || d.cell->offset == Vec3{}) return;
     const std::deque<Field>& fields = d.type->schema.fields();
     for (std::size_t k = 0; k < fields.size(); ++k)
     {
         const Field& field = fields[k];
         const bool is_place = field.name == "position" && field.type == FieldType::Vector && field.unit == unit::metre;
-        if (!is_place || field.kind == FieldKind::Output || field.kind == FieldKind::Scratch)
-            continue;
-        const auto given =
-            std::find_if(d.fields.begin(), d.fields.end(), [&](const GivenField& g) { return g.index == k; });
+        if (!is_place || field.kind == FieldKind::Output || field.kind == FieldKind::Scratch) continue;
+        const auto given = std::find_if(d.fields.begin(), d.fields.end(), [&](const GivenField& g) { return g.index == k; });
         const Vec3* base = std::get_if<Vec3>(given != d.fields.end() ? &given->value : &field.fallback);
-        if (!base)
-            continue;
+        if (!base) continue;
         Value moved(*base + d.cell->offset);
-        if (Result<void> checked = check_value(moved, field); !checked)
-            return c.complain(i, d.where, checked.error().reason);
+        if (Result<void> checked = check_value(moved, field); !checked) return c.complain(i, d.where, checked.error().reason);
         if (given != d.fields.end())
             given->value = std::move(moved);
         else
@@ -53,20 +48,16 @@ ComponentSpec make_spec(Compilation& c, std::size_t i)
     spec.name = d.name;
     spec.type = d.type_name;
     spec.parent = d.parent == kNone ? std::string() : c.draft(d.parent).id;
-    if (d.alias != kNone)
-        spec.alias_of = c.draft(c.directory.follow(d.alias)).id;
+    if (d.alias != kNone) spec.alias_of = c.draft(c.directory.follow(d.alias)).id;
     if (d.type_name.empty())
         for (const std::size_t member : d.group) spec.group.push_back(c.draft(member).id);
     spec.generated = d.generated;
     spec.where = d.where;
-    if (!d.type)
-        return spec;
-    for (GivenField& f : d.fields)
-        spec.fields.push_back({d.type->schema.fields()[f.index].name, std::move(f.value), f.where});
+    if (!d.type) return spec;
+    for (GivenField& f : d.fields) spec.fields.push_back({d.type->schema.fields()[f.index].name, std::move(f.value), f.where});
     for (std::size_t k = 0; k < d.roles.size(); ++k)
     {
-        if (!d.roles[k].given)
-            continue;
+        if (!d.roles[k].given) continue;
         RoleSpec& role = spec.roles.emplace_back();
         role.name = d.type->schema.roles()[k].name;
         role.everyone = d.roles[k].everyone;
@@ -93,15 +84,13 @@ SceneSpec assemble(Compilation& c)
     scene.settings = c.settings;
     scene.file = c.blueprint->file;
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
-        if (!c.draft(i).existing)
-            scene.components.push_back(make_spec(c, i));
+        if (!c.draft(i).existing) scene.components.push_back(make_spec(c, i));
     return scene;
 }
 
 }  // namespace detail
 
-Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const SceneSpec* existing,
-                          const CompileLimits& limits)
+Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const SceneSpec* existing, const CompileLimits& limits)
 {
     using namespace detail;
     Compilation c(blueprint, types, existing, limits);
@@ -120,25 +109,21 @@ Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const S
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i) move_to_cell(c, i);
     finish_fields(c);
     select_commands(c);
-    if (!c.report.empty())
-        return c.report.finish(all_ids(c), blueprint.file);
+    if (!c.report.empty()) return c.report.finish(all_ids(c), blueprint.file);
     return assemble(c);
 }
 
-Result<std::vector<std::string>> resolve_participant(const SceneSpec& scene, TypeSource& types,
-                                                     const std::string& written, const Role& role)
+Result<std::vector<std::string>> resolve_participant(const SceneSpec& scene, TypeSource& types, const std::string& written,
+                                                     const Role& role)
 {
     using namespace detail;
     const Blueprint nothing;
     Compilation c(nothing, types, &scene, {});
     declare_existing(c);
     const Participants found = find_participants(c.directory, written, role);
-    if (found.unknown)
-        return reason(found.why + did_you_mean(written, all_ids(c)));
-    if (!found.why.empty())
-        return reason(found.why);
-    if (found.members.empty())
-        return reason("role " + role.name + ": " + quoted(written) + " cannot be used, its type is not known");
+    if (found.unknown) return reason(found.why + did_you_mean(written, all_ids(c)));
+    if (!found.why.empty()) return reason(found.why);
+    if (found.members.empty()) return reason("role " + role.name + ": " + quoted(written) + " cannot be used, its type is not known");
     std::vector<std::string> ids;
     for (const std::size_t i : found.members) ids.push_back(c.draft(i).id);
     std::sort(ids.begin(), ids.end());

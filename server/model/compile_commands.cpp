@@ -18,8 +18,7 @@ constexpr std::string_view kStagePrefix = "Stage/";
 bool makes_component(Compilation& c, const Command& command)
 {
     const CommandNode& node = *command.node;
-    if (node.type.empty() || !node.subject.empty() || !node.reference.empty() || !node.children.empty())
-        return false;
+    if (node.type.empty() || !node.subject.empty() || !node.reference.empty() || !node.children.empty()) return false;
     const Draft& owner = c.draft(command.owner);
     return !(owner.type && owner.type->find_command(node.type) >= 0) && c.is_type_name(node.type);
 }
@@ -41,20 +40,13 @@ void make_anonymous(Compilation& c, Command& command)
 /// What a command may not be, whatever it refers to.
 std::string why_malformed(const CommandNode& node, bool is_stage)
 {
-    if (!node.reference.empty())
-        return {};
-    if (is_stage && !(node.type.empty() && node.subject.empty()))
-        return "a stage has neither type nor subject";
-    if (is_stage)
-        return node.parameters.empty() ? std::string() : "a cmdparam stands behind no command";
-    if (node.type.empty() && node.children.empty())
-        return "needs a type, or commands in it";
-    if (node.type.empty() && !node.subject.empty())
-        return "a composite has no subject: its parts have";
-    if (node.type.empty() && !node.parameters.empty())
-        return "a composite has no parameters: the subjects of its parts have";
-    if (!node.type.empty() && !node.children.empty())
-        return "has a type, so it cannot have commands in it";
+    if (!node.reference.empty()) return {};
+    if (is_stage && !(node.type.empty() && node.subject.empty())) return "a stage has neither type nor subject";
+    if (is_stage) return node.parameters.empty() ? std::string() : "a cmdparam stands behind no command";
+    if (node.type.empty() && node.children.empty()) return "needs a type, or commands in it";
+    if (node.type.empty() && !node.subject.empty()) return "a composite has no subject: its parts have";
+    if (node.type.empty() && !node.parameters.empty()) return "a composite has no parameters: the subjects of its parts have";
+    if (!node.type.empty() && !node.children.empty()) return "has a type, so it cannot have commands in it";
     return {};
 }
 
@@ -72,8 +64,7 @@ void collect(Compilation& c, const CommandNode& node, std::size_t owner, bool in
         const auto [it, fresh] = c.command_index.emplace(id, c.commands.size());
         if (!fresh)
             c.report.add(node.where, command_element(command),
-                         "command id " + quoted(node.id) + " is already used at " +
-                             place_text(c.commands[it->second].node->where));
+                         "command id " + quoted(node.id) + " is already used at " + place_text(c.commands[it->second].node->where));
     }
     c.commands.push_back(command);
     for (const CommandNode& child : node.children) collect(c, child, owner, in_stage || is_stage);
@@ -85,40 +76,33 @@ std::size_t subject_inside(Compilation& c, const Command& command, std::size_t g
     std::vector<std::size_t> found;
     for (const std::size_t i : c.directory.inside(group))
     {
-        if (c.draft(i).broken)
-            return kNone;
-        if (c.draft(i).type && match_command(*c.draft(i).type, command.node->type, nullptr).index >= 0)
-            found.push_back(i);
+        if (c.draft(i).broken) return kNone;
+        if (c.draft(i).type && match_command(*c.draft(i).type, command.node->type, nullptr).index >= 0) found.push_back(i);
     }
-    if (found.size() == 1)
-        return found.front();
+    if (found.size() == 1) return found.front();
     std::vector<std::string> ids;
     for (const std::size_t i : found) ids.push_back(c.draft(i).id);
     std::sort(ids.begin(), ids.end());
     const std::string subject = "subject " + quoted(c.draft(group).id);
     c.report.add(command.node->where, command_element(command),
                  found.empty() ? subject + " holds no component with a command " + quoted(command.node->type)
-                               : subject + " holds several components with that command (" + quoted_list(ids) +
-                                     "): name one of them");
+                               : subject + " holds several components with that command (" + quoted_list(ids) + "): name one of them");
     return kNone;
 }
 
 /// Its subject is there already; those that short forms make come later.
 bool can_be_applied(Compilation& c, const Command& command)
 {
-    return command.node->subject.empty() ||
-           c.directory.find(component_id(command.cell, command.node->subject)) != kNone;
+    return command.node->subject.empty() || c.directory.find(component_id(command.cell, command.node->subject)) != kNone;
 }
 
 void apply_parameters(Compilation& c, const Command& command)
 {
     const std::size_t i = subject_of(c, command);
-    if (i == kNone || !c.draft(i).type)
-        return;
+    if (i == kNone || !c.draft(i).type) return;
     if (c.draft(i).existing)
-        return c.report.add(
-            command.node->where, command_element(command),
-            "subject " + quoted(c.draft(i).id) + " is in the running scene already: set its parameters by a request");
+        return c.report.add(command.node->where, command_element(command),
+                            "subject " + quoted(c.draft(i).id) + " is in the running scene already: set its parameters by a request");
     for (const TextNode& text : command.node->parameters) give_by_setter(c, i, text, command.cell);
 }
 
@@ -130,10 +114,8 @@ std::string command_element(const Command& command)
     const std::string id = command_id(command.cell, node.id);
     const std::string what = node.type.empty() ? node.name : node.type;
     std::string out = "command";
-    if (!id.empty())
-        out += " " + id;
-    if (!what.empty())
-        out += id.empty() ? " " + what : " (" + what + ")";
+    if (!id.empty()) out += " " + id;
+    if (!what.empty()) out += id.empty() ? " " + what : " (" + what + ")";
     return out;
 }
 
@@ -141,42 +123,36 @@ CommandMatch match_command(const ComponentType& type, const std::string& written
 {
     CommandMatch out;
     out.index = type.find_command(written);
-    if (out.index >= 0)
-        return out;
+    if (out.index >= 0) return out;
     std::vector<std::string> known, fitting;
     for (std::size_t k = 0; k < type.info.commands.size(); ++k)
     {
         const CommandInfo& info = type.info.commands[k];
         known.push_back(info.name);
-        if (!info.name.starts_with(written + "/") || (stage && stage_of(info.phase) != *stage))
-            continue;
+        if (!info.name.starts_with(written + "/") || (stage && stage_of(info.phase) != *stage)) continue;
         fitting.push_back(info.name);
         out.index = static_cast<int>(k);
     }
-    if (fitting.size() == 1)
-        return out;
+    if (fitting.size() == 1) return out;
     out.index = -1;
     if (!fitting.empty())
         out.why = quoted(written) + " could be " + quoted_list(fitting, "or") + ": name one of them";
     else if (known.empty())
         out.why = type.info.name + " has no commands";
     else
-        out.why = type.info.name + " has no command " + quoted(written) + did_you_mean(written, known) + " (it has " +
-                  quoted_list(known) + ")";
+        out.why =
+            type.info.name + " has no command " + quoted(written) + did_you_mean(written, known) + " (it has " + quoted_list(known) + ")";
     return out;
 }
 
 std::size_t subject_of(Compilation& c, const Command& command)
 {
-    if (command.anonymous != kNone)
-        return command.anonymous;
+    if (command.anonymous != kNone) return command.anonymous;
     const CommandNode& node = *command.node;
     if (node.subject.empty())
     {
-        if (c.draft(command.owner).broken)
-            return kNone;
-        if (c.draft(command.owner).type)
-            return command.owner;
+        if (c.draft(command.owner).broken) return kNone;
+        if (c.draft(command.owner).type) return command.owner;
         c.report.add(node.where, command_element(command), "needs a subject: the id of the component that it acts on");
         return kNone;
     }
@@ -184,22 +160,18 @@ std::size_t subject_of(Compilation& c, const Command& command)
     const std::size_t found = c.directory.find(id);
     if (found == kNone)
     {
-        c.report.add_unknown_id(node.where, command_element(command), "subject: no component has the id " + quoted(id),
-                                id);
+        c.report.add_unknown_id(node.where, command_element(command), "subject: no component has the id " + quoted(id), id);
         return kNone;
     }
     const std::size_t i = c.directory.follow(found);
-    if (i == kNone || c.draft(i).broken)
-        return kNone;
+    if (i == kNone || c.draft(i).broken) return kNone;
     return c.draft(i).type_name.empty() ? subject_inside(c, command, i) : i;
 }
 
 std::string written_subject(Compilation& c, const Command& command)
 {
-    if (command.anonymous != kNone)
-        return c.draft(command.anonymous).id;
-    if (!command.node->subject.empty())
-        return component_id(command.cell, command.node->subject);
+    if (command.anonymous != kNone) return c.draft(command.anonymous).id;
+    if (!command.node->subject.empty()) return component_id(command.cell, command.node->subject);
     return command.node->type.empty() ? std::string() : c.draft(command.owner).id;
 }
 
@@ -215,10 +187,8 @@ void apply_command_parameters(Compilation& c, bool parts_are_formed)
 {
     for (Command& command : c.commands)
     {
-        if (command.node->parameters.empty() || command.node->type.empty() || command.parameters_applied)
-            continue;
-        if (!parts_are_formed && !can_be_applied(c, command))
-            continue;
+        if (command.node->parameters.empty() || command.node->type.empty() || command.parameters_applied) continue;
+        if (!parts_are_formed && !can_be_applied(c, command)) continue;
         command.parameters_applied = true;
         apply_parameters(c, command);
     }

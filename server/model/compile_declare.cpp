@@ -18,15 +18,11 @@ constexpr std::size_t kLongestId = 200;
 /// What makes `id` unusable; nothing if it can be used.
 std::string why_no_id(const std::string& id)
 {
-    if (trimmed(id).empty())
-        return "needs an id";
-    if (id.size() > kLongestId)
-        return "has an id of " + std::to_string(id.size()) + " characters, at most 200 are allowed";
+    if (trimmed(id).empty()) return "needs an id";
+    if (id.size() > kLongestId) return "has an id of " + std::to_string(id.size()) + " characters, at most 200 are allowed";
     const auto is_control = [](char ch) { return static_cast<unsigned char>(ch) < 0x20 || ch == 0x7f; };
-    if (std::any_of(id.begin(), id.end(), is_control))
-        return "has an id with a control character";
-    if (id == "*")
-        return "has the id '*', which stands for everyone";
+    if (std::any_of(id.begin(), id.end(), is_control)) return "has an id with a control character";
+    if (id == "*") return "has the id '*', which stands for everyone";
     return {};
 }
 
@@ -38,17 +34,14 @@ bool is_alias(const ComponentNode& node)
 
 bool too_many(Compilation& c)
 {
-    if (c.directory.drafts.size() < c.limits.components)
-        return false;
-    c.report.add(c.blueprint->where, {},
-                 "the scene has more than " + std::to_string(c.limits.components) + " components");
+    if (c.directory.drafts.size() < c.limits.components) return false;
+    c.report.add(c.blueprint->where, {}, "the scene has more than " + std::to_string(c.limits.components) + " components");
     return true;
 }
 
 void declare(Compilation& c, const ComponentNode& node, std::size_t parent, const Cell* cell)
 {
-    if (too_many(c))
-        return;
+    if (too_many(c)) return;
     Draft d;
     d.id = component_id(cell, node.id);
     d.name = node.name;
@@ -66,8 +59,7 @@ void collect_names(const std::vector<CommandNode>& commands, Names& out)
 {
     for (const CommandNode& command : commands)
     {
-        if (!command.id.empty())
-            out.insert(command.id);
+        if (!command.id.empty()) out.insert(command.id);
         collect_names(command.children, out);
     }
 }
@@ -77,8 +69,7 @@ std::size_t collect_names(const std::vector<ComponentNode>& nodes, Names& compon
     std::size_t count = nodes.size();
     for (const ComponentNode& node : nodes)
     {
-        if (!node.id.empty())
-            components.insert(node.id);
+        if (!node.id.empty()) components.insert(node.id);
         collect_names(node.commands, commands);
         count += collect_names(node.children, components, commands);
     }
@@ -97,8 +88,7 @@ void declare_repeat(Compilation& c, const RepeatNode& node)
     Names& commands = c.repeated_names.emplace_back();
     const std::size_t per_cell = std::max<std::size_t>(1, collect_names(node.components, components, commands));
     if (repeat->cells() > (c.limits.components - std::min(c.limits.components, c.directory.drafts.size())) / per_cell)
-        return c.report.add(node.where, "repeat",
-                            "the scene has more than " + std::to_string(c.limits.components) + " components");
+        return c.report.add(node.where, "repeat", "the scene has more than " + std::to_string(c.limits.components) + " components");
     std::size_t group = kNone;
     if (!repeat->id.empty())
     {
@@ -119,10 +109,7 @@ void declare_repeat(Compilation& c, const RepeatNode& node)
     }
 }
 
-bool stands_before(const SourceLocation& a, const SourceLocation& b)
-{
-    return a.line != b.line ? a.line < b.line : a.column < b.column;
-}
+bool stands_before(const SourceLocation& a, const SourceLocation& b) { return a.line != b.line ? a.line < b.line : a.column < b.column; }
 
 /// The draft that a compref of `i` names, or kNone after a complaint.
 std::size_t find_reference(Compilation& c, std::size_t i, std::size_t n)
@@ -131,8 +118,7 @@ std::size_t find_reference(Compilation& c, std::size_t i, std::size_t n)
     const SourceLocation& where = n < d.node->reference_places.size() ? d.node->reference_places[n] : d.where;
     const std::string id = component_id(d.cell, d.node->references[n]);
     const std::size_t found = c.directory.find(id);
-    if (found == kNone)
-        c.report.add_unknown_id(where, c.element(i), "compref: no component has the id " + quoted(id), id);
+    if (found == kNone) c.report.add_unknown_id(where, c.element(i), "compref: no component has the id " + quoted(id), id);
     return found;
 }
 
@@ -143,10 +129,8 @@ void refuse_circles(Compilation& c)
     for (std::size_t i = 0; i < edges.size(); ++i)
     {
         const Draft& d = c.draft(i);
-        if (d.existing)
-            continue;
-        if (d.alias != kNone)
-            edges[i].push_back(d.alias);
+        if (d.existing) continue;
+        if (d.alias != kNone) edges[i].push_back(d.alias);
         edges[i].insert(edges[i].end(), d.group.begin(), d.group.end());
         edges[i].insert(edges[i].end(), d.children.begin(), d.children.end());
     }
@@ -161,8 +145,7 @@ void refuse_circles(Compilation& c)
         path.push_back(c.draft(circle.front()).id);
         std::string text;
         for (std::size_t k = 0; k < path.size(); ++k)
-            if (k < 8 || k + 1 == path.size())
-                text += (k > 0 ? (k == 8 ? " -> ... -> " : " -> ") : "") + quoted(path[k]);
+            if (k < 8 || k + 1 == path.size()) text += (k > 0 ? (k == 8 ? " -> ... -> " : " -> ") : "") + quoted(path[k]);
         c.complain(circle.front(), c.draft(circle.front()).where, "circular reference: " + text);
     }
 }
@@ -204,8 +187,7 @@ std::string Compilation::element(std::size_t i) const
 
 bool Compilation::is_type_name(const std::string& name)
 {
-    if (type_names.empty())
-        type_names = types->names();
+    if (type_names.empty()) type_names = types->names();
     return std::binary_search(type_names.begin(), type_names.end(), name);
 }
 
@@ -218,8 +200,7 @@ const Result<const ComponentType*>& Compilation::require(const std::string& type
 std::size_t add_draft(Compilation& c, Draft draft)
 {
     const std::size_t i = c.directory.drafts.size();
-    if (draft.parent != kNone)
-        c.draft(draft.parent).children.push_back(i);
+    if (draft.parent != kNone) c.draft(draft.parent).children.push_back(i);
     Draft& d = c.directory.drafts.emplace_back(std::move(draft));
     if (const std::string why = why_no_id(d.id); !why.empty())
     {
@@ -228,23 +209,20 @@ std::size_t add_draft(Compilation& c, Draft draft)
         return i;
     }
     const auto [it, fresh] = c.directory.index.emplace(d.id, i);
-    if (fresh)
-        return i;
+    if (fresh) return i;
     const Draft& first = c.draft(it->second);
     // As written, not as in the cell, so that a repetition is complained about once.
     const std::string id = quoted(d.node ? d.node->id : d.id);
     d.broken = true;
     c.complain(i, d.where,
-               first.existing ? "id " + id + " is already in the scene"
-                              : "id " + id + " is already used at " + place_text(first.where));
+               first.existing ? "id " + id + " is already in the scene" : "id " + id + " is already used at " + place_text(first.where));
     return i;
 }
 
 void bind_type(Compilation& c, std::size_t i)
 {
     Draft& d = c.draft(i);
-    if (d.type_name.empty())
-        return;
+    if (d.type_name.empty()) return;
     const Result<const ComponentType*>& type = c.require(d.type_name);
     if (!type)
     {
@@ -258,8 +236,7 @@ void bind_type(Compilation& c, std::size_t i)
 
 void declare_existing(Compilation& c)
 {
-    if (!c.existing)
-        return;
+    if (!c.existing) return;
     Directory& directory = c.directory;
     for (const ComponentSpec& spec : c.existing->components)
     {
@@ -275,12 +252,10 @@ void declare_existing(Compilation& c)
     {
         Draft& d = directory.drafts[i];
         d.parent = directory.find(d.existing->parent);
-        if (d.parent != kNone)
-            directory.drafts[d.parent].children.push_back(i);
+        if (d.parent != kNone) directory.drafts[d.parent].children.push_back(i);
         d.alias = directory.find(d.existing->alias_of);
         for (const std::string& id : d.existing->group)
-            if (const std::size_t member = directory.find(id); member != kNone)
-                d.group.push_back(member);
+            if (const std::size_t member = directory.find(id); member != kNone) d.group.push_back(member);
     }
 }
 
@@ -291,8 +266,7 @@ void declare_components(Compilation& c)
     std::size_t next = 0;
     for (const ComponentNode& node : c.blueprint->components)
     {
-        while (next < repeats.size() && stands_before(repeats[next].where, node.where))
-            declare_repeat(c, repeats[next++]);
+        while (next < repeats.size() && stands_before(repeats[next].where, node.where)) declare_repeat(c, repeats[next++]);
         declare(c, node, kNone, nullptr);
     }
     while (next < repeats.size()) declare_repeat(c, repeats[next++]);
@@ -303,8 +277,7 @@ void link_references(Compilation& c)
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
     {
         Draft& d = c.draft(i);
-        if (!d.node)
-            continue;
+        if (!d.node) continue;
         for (std::size_t n = 0; n < d.node->references.size(); ++n)
         {
             const std::size_t found = find_reference(c, i, n);

@@ -23,10 +23,7 @@ class Report
 {
 public:
     explicit Report(std::size_t most) : most_(most) {}
-    void add(const SourceLocation& where, std::string element, std::string why)
-    {
-        add({where, std::move(element), std::move(why)}, {});
-    }
+    void add(const SourceLocation& where, std::string element, std::string why) { add({where, std::move(element), std::move(why)}, {}); }
     /// A complaint about an id that nobody has: the nearest ids are looked up for those that are shown in the end.
     void add_unknown_id(const SourceLocation& where, std::string element, std::string why, std::string wanted)
     {
@@ -199,10 +196,7 @@ struct Compilation
     bool is_type_name(const std::string& name);
     /// The type, loaded at most once.
     const Result<const ComponentType*>& require(const std::string& type);
-    void complain(std::size_t i, const SourceLocation& where, std::string why)
-    {
-        report.add(where, element(i), std::move(why));
-    }
+    void complain(std::size_t i, const SourceLocation& where, std::string why) { report.add(where, element(i), std::move(why)); }
 };
 
 /// Adds a draft; enters its id, refusing empty, ill-formed and used ones.

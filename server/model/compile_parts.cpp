@@ -18,20 +18,11 @@ bool is_component_role(const Role& role)
 }
 
 /// Roles that a nested component may fill without being named: not those that anything at all would fit.
-bool takes_unnamed(const Role& role)
-{
-    return !is_component_role(role) || !role.family.empty();
-}
+bool takes_unnamed(const Role& role) { return !is_component_role(role) || !role.family.empty(); }
 
-bool is_solver_role(const Role& role)
-{
-    return role.name == "solver" && role.family.starts_with("Solver");
-}
+bool is_solver_role(const Role& role) { return role.name == "solver" && role.family.starts_with("Solver"); }
 
-bool is_part_of(const Draft& part, std::size_t whole)
-{
-    return part.parent == whole;
-}
+bool is_part_of(const Draft& part, std::size_t whole) { return part.parent == whole; }
 
 /// A nested component, or one that a compref shares, which may fill a role of the component around it.
 struct Candidate
@@ -74,16 +65,14 @@ void fill(GivenRole& given, const Candidate& candidate)
 }
 
 /// The open roles of `i` that the candidate fits.
-std::vector<std::size_t> fitting_roles(Compilation& c, std::size_t i, const Candidate& candidate,
-                                       const std::vector<bool>& open)
+std::vector<std::size_t> fitting_roles(Compilation& c, std::size_t i, const Candidate& candidate, const std::vector<bool>& open)
 {
     const Draft& d = c.draft(i);
     std::vector<std::size_t> fitting;
     for (std::size_t k = 0; k < d.roles.size(); ++k)
     {
         const Role& role = d.type->schema.roles()[k];
-        if (open[k] && takes_unnamed(role) && accepts(role, *c.draft(candidate.target).type))
-            fitting.push_back(k);
+        if (open[k] && takes_unnamed(role) && accepts(role, *c.draft(candidate.target).type)) fitting.push_back(k);
     }
     return fitting;
 }
@@ -91,8 +80,7 @@ std::vector<std::size_t> fitting_roles(Compilation& c, std::size_t i, const Cand
 /// Whether the candidate's id says that it is the part for this role: "red.shape" in "red".
 bool is_called_after(const Draft& d, const Candidate& candidate, const Role& role)
 {
-    return candidate.id == d.id + "." + role.name ||
-           (d.node && candidate.id == component_id(d.cell, d.node->id + "." + role.name));
+    return candidate.id == d.id + "." + role.name || (d.node && candidate.id == component_id(d.cell, d.node->id + "." + role.name));
 }
 
 /// Gives nested components to the roles that their ids name; returns those that are left.
@@ -103,12 +91,10 @@ std::vector<Candidate> wire_by_id(Compilation& c, std::size_t i, std::vector<boo
     const std::unordered_set<std::size_t> named_before = named_by(c, d);
     for (const Candidate& candidate : candidates_of(c, i))
     {
-        if (named_before.contains(candidate.target))
-            continue;
+        if (named_before.contains(candidate.target)) continue;
         const std::vector<std::size_t> roles = fitting_roles(c, i, candidate, open);
-        const auto named =
-            std::find_if(roles.begin(), roles.end(),
-                         [&](std::size_t k) { return is_called_after(d, candidate, d.type->schema.roles()[k]); });
+        const auto named = std::find_if(roles.begin(), roles.end(),
+                                        [&](std::size_t k) { return is_called_after(d, candidate, d.type->schema.roles()[k]); });
         if (named == roles.end())
             rest.push_back(candidate);
         else
@@ -133,14 +119,12 @@ void wire_children(Compilation& c, std::size_t i)
         {
             std::vector<std::string> names;
             for (const std::size_t k : roles) names.push_back(d.type->schema.roles()[k].name);
-            c.complain(i, candidate.where,
-                       quoted(candidate.id) + " fits the roles " + quoted_list(names) + ": name it in one of them");
+            c.complain(i, candidate.where, quoted(candidate.id) + " fits the roles " + quoted_list(names) + ": name it in one of them");
             for (const std::size_t k : roles) d.roles[k].given = d.roles[k].unresolved = true;
         }
         if (roles.empty() && candidate.must_fit)
             c.complain(i, candidate.where, "compref " + quoted(candidate.id) + " fits no open role of this component");
-        if (roles.size() != 1)
-            continue;
+        if (roles.size() != 1) continue;
         GivenRole& given = d.roles[roles.front()];
         const Role& role = d.type->schema.roles()[roles.front()];
         if (!given.given || role.many)
@@ -150,8 +134,8 @@ void wire_children(Compilation& c, std::size_t i)
         }
         if (!given.unresolved)
             c.complain(i, candidate.where,
-                       quoted(given.references.front().id) + " and " + quoted(candidate.id) + " both fit role " +
-                           role.name + ": name one of them");
+                       quoted(given.references.front().id) + " and " + quoted(candidate.id) + " both fit role " + role.name +
+                           ": name one of them");
         given.unresolved = true;
     }
 }
@@ -164,31 +148,24 @@ void wire_object(Compilation& c, std::size_t group)
     for (const Candidate& candidate : candidates_of(c, group))
     {
         const Facet facet = c.draft(candidate.target).type->info.facet;
-        if (facet == Facet::Shape)
-            shapes.push_back(candidate);
+        if (facet == Facet::Shape) shapes.push_back(candidate);
         const bool own = is_part_of(c.draft(candidate.target), group);
-        if (own && (facet == Facet::Body || facet == Facet::Shaft))
-            states.push_back(candidate.target);
+        if (own && (facet == Facet::Body || facet == Facet::Shaft)) states.push_back(candidate.target);
     }
-    if (states.size() != 1 || shapes.size() != 1)
-        return;
+    if (states.size() != 1 || shapes.size() != 1) return;
     Draft& state = c.draft(states.front());
     GivenRole* open = nullptr;
     for (std::size_t k = 0; k < state.roles.size(); ++k)
     {
         const std::vector<Facet>& facets = state.type->schema.roles()[k].facets;
-        if (std::find(facets.begin(), facets.end(), Facet::Shape) == facets.end())
-            continue;
-        if (state.roles[k].given || open)
-            return;
+        if (std::find(facets.begin(), facets.end(), Facet::Shape) == facets.end()) continue;
+        if (state.roles[k].given || open) return;
         open = &state.roles[k];
     }
     // A shape of its own, nested in the state, comes before the object's.
     for (const std::size_t child : state.children)
-        if (c.draft(child).type && c.draft(child).type->info.facet == Facet::Shape)
-            return;
-    if (open)
-        fill(*open, shapes.front());
+        if (c.draft(child).type && c.draft(child).type->info.facet == Facet::Shape) return;
+    if (open) fill(*open, shapes.front());
 }
 
 /// Makes the part "<id>.<role>" of this type, or takes the one of that id which the author wrote.
@@ -208,8 +185,7 @@ void make_part(Compilation& c, std::size_t i, std::size_t k, const std::string& 
     given.where = where;
     given.references.assign(1, {part.id, where});
     if (c.directory.drafts.size() >= c.limits.components)
-        return c.report.add(c.blueprint->where, {},
-                            "the scene has more than " + std::to_string(c.limits.components) + " components");
+        return c.report.add(c.blueprint->where, {}, "the scene has more than " + std::to_string(c.limits.components) + " components");
     bind_type(c, add_draft(c, std::move(part)));
 }
 
@@ -218,8 +194,7 @@ std::size_t find_written_part(Compilation& c, std::size_t i, const Role& role)
 {
     const Draft& d = c.draft(i);
     const std::size_t found = c.directory.find(d.id + "." + role.name);
-    if (found != kNone || !d.node)
-        return found;
+    if (found != kNone || !d.node) return found;
     return c.directory.find(component_id(d.cell, d.node->id + "." + role.name));
 }
 
@@ -229,15 +204,13 @@ void make_named_part(Compilation& c, std::size_t i, std::size_t k)
     GivenRole& given = c.draft(i).roles[k];
     const Role& role = c.draft(i).type->schema.roles()[k];
     const std::string written = given.references.front().id;
-    if (c.directory.find(written) != kNone)
-        return;
+    if (c.directory.find(written) != kNone) return;
     const std::size_t own = find_written_part(c, i, role);
-    if (own == kNone)
-        return make_part(c, i, k, written, given.where);
+    if (own == kNone) return make_part(c, i, k, written, given.where);
     if (c.draft(own).type_name != written)
         c.complain(i, given.where,
-                   role.name + " is " + quoted(written) + " here, but component " + quoted(c.draft(own).id) +
-                       " is of type " + quoted(c.draft(own).type_name));
+                   role.name + " is " + quoted(written) + " here, but component " + quoted(c.draft(own).id) + " is of type " +
+                       quoted(c.draft(own).type_name));
     given.references.front().id = c.draft(own).id;
 }
 
@@ -247,11 +220,9 @@ void use_default_solver(Compilation& c, std::size_t i, GivenRole& given)
     given.given = true;
     given.where = where;
     given.unresolved = c.solver_broken;
-    if (c.solver_broken)
-        return;
+    if (c.solver_broken) return;
     given.references.push_back({c.settings.solver, where});
-    if (c.directory.find(c.settings.solver) != kNone)
-        return;
+    if (c.directory.find(c.settings.solver) != kNone) return;
     Draft solver;
     solver.id = c.settings.solver;
     solver.type_name = c.settings.solver_type;
@@ -265,19 +236,13 @@ void complete_role(Compilation& c, std::size_t i, std::size_t k)
     Draft& d = c.draft(i);
     const Role& role = d.type->schema.roles()[k];
     GivenRole& given = d.roles[k];
-    if (given.given && given.may_be_type)
-        return make_named_part(c, i, k);
-    if (given.given)
-        return;
+    if (given.given && given.may_be_type) return make_named_part(c, i, k);
+    if (given.given) return;
     const std::size_t written = takes_unnamed(role) ? find_written_part(c, i, role) : kNone;
-    if (written != kNone)
-        return fill(given, {c.draft(written).id, written, d.where, false});
-    if (is_solver_role(role))
-        return use_default_solver(c, i, given);
-    const bool wanted =
-        role.min > 0 || std::any_of(d.parts.begin(), d.parts.end(), [&](const GivenPart& p) { return p.role == k; });
-    if (wanted && !role.default_type.empty() && is_component_role(role))
-        make_part(c, i, k, role.default_type, d.where);
+    if (written != kNone) return fill(given, {c.draft(written).id, written, d.where, false});
+    if (is_solver_role(role)) return use_default_solver(c, i, given);
+    const bool wanted = role.min > 0 || std::any_of(d.parts.begin(), d.parts.end(), [&](const GivenPart& p) { return p.role == k; });
+    if (wanted && !role.default_type.empty() && is_component_role(role)) make_part(c, i, k, role.default_type, d.where);
 }
 
 /// Gives dotted attributes to the parts that they are for.
@@ -287,19 +252,15 @@ void hand_down(Compilation& c, std::size_t i, const GivenPart& part)
     const Role& role = d.type->schema.roles()[part.role];
     const GivenRole& given = d.roles[part.role];
     const std::string name = quoted(role.name + "." + part.name);
-    if (given.unresolved)
-        return;
+    if (given.unresolved) return;
     if (given.references.size() != 1)
         return c.complain(i, part.text->where, name + " needs a part to set: give " + role.name + " the type of one");
     const std::size_t target = c.directory.follow(c.directory.find(given.references.front().id));
-    if (target == kNone || c.draft(target).broken || !c.draft(target).type)
-        return;  // complained about elsewhere
+    if (target == kNone || c.draft(target).broken || !c.draft(target).type) return;  // complained about elsewhere
     if (!is_part_of(c.draft(target), i) && target != find_written_part(c, i, role))
-        return c.complain(i, part.text->where,
-                          name + ": " + quoted(c.draft(target).id) + " is no part of this component, set it there");
+        return c.complain(i, part.text->where, name + ": " + quoted(c.draft(target).id) + " is no part of this component, set it there");
     if (c.draft(target).existing)
-        return c.complain(i, part.text->where,
-                          name + ": " + quoted(c.draft(target).id) + " is in the running scene already");
+        return c.complain(i, part.text->where, name + ": " + quoted(c.draft(target).id) + " is in the running scene already");
     give(c, target, part.name, *part.text, d.cell);
 }
 
@@ -308,14 +269,12 @@ void hand_down(Compilation& c, std::size_t i, const GivenPart& part)
 void form_parts(Compilation& c)
 {
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
-        if (const Draft& d = c.draft(i); !d.existing && d.type_name.empty())
-            wire_object(c, i);
+        if (const Draft& d = c.draft(i); !d.existing && d.type_name.empty()) wire_object(c, i);
     // The list grows: parts have roles of their own.
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
     {
         // A part without place (its id is too long) ends what could be an endless nesting of default types.
-        if (c.draft(i).existing || !c.draft(i).type || (c.draft(i).generated && c.draft(i).broken))
-            continue;
+        if (c.draft(i).existing || !c.draft(i).type || (c.draft(i).generated && c.draft(i).broken)) continue;
         wire_children(c, i);
         for (std::size_t k = 0; k < c.draft(i).roles.size(); ++k) complete_role(c, i, k);
         for (const GivenPart& part : c.draft(i).parts) hand_down(c, i, part);

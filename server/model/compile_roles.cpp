@@ -23,11 +23,9 @@ void refuse(Compilation& c, std::size_t i, GivenRole& given, const SourceLocatio
 /// "*": everyone who fits, but the component itself.
 void add_everyone(Compilation& c, std::size_t i, const Role& role, GivenRole& given)
 {
-    if (role.one)
-        return refuse(c, i, given, given.where, "role " + role.name + " takes one participant, and '*' stands for all");
+    if (role.one) return refuse(c, i, given, given.where, "role " + role.name + " takes one participant, and '*' stands for all");
     for (std::size_t k = 0; k < c.directory.drafts.size(); ++k)
-        if (const Draft& d = c.draft(k); k != i && d.type && !d.broken && accepts(role, *d.type))
-            given.members.push_back(k);
+        if (const Draft& d = c.draft(k); k != i && d.type && !d.broken && accepts(role, *d.type)) given.members.push_back(k);
 }
 
 void add_participants(Compilation& c, std::size_t i, const Role& role, GivenRole& given, const Reference& reference)
@@ -39,47 +37,34 @@ void add_participants(Compilation& c, std::size_t i, const Role& role, GivenRole
         given.unresolved = true;
         return c.report.add_unknown_id(reference.where, c.element(i), found.why, reference.id);
     }
-    if (!found.why.empty())
-        return refuse(c, i, given, reference.where, found.why);
+    if (!found.why.empty()) return refuse(c, i, given, reference.where, found.why);
     const bool itself = found.members.size() == 1 && found.members.front() == i;
-    if (itself)
-        return refuse(c, i, given, reference.where,
-                      "role " + role.name + ": a component cannot be its own participant");
+    if (itself) return refuse(c, i, given, reference.where, "role " + role.name + ": a component cannot be its own participant");
     for (const std::size_t k : found.members)
-        if (k != i)
-            given.members.push_back(k);
+        if (k != i) given.members.push_back(k);
 }
 
 void check_count(Compilation& c, std::size_t i, const Role& role, GivenRole& given)
 {
     const std::size_t has = given.members.size();
     const std::string wanted = describe_wanted(role);
-    if (has > role.max)
-        return refuse(c, i, given, given.where,
-                      "role " + role.name + " takes one participant, has " + std::to_string(has));
+    if (has > role.max) return refuse(c, i, given, given.where, "role " + role.name + " takes one participant, has " + std::to_string(has));
     // Whoever is meant by "*" may come later.
-    if (given.everyone || has >= role.min)
-        return;
-    if (!given.given)
-        return refuse(c, i, given, c.draft(i).where, role.name + " is missing: name " + wanted);
+    if (given.everyone || has >= role.min) return;
+    if (!given.given) return refuse(c, i, given, c.draft(i).where, role.name + " is missing: name " + wanted);
     refuse(c, i, given, given.where,
-           "role " + role.name + " needs at least " + std::to_string(role.min) + " participants, has " +
-               std::to_string(has));
+           "role " + role.name + " needs at least " + std::to_string(role.min) + " participants, has " + std::to_string(has));
 }
 
 void resolve_role(Compilation& c, std::size_t i, const Role& role, GivenRole& given)
 {
-    if (given.everyone)
-        add_everyone(c, i, role, given);
+    if (given.everyone) add_everyone(c, i, role, given);
     for (const Reference& reference : given.references) add_participants(c, i, role, given, reference);
-    std::sort(given.members.begin(), given.members.end(),
-              [&](std::size_t a, std::size_t b) { return c.draft(a).id < c.draft(b).id; });
+    std::sort(given.members.begin(), given.members.end(), [&](std::size_t a, std::size_t b) { return c.draft(a).id < c.draft(b).id; });
     const auto twice = std::adjacent_find(given.members.begin(), given.members.end());
     if (twice != given.members.end())
-        return refuse(c, i, given, given.where,
-                      "role " + role.name + " names " + quoted(c.draft(*twice).id) + " twice");
-    if (!given.unresolved)
-        check_count(c, i, role, given);
+        return refuse(c, i, given, given.where, "role " + role.name + " names " + quoted(c.draft(*twice).id) + " twice");
+    if (!given.unresolved) check_count(c, i, role, given);
 }
 
 /// Members of an existing component's role, for rules that reach across scenes.
@@ -88,11 +73,9 @@ std::vector<std::size_t> existing_members(const Compilation& c, const Draft& d, 
     std::vector<std::size_t> out;
     for (const RoleSpec& spec : d.existing->roles)
     {
-        if (spec.name != role)
-            continue;
+        if (spec.name != role) continue;
         for (const std::string& id : spec.members)
-            if (const std::size_t k = c.directory.find(id); k != kNone)
-                out.push_back(k);
+            if (const std::size_t k = c.directory.find(id); k != kNone) out.push_back(k);
     }
     return out;
 }
@@ -106,8 +89,7 @@ void check_exclusive(Compilation& c)
         for (std::size_t k = 0; d.type && k < d.roles.size(); ++k)
         {
             const Role& role = d.type->schema.roles()[k];
-            if (!role.exclusive)
-                continue;
+            if (!role.exclusive) continue;
             for (const std::size_t member : d.existing ? existing_members(c, d, role.name) : d.roles[k].members)
             {
                 const auto [it, fresh] = taken.emplace(role.name + ":" + std::to_string(member), i);
@@ -147,15 +129,13 @@ void resolve_roles(Compilation& c)
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
     {
         Draft& d = c.draft(i);
-        if (!d.type || d.existing)
-            continue;
+        if (!d.type || d.existing) continue;
         for (std::size_t k = 0; k < d.roles.size(); ++k)
         {
             resolve_role(c, i, d.type->schema.roles()[k], d.roles[k]);
             participants += d.roles[k].members.size();
             if (participants > kMostParticipants)
-                return c.report.add(c.blueprint->where, {},
-                                    "the roles of the scene have more than 4000000 participants together");
+                return c.report.add(c.blueprint->where, {}, "the roles of the scene have more than 4000000 participants together");
         }
     }
 }

@@ -20,15 +20,9 @@ constexpr Stage kStages[] = {Stage::Init, Stage::PreStep, Stage::Step, Stage::Po
 constexpr std::size_t kLongestList = 100'000;
 constexpr std::size_t kDeepestComposite = 64;
 
-bool is_stage(const CommandNode& node)
-{
-    return node.name.starts_with(kStagePrefix);
-}
+bool is_stage(const CommandNode& node) { return node.name.starts_with(kStagePrefix); }
 
-bool is_simulation(const CommandNode& node)
-{
-    return std::any_of(node.children.begin(), node.children.end(), is_stage);
-}
+bool is_simulation(const CommandNode& node) { return std::any_of(node.children.begin(), node.children.end(), is_stage); }
 
 /// One command of one component in a stage list.
 struct Selected
@@ -74,8 +68,7 @@ private:
         {
             Draft& d = c_->draft(open.back());
             open.pop_back();
-            if (d.generated)
-                continue;
+            if (d.generated) continue;
             d.explicit_commands = !d.type_name.empty();
             open.insert(open.end(), d.children.begin(), d.children.end());
         }
@@ -87,11 +80,9 @@ private:
         for (const Stage stage : kStages)
         {
             known.push_back(std::string(kStagePrefix) + std::string(name_of(stage)));
-            if (known.back() == node.name)
-                return stage;
+            if (known.back() == node.name) return stage;
         }
-        complain(node, "unknown stage " + quoted(node.name) + did_you_mean(node.name, known) + " (stages are " +
-                           quoted_list(known) + ")");
+        complain(node, "unknown stage " + quoted(node.name) + did_you_mean(node.name, known) + " (stages are " + quoted_list(known) + ")");
         return std::nullopt;
     }
 
@@ -102,8 +93,7 @@ private:
         items_ = 0;
         stage_ = stage;
         for (const CommandNode& child : node.children) expand(child, owner_);
-        if (items_ > kLongestList)
-            return complain(node, "the list has more than 100000 commands");
+        if (items_ > kLongestList) return complain(node, "the list has more than 100000 commands");
         check_order();
         for (const Selected& s : list_)
         {
@@ -116,18 +106,12 @@ private:
     /// Appends what a list item stands for.
     void expand(const CommandNode& node, std::size_t owner)
     {
-        if (++items_ > kLongestList)
-            return;
-        if (!node.reference.empty())
-            return expand_reference(node, owner);
-        if (!node.type.empty())
-            return select(node, owner);
-        if (is_stage(node) || is_simulation(node))
-            return complain(node, "a stage stands only in a simulation command");
-        if (path_.size() >= kDeepestComposite)
-            return complain(node, "composites are nested deeper than 64");
-        if (std::find(path_.begin(), path_.end(), &node) != path_.end())
-            return complain_circle(node);
+        if (++items_ > kLongestList) return;
+        if (!node.reference.empty()) return expand_reference(node, owner);
+        if (!node.type.empty()) return select(node, owner);
+        if (is_stage(node) || is_simulation(node)) return complain(node, "a stage stands only in a simulation command");
+        if (path_.size() >= kDeepestComposite) return complain(node, "composites are nested deeper than 64");
+        if (std::find(path_.begin(), path_.end(), &node) != path_.end()) return complain_circle(node);
         path_.push_back(&node);
         for (const CommandNode& child : node.children) expand(child, owner);
         path_.pop_back();
@@ -137,8 +121,7 @@ private:
     {
         const std::string id = command_id(c_->draft(owner).cell, node.reference);
         const auto it = c_->command_index.find(id);
-        if (it == c_->command_index.end())
-            return complain(node, "cmdref: no command has the id " + quoted(id));
+        if (it == c_->command_index.end()) return complain(node, "cmdref: no command has the id " + quoted(id));
         const Command& target = c_->commands[it->second];
         expand(*target.node, target.owner);
     }
@@ -156,19 +139,15 @@ private:
         Command command{&node, owner, c_->draft(owner).cell, true, kNone};
         command.anonymous = find_anonymous(node, owner);
         const std::size_t i = subject_of(*c_, command);
-        if (i == kNone || !c_->draft(i).type)
-            return;
+        if (i == kNone || !c_->draft(i).type) return;
         if (c_->draft(i).existing)
-            return complain(node, "subject " + quoted(c_->draft(i).id) +
-                                      " is in the running scene already: it keeps the commands that it has");
-        if (command.anonymous != kNone)
-            return select_all(node, i);
+            return complain(node,
+                            "subject " + quoted(c_->draft(i).id) + " is in the running scene already: it keeps the commands that it has");
+        if (command.anonymous != kNone) return select_all(node, i);
         const CommandMatch match = match_command(*c_->draft(i).type, node.type, &stage_);
-        if (match.index < 0)
-            return complain(node, match.why);
+        if (match.index < 0) return complain(node, match.why);
         const CommandInfo& info = c_->draft(i).type->info.commands[static_cast<std::size_t>(match.index)];
-        if (stage_of(info.phase) != stage_)
-            return complain(node, wrong_stage(info));
+        if (stage_of(info.phase) != stage_) return complain(node, wrong_stage(info));
         if (!listed_.emplace(i, match.index).second)
             return complain(node, quoted(info.name) + " of " + quoted(c_->draft(i).id) + " is in the list twice");
         list_.push_back({i, match.index, &node});
@@ -176,11 +155,9 @@ private:
 
     std::size_t find_anonymous(const CommandNode& node, std::size_t owner) const
     {
-        if (!node.subject.empty() || node.id.empty())
-            return kNone;
+        if (!node.subject.empty() || node.id.empty()) return kNone;
         const std::size_t i = c_->directory.find(command_id(c_->draft(owner).cell, node.id));
-        const bool made =
-            i != kNone && c_->draft(i).generated && c_->draft(i).parent == owner && c_->draft(i).type_name == node.type;
+        const bool made = i != kNone && c_->draft(i).generated && c_->draft(i).parent == owner && c_->draft(i).type_name == node.type;
         return made ? i : kNone;
     }
 
@@ -190,29 +167,21 @@ private:
         const std::vector<CommandInfo>& commands = c_->draft(i).type->info.commands;
         std::vector<Selected> found;
         for (std::size_t k = 0; k < commands.size(); ++k)
-            if (stage_of(commands[k].phase) == stage_)
-                found.push_back({i, static_cast<int>(k), &node});
-        if (found.empty())
-            return complain(node, "has nothing to do in Stage/" + std::string(name_of(stage_)));
-        std::stable_sort(found.begin(), found.end(),
-                         [&](const Selected& a, const Selected& b) { return phase(a) < phase(b); });
+            if (stage_of(commands[k].phase) == stage_) found.push_back({i, static_cast<int>(k), &node});
+        if (found.empty()) return complain(node, "has nothing to do in Stage/" + std::string(name_of(stage_)));
+        std::stable_sort(found.begin(), found.end(), [&](const Selected& a, const Selected& b) { return phase(a) < phase(b); });
         list_.insert(list_.end(), found.begin(), found.end());
         for (std::size_t k = 0; k < commands.size(); ++k)
-            if (stage_of(commands[k].phase) == Stage::Init)
-                c_->draft(i).commands.insert(static_cast<int>(k));
+            if (stage_of(commands[k].phase) == Stage::Init) c_->draft(i).commands.insert(static_cast<int>(k));
     }
 
     std::string wrong_stage(const CommandInfo& info) const
     {
-        return quoted(info.name) + " belongs to Stage/" + std::string(name_of(stage_of(info.phase))) +
-               ", not to Stage/" + std::string(name_of(stage_)) + ": the step runs it in its phase " +
-               quoted(name_of(info.phase));
+        return quoted(info.name) + " belongs to Stage/" + std::string(name_of(stage_of(info.phase))) + ", not to Stage/" +
+               std::string(name_of(stage_)) + ": the step runs it in its phase " + quoted(name_of(info.phase));
     }
 
-    Phase phase(const Selected& s) const
-    {
-        return c_->draft(s.component).type->info.commands[static_cast<std::size_t>(s.command)].phase;
-    }
+    Phase phase(const Selected& s) const { return c_->draft(s.component).type->info.commands[static_cast<std::size_t>(s.command)].phase; }
 
     /// The step runs phases in one order; a list that reads otherwise would promise what does not happen.
     void check_order()
@@ -220,11 +189,9 @@ private:
         for (std::size_t k = 1; k < list_.size(); ++k)
         {
             const Selected &before = list_[k - 1], &after = list_[k];
-            if (phase(before) <= phase(after))
-                continue;
-            complain(*after.node, "stands behind " + quoted(before.node->type) + " (phase " +
-                                      quoted(name_of(phase(before))) + "), but the step runs its phase " +
-                                      quoted(name_of(phase(after))) + " first: put it before");
+            if (phase(before) <= phase(after)) continue;
+            complain(*after.node, "stands behind " + quoted(before.node->type) + " (phase " + quoted(name_of(phase(before))) +
+                                      "), but the step runs its phase " + quoted(name_of(phase(after))) + " first: put it before");
         }
     }
 
@@ -241,24 +208,19 @@ private:
 void check_export(Compilation& c, const Command& command)
 {
     const CommandNode& node = *command.node;
-    if (node.type.empty() || command.in_stage || command.anonymous != kNone || !node.children.empty())
-        return;
+    if (node.type.empty() || command.in_stage || command.anonymous != kNone || !node.children.empty()) return;
     const std::size_t i = subject_of(c, command);
-    if (i == kNone || !c.draft(i).type)
-        return;
+    if (i == kNone || !c.draft(i).type) return;
     const CommandMatch match = match_command(*c.draft(i).type, node.type, nullptr);
-    if (match.index < 0)
-        c.report.add(node.where, command_element(command), match.why);
+    if (match.index < 0) c.report.add(node.where, command_element(command), match.why);
 }
 
 void check_references(Compilation& c, const Command& command)
 {
     const CommandNode& node = *command.node;
-    if (node.reference.empty() || command.in_stage)
-        return;
+    if (node.reference.empty() || command.in_stage) return;
     const std::string id = command_id(command.cell, node.reference);
-    if (!c.command_index.contains(id))
-        c.report.add(node.where, command_element(command), "cmdref: no command has the id " + quoted(id));
+    if (!c.command_index.contains(id)) c.report.add(node.where, command_element(command), "cmdref: no command has the id " + quoted(id));
 }
 
 }  // namespace
@@ -268,13 +230,11 @@ void select_commands(Compilation& c)
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
     {
         const ComponentNode* node = c.draft(i).node;
-        if (!node)
-            continue;
+        if (!node) continue;
         const CommandNode* first = nullptr;
         for (const CommandNode& command : node->commands)
         {
-            if (!is_simulation(command))
-                continue;
+            if (!is_simulation(command)) continue;
             if (first)
                 c.report.add(command.where, command_element({&command, i, c.draft(i).cell}),
                              "a component has one simulation command, and " + quoted(first->name) + " is it already");

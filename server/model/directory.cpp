@@ -19,8 +19,7 @@ std::size_t Directory::follow(std::size_t i) const
     // A chain without circle is no longer than there are drafts.
     for (std::size_t steps = 0; steps <= drafts.size(); ++steps)
     {
-        if (i == kNone || drafts[i].alias == kNone)
-            return i;
+        if (i == kNone || drafts[i].alias == kNone) return i;
         i = drafts[i].alias;
     }
     return kNone;
@@ -38,10 +37,8 @@ std::vector<std::size_t> Directory::inside(std::size_t group) const
         const auto enter = [&](std::size_t i)
         {
             i = follow(i);
-            if (i == kNone || !seen.insert(i).second)
-                return;
-            if (!drafts[i].type_name.empty())
-                found.push_back(i);
+            if (i == kNone || !seen.insert(i).second) return;
+            if (!drafts[i].type_name.empty()) found.push_back(i);
             open.push_back(i);
         };
         for (const std::size_t child : at.children) enter(child);
@@ -52,10 +49,9 @@ std::vector<std::size_t> Directory::inside(std::size_t group) const
 
 bool accepts(const Role& role, const ComponentType& type)
 {
-    return std::any_of(
-        role.facets.begin(), role.facets.end(),
-        [&](Facet facet)
-        { return facet == Facet::Component ? type.info.name.starts_with(role.family) : facet == type.info.facet; });
+    return std::any_of(role.facets.begin(), role.facets.end(),
+                       [&](Facet facet)
+                       { return facet == Facet::Component ? type.info.name.starts_with(role.family) : facet == type.info.facet; });
 }
 
 std::string describe_wanted(const Role& role)
@@ -77,10 +73,8 @@ namespace
 std::string describe(const Draft& draft)
 {
     constexpr std::string_view words[] = {"", ", a body", ", a shaft", ", a shape"};
-    if (!draft.type)
-        return quoted(draft.id);
-    return quoted(draft.id) + " is " + draft.type->info.name +
-           std::string(words[static_cast<int>(draft.type->info.facet)]);
+    if (!draft.type) return quoted(draft.id);
+    return quoted(draft.id) + " is " + draft.type->info.name + std::string(words[static_cast<int>(draft.type->info.facet)]);
 }
 
 /// What an object or a group gives to a role.
@@ -91,19 +85,17 @@ Participants find_inside(const Directory& directory, std::size_t group, const Ro
     {
         const Draft& d = directory.drafts[i];
         out.broken = out.broken || d.broken;
-        if (d.type && accepts(role, *d.type))
-            out.members.push_back(i);
+        if (d.type && accepts(role, *d.type)) out.members.push_back(i);
     }
     const std::string id = quoted(directory.drafts[group].id);
     if (out.members.empty() && !out.broken)
         out.why = "role " + role.name + " needs " + describe_wanted(role) + ", and " + id + " holds none";
-    if (!role.one || out.members.size() < 2)
-        return out;
+    if (!role.one || out.members.size() < 2) return out;
     std::vector<std::string> ids;
     for (const std::size_t i : out.members) ids.push_back(directory.drafts[i].id);
     std::sort(ids.begin(), ids.end());
-    out.why = "role " + role.name + " takes one participant, and " + id + " holds " + std::to_string(ids.size()) +
-              " that fit (" + quoted_list(ids) + "): name one of them";
+    out.why = "role " + role.name + " takes one participant, and " + id + " holds " + std::to_string(ids.size()) + " that fit (" +
+              quoted_list(ids) + "): name one of them";
     out.members.clear();
     return out;
 }
@@ -127,8 +119,7 @@ Participants find_participants(const Directory& directory, const std::string& wr
         return out;
     }
     const Draft& d = directory.drafts[i];
-    if (d.type_name.empty())
-        return find_inside(directory, i, role);
+    if (d.type_name.empty()) return find_inside(directory, i, role);
     if (d.type && accepts(role, *d.type))
         out.members.push_back(i);
     else
@@ -151,8 +142,7 @@ std::vector<std::vector<std::size_t>> find_circles(const std::vector<std::vector
     std::vector<std::size_t> path;  // depth first, without recursion: chains can be as long as the scene
     for (std::size_t start = 0; start < edges.size(); ++start)
     {
-        if (marks[start] != Mark::New)
-            continue;
+        if (marks[start] != Mark::New) continue;
         path.push_back(start);
         marks[start] = Mark::OnPath;
         while (!path.empty())
@@ -167,8 +157,7 @@ std::vector<std::vector<std::size_t>> find_circles(const std::vector<std::vector
             const std::size_t to = edges[at][next[at]++];
             if (marks[to] == Mark::OnPath && circles.size() < kMostCircles)
                 circles.emplace_back(std::find(path.begin(), path.end(), to), path.end());
-            if (marks[to] != Mark::New)
-                continue;
+            if (marks[to] != Mark::New) continue;
             marks[to] = Mark::OnPath;
             path.push_back(to);
         }

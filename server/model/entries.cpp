@@ -44,14 +44,12 @@ Result<Value> parse_entries(std::string_view text, const Field& field)
     {
         Entry entry;
         entry.name = take_word(rest, "= \t\n\r");
-        if (entry.name.empty() || !rest.starts_with('='))
-            return reason(prefix + "entries are written name=value");
+        if (entry.name.empty() || !rest.starts_with('=')) return reason(prefix + "entries are written name=value");
         rest.remove_prefix(1);
         if (rest.starts_with('\''))
         {
             std::string value;
-            if (!take_quoted(rest, value))
-                return reason(prefix + "the text of " + quoted(entry.name) + " has no closing quote");
+            if (!take_quoted(rest, value)) return reason(prefix + "the text of " + quoted(entry.name) + " has no closing quote");
             entry.value = std::move(value);
         }
         else
@@ -76,13 +74,10 @@ std::string format_entries(const Entries& entries)
     for (const Entry& e : entries)
     {
         out += (out.empty() ? "" : " ") + e.name + "=";
-        if (const auto* b = std::get_if<bool>(&e.value))
-            out += *b ? "true" : "false";
-        if (const auto* d = std::get_if<double>(&e.value))
-            out += format_real(*d);
+        if (const auto* b = std::get_if<bool>(&e.value)) out += *b ? "true" : "false";
+        if (const auto* d = std::get_if<double>(&e.value)) out += format_real(*d);
         const auto* s = std::get_if<std::string>(&e.value);
-        if (!s)
-            continue;
+        if (!s) continue;
         out += '\'';
         for (const char c : *s) out += c == '\'' ? "''" : std::string(1, c);
         out += '\'';

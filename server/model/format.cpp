@@ -20,15 +20,11 @@ std::string join(std::initializer_list<double> numbers)
 }
 
 /// +0, to the bit: what three numbers leave out of a matrix.
-bool is_plain_zero(double x)
-{
-    return x == 0 && !std::signbit(x);
-}
+bool is_plain_zero(double x) { return x == 0 && !std::signbit(x); }
 
 std::string format_matrix(const Mat3& a)
 {
-    if (is_plain_zero(a(0, 1)) && is_plain_zero(a(0, 2)) && is_plain_zero(a(1, 2)))
-        return join({a(0, 0), a(1, 1), a(2, 2)});
+    if (is_plain_zero(a(0, 1)) && is_plain_zero(a(0, 2)) && is_plain_zero(a(1, 2))) return join({a(0, 0), a(1, 1), a(2, 2)});
     return join({a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(0, 2), a(1, 2)});
 }
 
@@ -61,21 +57,16 @@ struct Formatter
 
 std::string format_real(double value)
 {
-    if (std::isnan(value))
-        return "nan";
-    if (std::isinf(value))
-        return value < 0 ? "-inf" : "inf";
+    if (std::isnan(value)) return "nan";
+    if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
     const double size = std::fabs(value);
     const bool plain = size == 0 || (size >= 1e-5 && size < 1e16);
     char buffer[64];
-    const auto [end, ec] = std::to_chars(buffer, buffer + sizeof buffer, value,
-                                         plain ? std::chars_format::fixed : std::chars_format::scientific);
+    const auto [end, ec] =
+        std::to_chars(buffer, buffer + sizeof buffer, value, plain ? std::chars_format::fixed : std::chars_format::scientific);
     return ec == std::errc() ? std::string(buffer, end) : std::string();
 }
 
-std::string format_value(const Value& value)
-{
-    return std::visit(Formatter{}, value);
-}
+std::string format_value(const Value& value) { return std::visit(Formatter{}, value); }
 
 }  // namespace plab::model

@@ -16,34 +16,25 @@ namespace
 
 std::string_view without_sign(std::string_view word)
 {
-    if (!word.empty() && (word.front() == '+' || word.front() == '-'))
-        word.remove_prefix(1);
+    if (!word.empty() && (word.front() == '+' || word.front() == '-')) word.remove_prefix(1);
     return word;
 }
 
-bool is_infinity(std::string_view word)
-{
-    return equal_ignoring_case(word, "inf") || equal_ignoring_case(word, "infinity");
-}
+bool is_infinity(std::string_view word) { return equal_ignoring_case(word, "inf") || equal_ignoring_case(word, "infinity"); }
 
-bool is_nan(std::string_view word)
-{
-    return word.size() >= 3 && equal_ignoring_case(word.substr(0, 3), "nan");
-}
+bool is_nan(std::string_view word) { return word.size() >= 3 && equal_ignoring_case(word.substr(0, 3), "nan"); }
 
 /// Why `word`, of which from_chars left `rest`, is no number.
 Error not_a_number(std::string_view word, std::string_view rest)
 {
-    if (is_nan(without_sign(word)))
-        return reason(quoted(word) + " is not a number that can be computed with");
+    if (is_nan(without_sign(word))) return reason(quoted(word) + " is not a number that can be computed with");
     if (word.find(',') != std::string_view::npos)
         return reason(quoted(word) + ": use a point, not a comma, in numbers, and blanks between them");
     const std::string_view digits = without_sign(word);
-    if (digits.starts_with("0x") || digits.starts_with("0X"))
-        return reason(quoted(word) + ": write the number in decimals");
+    if (digits.starts_with("0x") || digits.starts_with("0X")) return reason(quoted(word) + ": write the number in decimals");
     if (rest.size() < word.size() && is_unit_symbol(rest))
-        return reason(quoted(word) + ": put a blank between number and unit, '" +
-                      std::string(word.substr(0, word.size() - rest.size())) + " " + std::string(rest) + "'");
+        return reason(quoted(word) + ": put a blank between number and unit, '" + std::string(word.substr(0, word.size() - rest.size())) +
+                      " " + std::string(rest) + "'");
     return reason(quoted(word) + " is not a number");
 }
 
@@ -51,26 +42,21 @@ template <class T>
 Result<T> parse_with_from_chars(std::string_view word)
 {
     std::string_view digits = word;
-    if (digits.starts_with('+') && !digits.starts_with("+-"))
-        digits.remove_prefix(1);
+    if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
     T value{};
     const char* const end = digits.data() + digits.size();
     const auto [at, ec] = std::from_chars(digits.data(), end, value);
-    if (ec == std::errc::result_out_of_range)
-        return reason(quoted(word) + " is out of range");
-    if (ec != std::errc() || at != end)
-        return not_a_number(word, {at, static_cast<std::size_t>(end - at)});
+    if (ec == std::errc::result_out_of_range) return reason(quoted(word) + " is out of range");
+    if (ec != std::errc() || at != end) return not_a_number(word, {at, static_cast<std::size_t>(end - at)});
     return value;
 }
 
 Result<double> parse_plain_real(std::string_view word)
 {
     const std::string_view digits = without_sign(word);
-    if (is_infinity(digits))
-        return (word.front() == '-' ? -1 : 1) * std::numeric_limits<double>::infinity();
+    if (is_infinity(digits)) return (word.front() == '-' ? -1 : 1) * std::numeric_limits<double>::infinity();
     // from_chars would read "nan" and "infinity"; only digits and a point may begin a number here.
-    if (digits.empty() || !(is_digit(digits.front()) || digits.front() == '.'))
-        return not_a_number(word, word);
+    if (digits.empty() || !(is_digit(digits.front()) || digits.front() == '.')) return not_a_number(word, word);
     return parse_with_from_chars<double>(word);
 }
 
@@ -78,10 +64,8 @@ Result<double> parse_plain_real(std::string_view word)
 
 bool looks_like_number(std::string_view word)
 {
-    if (word.empty())
-        return false;
-    if (word.size() > 2 && word.starts_with("1/") && is_letter(word[2]))
-        return false;
+    if (word.empty()) return false;
+    if (word.size() > 2 && word.starts_with("1/") && is_letter(word[2])) return false;
     const char c = word.front();
     return c == '+' || c == '-' || c == '.' || c == ',' || is_digit(c) || is_infinity(word) || is_nan(word);
 }
@@ -89,17 +73,13 @@ bool looks_like_number(std::string_view word)
 Result<double> parse_real(std::string_view word)
 {
     const std::size_t slash = word.find('/');
-    if (slash == std::string_view::npos)
-        return parse_plain_real(word);
+    if (slash == std::string_view::npos) return parse_plain_real(word);
     const Result<double> a = parse_plain_real(word.substr(0, slash));
     const Result<double> b = parse_plain_real(word.substr(slash + 1));
-    if (!a || !b || std::isinf(*a) || std::isinf(*b))
-        return reason(quoted(word) + " is not a number");
-    if (*b == 0)
-        return reason(quoted(word) + " divides by zero");
+    if (!a || !b || std::isinf(*a) || std::isinf(*b)) return reason(quoted(word) + " is not a number");
+    if (*b == 0) return reason(quoted(word) + " divides by zero");
     const double value = *a / *b;
-    if (std::isinf(value))
-        return reason(quoted(word) + " is out of range");
+    if (std::isinf(value)) return reason(quoted(word) + " is out of range");
     return value;
 }
 

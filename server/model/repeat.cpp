@@ -19,18 +19,14 @@ constexpr std::int64_t kMostPerAxis = 1'000'000;
 Result<void> read_count(const TextNode& text, Repeat& out)
 {
     const std::vector<std::string_view> words = split_words(text.text);
-    if (words.empty() || words.size() > 3)
-        return reason("count needs 1 to 3 whole numbers, has " + std::to_string(words.size()));
+    if (words.empty() || words.size() > 3) return reason("count needs 1 to 3 whole numbers, has " + std::to_string(words.size()));
     out.dimensions = static_cast<int>(words.size());
     for (std::size_t k = 0; k < words.size(); ++k)
     {
         Result<std::int64_t> n = parse_integer(words[k]);
-        if (!n)
-            return reason("count: " + n.error().reason);
-        if (*n < 1)
-            return reason("count must be 1 or more, not " + std::to_string(*n));
-        if (*n > kMostPerAxis)
-            return reason("count must be at most 1000000, not " + std::to_string(*n));
+        if (!n) return reason("count: " + n.error().reason);
+        if (*n < 1) return reason("count must be 1 or more, not " + std::to_string(*n));
+        if (*n > kMostPerAxis) return reason("count must be at most 1000000, not " + std::to_string(*n));
         out.count[k] = *n;
     }
     return {};
@@ -43,32 +39,25 @@ Result<Vec3> read_lengths(const TextNode& text)
     field.unit = unit::metre;
     field.type = FieldType::RealList;
     const bool jitter = text.name == "jitter";
-    if (jitter)
-        field.rules.push_back({Rule::Kind::AtLeast, 0, {}});
+    if (jitter) field.rules.push_back({Rule::Kind::AtLeast, 0, {}});
     Result<Value> value = parse_value(text.text, field);
-    if (!value)
-        return value.errors();
+    if (!value) return value.errors();
     const Reals& n = std::get<Reals>(*value);
-    if (jitter && n.size() == 1)
-        return Vec3{n[0], n[0], n[0]};
-    if (n.size() != 3)
-        return reason(text.name + " needs 3 numbers" + (jitter ? " or 1" : "") + ", has " + std::to_string(n.size()));
+    if (jitter && n.size() == 1) return Vec3{n[0], n[0], n[0]};
+    if (n.size() != 3) return reason(text.name + " needs 3 numbers" + (jitter ? " or 1" : "") + ", has " + std::to_string(n.size()));
     return Vec3{n[0], n[1], n[2]};
 }
 
 Result<void> read_attribute(const TextNode& text, Repeat& out)
 {
     const std::vector<std::string> names{"id", "count", "step", "jitter", "origin"};
-    if (text.name == "id")
-        return out.id = text.text, Result<void>();
-    if (text.name == "count")
-        return read_count(text, out);
+    if (text.name == "id") return out.id = text.text, Result<void>();
+    if (text.name == "count") return read_count(text, out);
     if (text.name != "step" && text.name != "jitter" && text.name != "origin")
-        return reason("unknown attribute " + quoted(text.name) + did_you_mean(text.name, names) + " (attributes are " +
-                      quoted_list(names) + ")");
+        return reason("unknown attribute " + quoted(text.name) + did_you_mean(text.name, names) + " (attributes are " + quoted_list(names) +
+                      ")");
     Result<Vec3> v = read_lengths(text);
-    if (!v)
-        return v.errors();
+    if (!v) return v.errors();
     (text.name == "step" ? out.step : text.name == "jitter" ? out.jitter : out.origin) = *v;
     return {};
 }
@@ -107,19 +96,13 @@ Result<Repeat> read_repeat(const RepeatNode& node)
     std::unordered_set<std::string> seen;
     for (const TextNode& text : node.attributes)
     {
-        if (!seen.insert(text.name).second)
-            errors.push_back({text.where, {}, text.name + " is given twice"});
-        if (Result<void> r = read_attribute(text, out); !r)
-            errors.push_back({text.where, {}, r.error().reason});
+        if (!seen.insert(text.name).second) errors.push_back({text.where, {}, text.name + " is given twice"});
+        if (Result<void> r = read_attribute(text, out); !r) errors.push_back({text.where, {}, r.error().reason});
     }
-    if (!seen.contains("count"))
-        errors.push_back({node.where, {}, "count is missing: give 1 to 3 whole numbers"});
-    if (node.components.empty())
-        errors.push_back({node.where, {}, "holds no component to repeat"});
-    if (out.dimensions == 2 && out.step.z != 0)
-        errors.push_back({node.where, {}, "step goes along z, but count has no third number"});
-    if (!errors.empty())
-        return errors;
+    if (!seen.contains("count")) errors.push_back({node.where, {}, "count is missing: give 1 to 3 whole numbers"});
+    if (node.components.empty()) errors.push_back({node.where, {}, "holds no component to repeat"});
+    if (out.dimensions == 2 && out.step.z != 0) errors.push_back({node.where, {}, "step goes along z, but count has no third number"});
+    if (!errors.empty()) return errors;
     return out;
 }
 

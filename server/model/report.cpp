@@ -14,10 +14,8 @@ constexpr std::size_t kMostKept = 20'000;
 
 bool stands_before(const SourceLocation& a, const SourceLocation& b)
 {
-    if ((a.line == 0) != (b.line == 0))
-        return b.line == 0;  // what has no place comes last
-    if (a.file != b.file)
-        return a.file < b.file;
+    if ((a.line == 0) != (b.line == 0)) return b.line == 0;  // what has no place comes last
+    if (a.file != b.file) return a.file < b.file;
     return a.line != b.line ? a.line < b.line : a.column < b.column;
 }
 
@@ -31,29 +29,23 @@ void Report::add(Error error, std::string wanted)
         return;
     }
     std::string key = std::to_string(error.where.line) + ":" + std::to_string(error.where.column) + ":" + error.reason;
-    if (error.where.line == 0)
-        key += ":" + error.element;
-    if (seen_.insert(std::move(key)).second)
-        complaints_.push_back({std::move(error), std::move(wanted)});
+    if (error.where.line == 0) key += ":" + error.element;
+    if (seen_.insert(std::move(key)).second) complaints_.push_back({std::move(error), std::move(wanted)});
 }
 
 Errors Report::finish(const std::vector<std::string>& ids, const std::string& file)
 {
     std::stable_sort(complaints_.begin(), complaints_.end(),
-                     [](const Complaint& a, const Complaint& b)
-                     { return stands_before(a.error.where, b.error.where); });
+                     [](const Complaint& a, const Complaint& b) { return stands_before(a.error.where, b.error.where); });
     Errors out;
     for (Complaint& complaint : complaints_)
     {
-        if (out.size() == std::max<std::size_t>(most_, 1))
-            break;
-        if (!complaint.wanted_id.empty())
-            complaint.error.reason += did_you_mean(complaint.wanted_id, ids);
+        if (out.size() == std::max<std::size_t>(most_, 1)) break;
+        if (!complaint.wanted_id.empty()) complaint.error.reason += did_you_mean(complaint.wanted_id, ids);
         out.push_back(std::move(complaint.error));
     }
     const std::size_t more = complaints_.size() - out.size() + dropped_;
-    if (more > 0)
-        out.push_back({{file, 0, 0}, {}, "... and " + std::to_string(more) + " more"});
+    if (more > 0) out.push_back({{file, 0, 0}, {}, "... and " + std::to_string(more) + " more"});
     return out;
 }
 

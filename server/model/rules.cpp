@@ -17,10 +17,7 @@ namespace
 /// Directions and rotations this near to length 1 are left as they are, so that a printed one reads back to its bits.
 constexpr double kUnitTolerance = 1e-14;
 
-std::string subject(const Field& field)
-{
-    return field.name.empty() ? "the value" : field.name;
-}
+std::string subject(const Field& field) { return field.name.empty() ? "the value" : field.name; }
 
 std::string_view type_words(FieldType type)
 {
@@ -33,16 +30,11 @@ std::string_view type_words(FieldType type)
 /// Each number of a value; of a matrix the diagonal, which is what bounds speak of.
 std::vector<double> bounded_numbers(const Value& value)
 {
-    if (const auto* n = std::get_if<std::int64_t>(&value))
-        return {static_cast<double>(*n)};
-    if (const auto* x = std::get_if<double>(&value))
-        return {*x};
-    if (const auto* v = std::get_if<Vec3>(&value))
-        return {v->x, v->y, v->z};
-    if (const auto* a = std::get_if<Mat3>(&value))
-        return {(*a)(0, 0), (*a)(1, 1), (*a)(2, 2)};
-    if (const auto* list = std::get_if<Reals>(&value))
-        return *list;
+    if (const auto* n = std::get_if<std::int64_t>(&value)) return {static_cast<double>(*n)};
+    if (const auto* x = std::get_if<double>(&value)) return {*x};
+    if (const auto* v = std::get_if<Vec3>(&value)) return {v->x, v->y, v->z};
+    if (const auto* a = std::get_if<Mat3>(&value)) return {(*a)(0, 0), (*a)(1, 1), (*a)(2, 2)};
+    if (const auto* list = std::get_if<Reals>(&value)) return *list;
     if (const auto* list = std::get_if<Integers>(&value))
     {
         std::vector<double> out;
@@ -54,14 +46,12 @@ std::vector<double> bounded_numbers(const Value& value)
 
 std::vector<double> all_numbers(const Value& value)
 {
-    if (const auto* q = std::get_if<Quat>(&value))
-        return {q->w, q->x, q->y, q->z};
+    if (const auto* q = std::get_if<Quat>(&value)) return {q->w, q->x, q->y, q->z};
     if (const auto* entries = std::get_if<Entries>(&value))
     {
         std::vector<double> out;
         for (const Entry& e : *entries)
-            if (const auto* x = std::get_if<double>(&e.value))
-                out.push_back(*x);
+            if (const auto* x = std::get_if<double>(&e.value)) out.push_back(*x);
         return out;
     }
     std::vector<double> out = bounded_numbers(value);
@@ -74,10 +64,8 @@ Result<void> check_finite(const Value& value, const Field& field)
 {
     for (const double x : all_numbers(value))
     {
-        if (std::isnan(x))
-            return reason(subject(field) + " must be a number, not nan");
-        if (std::isinf(x) && !field.may_be_infinite)
-            return reason(subject(field) + " must be finite, not " + format_real(x));
+        if (std::isnan(x)) return reason(subject(field) + " must be a number, not nan");
+        if (std::isinf(x) && !field.may_be_infinite) return reason(subject(field) + " must be finite, not " + format_real(x));
     }
     return {};
 }
@@ -95,8 +83,7 @@ Result<void> check_bound(const Value& value, const Field& field, const Rule& rul
             return broken(field, rule.bound == 0 ? "0 or more" : "at least " + format_real(rule.bound), x);
         if (rule.kind == Rule::Kind::MoreThan && !(x > rule.bound))
             return broken(field, rule.bound == 0 ? "positive" : "more than " + format_real(rule.bound), x);
-        if (rule.kind == Rule::Kind::AtMost && !(x <= rule.bound))
-            return broken(field, "at most " + format_real(rule.bound), x);
+        if (rule.kind == Rule::Kind::AtMost && !(x <= rule.bound)) return broken(field, "at most " + format_real(rule.bound), x);
     }
     return {};
 }
@@ -106,12 +93,10 @@ bool normalise(std::span<double> v)
 {
     double sum = 0;
     for (const double x : v) sum += x * x;
-    if (std::fabs(sum - 1) <= kUnitTolerance)
-        return true;
+    if (std::fabs(sum - 1) <= kUnitTolerance) return true;
     double largest = 0;
     for (const double x : v) largest = std::max(largest, std::fabs(x));
-    if (!(largest > 0))
-        return false;
+    if (!(largest > 0)) return false;
     double scaled = 0;
     for (double& x : v)
     {
@@ -127,8 +112,7 @@ bool normalise(Vec3& v)
 {
     double n[] = {v.x, v.y, v.z};
     const bool ok = normalise(n);
-    if (ok)
-        v = {n[0], n[1], n[2]};
+    if (ok) v = {n[0], n[1], n[2]};
     return ok;
 }
 
@@ -137,8 +121,7 @@ Result<void> check_nonzero(Value& value, const Field& field, const Rule& rule)
     auto* v = std::get_if<Vec3>(&value);
     if (rule.kind == Rule::Kind::UnitLength && v)
     {
-        if (!normalise(*v))
-            return reason(subject(field) + " must not be zero: it is a direction");
+        if (!normalise(*v)) return reason(subject(field) + " must not be zero: it is a direction");
         return {};
     }
     const std::vector<double> n = bounded_numbers(value);
@@ -150,8 +133,7 @@ Result<void> check_nonzero(Value& value, const Field& field, const Rule& rule)
 Result<void> check_option(const Value& value, const Field& field, const Rule& rule)
 {
     const auto* text = std::get_if<std::string>(&value);
-    if (!text || std::find(rule.options.begin(), rule.options.end(), *text) != rule.options.end())
-        return {};
+    if (!text || std::find(rule.options.begin(), rule.options.end(), *text) != rule.options.end()) return {};
     return reason(subject(field) + " must be " + quoted_list(rule.options, "or") + ", not " + quoted(*text) +
                   did_you_mean(*text, rule.options));
 }
@@ -179,21 +161,17 @@ Result<void> check_shape(Value& value, const Field& field)
     if (auto* q = std::get_if<Quat>(&value))
     {
         double n[] = {q->w, q->x, q->y, q->z};
-        if (!normalise(n))
-            return reason(subject(field) + " must not be the zero quaternion");
+        if (!normalise(n)) return reason(subject(field) + " must not be the zero quaternion");
         *q = {n[0], n[1], n[2], n[3]};
     }
-    if (const auto* a = std::get_if<Mat3>(&value); a && *a != transposed(*a))
-        return reason(subject(field) + " must be symmetric");
+    if (const auto* a = std::get_if<Mat3>(&value); a && *a != transposed(*a)) return reason(subject(field) + " must be symmetric");
     if (const auto* entries = std::get_if<Entries>(&value))
     {
         std::set<std::string> names;
         for (const Entry& e : *entries)
         {
-            if (e.name.empty())
-                return reason(subject(field) + " has an entry without name");
-            if (!names.insert(e.name).second)
-                return reason(subject(field) + " has two entries named " + quoted(e.name));
+            if (e.name.empty()) return reason(subject(field) + " has an entry without name");
+            if (!names.insert(e.name).second) return reason(subject(field) + " has two entries named " + quoted(e.name));
         }
     }
     return {};
@@ -206,18 +184,14 @@ Result<void> check_value(Value& value, const Field& field)
     // Whole numbers are numbers where they are exact as such.
     constexpr std::int64_t kExact = std::int64_t{1} << 53;
     const auto* whole = std::get_if<std::int64_t>(&value);
-    if (whole && field.type == FieldType::Real && *whole >= -kExact && *whole <= kExact)
-        value = static_cast<double>(*whole);
+    if (whole && field.type == FieldType::Real && *whole >= -kExact && *whole <= kExact) value = static_cast<double>(*whole);
     if (type_of(value) != field.type)
         return reason(subject(field) + " must be " + std::string(type_words(field.type)) + ", not " +
                       std::string(type_words(type_of(value))));
-    if (Result<void> r = check_finite(value, field); !r)
-        return r;
-    if (Result<void> r = check_shape(value, field); !r)
-        return r;
+    if (Result<void> r = check_finite(value, field); !r) return r;
+    if (Result<void> r = check_shape(value, field); !r) return r;
     for (const Rule& rule : field.rules)
-        if (Result<void> r = check_rule(value, field, rule); !r)
-            return r;
+        if (Result<void> r = check_rule(value, field, rule); !r) return r;
     return {};
 }
 

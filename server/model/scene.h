@@ -21,8 +21,7 @@ struct StepLength
     /// n * dt with one rounding.
     double at(std::int64_t n) const
     {
-        return denominator > 0 ? static_cast<double>(n * numerator) / static_cast<double>(denominator)
-                               : static_cast<double>(n) * seconds;
+        return denominator > 0 ? static_cast<double>(n * numerator) / static_cast<double>(denominator) : static_cast<double>(n) * seconds;
     }
 };
 
@@ -39,8 +38,8 @@ struct SceneSettings
 {
     StepLength dt;
     std::uint64_t seed = 1;
-    std::string solver = "solver";                        ///< id of the solver of whoever names none
-    std::string solver_type = "Solver/RungeKutta4";       ///< its type, where the scene has no component of that id
+    std::string solver = "solver";                   ///< id of the solver of whoever names none
+    std::string solver_type = "Solver/RungeKutta4";  ///< its type, where the scene has no component of that id
     std::string title;
     std::vector<Camera> cameras;
 };
@@ -63,12 +62,12 @@ struct RoleSpec
 struct ComponentSpec
 {
     std::string id;
-    std::string name;                   ///< for people
-    std::string type;                   ///< empty: a group
-    std::string parent;                 ///< id; empty at top level
-    std::string alias_of;               ///< compref: shares that component; then type is empty
-    std::vector<std::string> group;     ///< comprefs of a group without type, when there are several
-    std::vector<FieldSpec> fields;      ///< what the author gave; the rest are the declared defaults
+    std::string name;                ///< for people
+    std::string type;                ///< empty: a group
+    std::string parent;              ///< id; empty at top level
+    std::string alias_of;            ///< compref: shares that component; then type is empty
+    std::vector<std::string> group;  ///< comprefs of a group without type, when there are several
+    std::vector<FieldSpec> fields;   ///< what the author gave; the rest are the declared defaults
     std::vector<RoleSpec> roles;
     bool explicit_commands = false;     ///< a simulation command selects: only `commands` take part
     std::vector<std::string> commands;  ///< names of exported commands that take part

@@ -29,10 +29,7 @@ constexpr std::int64_t kMostDenominator = std::int64_t{1} << 53;
 class Fraction
 {
 public:
-    Fraction(std::int64_t numerator, std::int64_t denominator) : numerator_(numerator), denominator_(denominator)
-    {
-        reduce();
-    }
+    Fraction(std::int64_t numerator, std::int64_t denominator) : numerator_(numerator), denominator_(denominator) { reduce(); }
 
     void multiply(std::int64_t n, std::int64_t d)
     {
@@ -60,8 +57,7 @@ private:
 /// The exact value of a positive decimal such as "0.001" or "1e-3"; nothing if it does not fit.
 std::optional<Fraction> exact_decimal(std::string_view word)
 {
-    if (word.starts_with('+'))
-        word.remove_prefix(1);
+    if (word.starts_with('+')) word.remove_prefix(1);
     std::int64_t digits = 0;
     int exponent = 0;
     bool after_point = false;
@@ -76,26 +72,21 @@ std::optional<Fraction> exact_decimal(std::string_view word)
         if (!is_digit(word[i]) || __builtin_mul_overflow(digits, std::int64_t{10}, &digits) ||
             __builtin_add_overflow(digits, std::int64_t{word[i] - '0'}, &digits))
             return std::nullopt;
-        if (after_point)
-            --exponent;
+        if (after_point) --exponent;
     }
     int written = 0;
     if (i < word.size())
     {
         std::string_view tail = word.substr(i + 1);
-        if (tail.starts_with('+'))
-            tail.remove_prefix(1);
-        if (std::from_chars(tail.data(), tail.data() + tail.size(), written).ec != std::errc())
-            return std::nullopt;
+        if (tail.starts_with('+')) tail.remove_prefix(1);
+        if (std::from_chars(tail.data(), tail.data() + tail.size(), written).ec != std::errc()) return std::nullopt;
     }
     exponent += written;
-    if (digits == 0 || std::abs(exponent) > 18)
-        return std::nullopt;
+    if (digits == 0 || std::abs(exponent) > 18) return std::nullopt;
     std::int64_t power = 1;
     for (int k = 0; k < std::abs(exponent); ++k) power *= 10;
     Fraction out(digits, exponent < 0 ? power : 1);
-    if (exponent > 0)
-        out.multiply(power, 1);
+    if (exponent > 0) out.multiply(power, 1);
     return out;
 }
 
@@ -104,17 +95,14 @@ std::optional<Fraction> exact_seconds(std::string_view word, const UnitFactor& u
 {
     const std::size_t slash = word.find('/');
     std::optional<Fraction> out = exact_decimal(word.substr(0, slash));
-    if (!out)
-        return std::nullopt;
+    if (!out) return std::nullopt;
     if (slash != std::string_view::npos)
     {
         const std::optional<Fraction> divisor = exact_decimal(word.substr(slash + 1));
-        if (!divisor || !divisor->exact())
-            return std::nullopt;
+        if (!divisor || !divisor->exact()) return std::nullopt;
         out->multiply(divisor->denominator(), divisor->numerator());
     }
-    if (unit.pi_power != 0)
-        return std::nullopt;
+    if (unit.pi_power != 0) return std::nullopt;
     out->multiply(static_cast<std::int64_t>(unit.numerator), static_cast<std::int64_t>(unit.denominator));
     const bool fits = out->exact() && out->numerator() <= kMostNumerator && out->denominator() <= kMostDenominator;
     return fits ? out : std::nullopt;
@@ -125,35 +113,29 @@ std::optional<Fraction> exact_seconds(std::string_view word, const UnitFactor& u
 Result<StepLength> parse_step_length(std::string_view text)
 {
     text = trimmed(text);
-    if (text.empty())
-        return reason("dt is empty: give a time such as 1/240 or 2 ms");
+    if (text.empty()) return reason("dt is empty: give a time such as 1/240 or 2 ms");
     const std::string_view word = text.substr(0, text.find_first_of(" \t\n\r"));
     Result<double> number = parse_real(word);
-    if (!number)
-        return reason("dt: " + number.error().reason);
+    if (!number) return reason("dt: " + number.error().reason);
     UnitFactor factor;
     factor.dimension = unit::second.dimension;
     if (word.size() < text.size())
     {
         Result<UnitFactor> written = parse_unit(text.substr(word.size()));
-        if (!written)
-            return reason("dt: " + written.error().reason);
+        if (!written) return reason("dt: " + written.error().reason);
         if (!unit_fits(written->dimension, unit::second.dimension))
-            return reason("dt must be in " + describe_unit(unit::second) + ", not in " +
-                          quoted(trimmed(text.substr(word.size()))));
+            return reason("dt must be in " + describe_unit(unit::second) + ", not in " + quoted(trimmed(text.substr(word.size()))));
         factor = *written;
     }
     StepLength step;
     step.seconds = factor.to_si(*number);
-    if (!(step.seconds > 0))
-        return reason("dt must be positive, not " + std::string(text));
+    if (!(step.seconds > 0)) return reason("dt must be positive, not " + std::string(text));
     if (!(step.seconds >= kShortestStep && step.seconds <= kLongestStep))
         return reason("dt must be between 1e-9 s and 3600 s, not " + std::string(text));
     const std::optional<Fraction> exact = exact_seconds(word, factor);
     step.numerator = exact ? exact->numerator() : 1;
     step.denominator = exact ? exact->denominator() : 0;
-    if (exact)
-        step.seconds = static_cast<double>(step.numerator) / static_cast<double>(step.denominator);
+    if (exact) step.seconds = static_cast<double>(step.numerator) / static_cast<double>(step.denominator);
     return step;
 }
 

@@ -32,11 +32,9 @@ std::vector<std::string_view> split_words(std::string_view text)
 
 bool equal_ignoring_case(std::string_view a, std::string_view b)
 {
-    if (a.size() != b.size())
-        return false;
+    if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)
-        if (to_lower(a[i]) != to_lower(b[i]))
-            return false;
+        if (to_lower(a[i]) != to_lower(b[i])) return false;
     return true;
 }
 
@@ -48,8 +46,7 @@ std::string quoted(std::string_view text)
     while (n < text.size() && n > 0 && (static_cast<unsigned char>(text[n]) & 0xc0) == 0x80) --n;
     std::string shown(text.substr(0, n));
     for (char& c : shown)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            c = '?';
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
     return "'" + shown + (n < text.size() ? "..." : "") + "'";
 }
 
@@ -59,22 +56,18 @@ std::string quoted_list(const std::vector<std::string>& names, std::string_view 
     const std::size_t n = std::min(names.size(), most);
     for (std::size_t i = 0; i < n; ++i)
     {
-        if (i > 0)
-            out += i + 1 == names.size() ? " " + std::string(last_word) + " " : ", ";
+        if (i > 0) out += i + 1 == names.size() ? " " + std::string(last_word) + " " : ", ";
         out += quoted(names[i]);
     }
-    if (n < names.size())
-        out += ", ...";
+    if (n < names.size()) out += ", ...";
     return out;
 }
 
 std::string place_text(const SourceLocation& where)
 {
     std::string out = where.file;
-    if (where.line == 0)
-        return out.empty() ? "another place" : out;
-    if (!out.empty())
-        out += ":";
+    if (where.line == 0) return out.empty() ? "another place" : out;
+    if (!out.empty()) out += ":";
     return out + std::to_string(where.line) + ":" + std::to_string(where.column);
 }
 

@@ -15,8 +15,7 @@ namespace
 
 bool is_snake_case(std::string_view name)
 {
-    if (name.empty() || !is_lower(name.front()) || name.back() == '_')
-        return false;
+    if (name.empty() || !is_lower(name.front()) || name.back() == '_') return false;
     return std::all_of(name.begin(), name.end(), [](char c) { return is_lower(c) || is_digit(c) || c == '_'; });
 }
 
@@ -29,8 +28,7 @@ bool is_type_name(std::string_view name)
     {
         if (begins)
         {
-            if (!is_upper(c))
-                return false;
+            if (!is_upper(c)) return false;
             ++parts;
         }
         else if (c != '/' && !is_letter(c) && !is_digit(c))
@@ -48,19 +46,15 @@ public:
 
     void run()
     {
-        if (!is_type_name(type_->info.name))
-            complain("type names read Kind/Algorithm or Kind/Family/Algorithm");
-        if (type_->info.family.empty())
-            complain("its family is empty");
+        if (!is_type_name(type_->info.name)) complain("type names read Kind/Algorithm or Kind/Family/Algorithm");
+        if (type_->info.family.empty()) complain("its family is empty");
         for (const Field& field : type_->schema.fields()) check_field(field);
         for (const Role& role : type_->schema.roles()) check_role(role);
         std::set<std::string> commands;
         for (const CommandInfo& c : type_->info.commands)
         {
-            if (c.name.empty())
-                complain("a command has no name");
-            if (!commands.insert(c.name).second)
-                complain("command " + quoted(c.name) + " is declared twice");
+            if (c.name.empty()) complain("a command has no name");
+            if (!commands.insert(c.name).second) complain("command " + quoted(c.name) + " is declared twice");
         }
     }
 
@@ -69,47 +63,35 @@ private:
 
     void check_name(const std::string& name)
     {
-        if (!is_snake_case(name))
-            complain(quoted(name) + " must be in snake_case");
-        if (name == "id" || name == "name" || name == "type")
-            complain(quoted(name) + " is an attribute of every component");
-        if (!names_.insert(name).second)
-            complain(quoted(name) + " is declared twice");
+        if (!is_snake_case(name)) complain(quoted(name) + " must be in snake_case");
+        if (name == "id" || name == "name" || name == "type") complain(quoted(name) + " is an attribute of every component");
+        if (!names_.insert(name).second) complain(quoted(name) + " is declared twice");
     }
 
     void check_field(const Field& field)
     {
         check_name(field.name);
         const bool settable = field.kind == FieldKind::Param || field.kind == FieldKind::State;
-        if (settable && field.type == FieldType::Opaque)
-            complain(field.name + " cannot be set: its type has no text form");
+        if (settable && field.type == FieldType::Opaque) complain(field.name + " cannot be set: its type has no text form");
         for (const Rule& rule : field.rules)
             if (rule.kind == Rule::Kind::OneOf && (rule.options.empty() || field.type != FieldType::Text))
                 complain(field.name + " has options that cannot be chosen from");
-        if (!settable || field.required || field.fallback.index() == 0)
-            return;
+        if (!settable || field.required || field.fallback.index() == 0) return;
         Value value = field.fallback;
-        if (Result<void> r = check_value(value, field); !r)
-            return complain("the default breaks its own rule: " + r.error().reason);
-        if (value != field.fallback)
-            complain("the default of " + field.name + " must be of unit length");
+        if (Result<void> r = check_value(value, field); !r) return complain("the default breaks its own rule: " + r.error().reason);
+        if (value != field.fallback) complain("the default of " + field.name + " must be of unit length");
     }
 
     void check_role(const Role& role)
     {
         check_name(role.name);
-        const bool takes_components =
-            std::find(role.facets.begin(), role.facets.end(), Facet::Component) != role.facets.end();
-        if (role.facets.empty())
-            complain("role " + role.name + " accepts nobody: it names no facet");
-        if (role.min > role.max)
-            complain("role " + role.name + " needs more participants than it takes");
-        if (!role.default_type.empty() && !takes_components)
-            complain("role " + role.name + " has a default type but takes no components");
+        const bool takes_components = std::find(role.facets.begin(), role.facets.end(), Facet::Component) != role.facets.end();
+        if (role.facets.empty()) complain("role " + role.name + " accepts nobody: it names no facet");
+        if (role.min > role.max) complain("role " + role.name + " needs more participants than it takes");
+        if (!role.default_type.empty() && !takes_components) complain("role " + role.name + " has a default type but takes no components");
         if (!role.default_type.empty() && !role.default_type.starts_with(role.family))
             complain("role " + role.name + " has a default type outside its family " + role.family);
-        if (role.exclusive && !role.writes)
-            complain("role " + role.name + " is exclusive, so it must say that it writes");
+        if (role.exclusive && !role.writes) complain("role " + role.name + " is exclusive, so it must say that it writes");
     }
 
     const ComponentType* type_;
@@ -129,15 +111,13 @@ std::string role_list(const Schema& schema)
 int ComponentType::find_command(std::string_view name) const
 {
     for (std::size_t i = 0; i < info.commands.size(); ++i)
-        if (info.commands[i].name == name)
-            return static_cast<int>(i);
+        if (info.commands[i].name == name) return static_cast<int>(i);
     return -1;
 }
 
 bool ComponentType::takes_part(Phase phase) const
 {
-    return std::any_of(info.commands.begin(), info.commands.end(),
-                       [&](const CommandInfo& c) { return c.phase == phase; });
+    return std::any_of(info.commands.begin(), info.commands.end(), [&](const CommandInfo& c) { return c.phase == phase; });
 }
 
 std::string ComponentType::why_not_exchangeable(const ComponentType& other) const
@@ -146,25 +126,20 @@ std::string ComponentType::why_not_exchangeable(const ComponentType& other) cons
     if (info.family != other.info.family)
         return info.name + " is of family " + info.family + ", " + other.info.name + " of family " + other.info.family;
     if (info.facet != other.info.facet)
-        return info.name + " is " + std::string(facets[static_cast<int>(info.facet)]) + ", " + other.info.name +
-               " is " + std::string(facets[static_cast<int>(other.info.facet)]);
+        return info.name + " is " + std::string(facets[static_cast<int>(info.facet)]) + ", " + other.info.name + " is " +
+               std::string(facets[static_cast<int>(other.info.facet)]);
     for (const Role& a : schema.roles())
     {
         const Role* b = other.schema.find_role(a.name);
-        if (!b)
-            continue;
-        if (a.facets != b->facets || a.family != b->family)
-            return "role " + a.name + " takes other kinds of participants";
-        if ((a.one == nullptr) != (b->one == nullptr))
-            return "role " + a.name + " is of one in the one and of many in the other";
+        if (!b) continue;
+        if (a.facets != b->facets || a.family != b->family) return "role " + a.name + " takes other kinds of participants";
+        if ((a.one == nullptr) != (b->one == nullptr)) return "role " + a.name + " is of one in the one and of many in the other";
     }
     std::set<std::string> mine, theirs;
     for (const Role& r : schema.roles()) mine.insert(r.name);
     for (const Role& r : other.schema.roles()) theirs.insert(r.name);
-    if (mine == theirs)
-        return {};
-    return info.name + " has the roles " + role_list(schema) + ", " + other.info.name + " has " +
-           role_list(other.schema);
+    if (mine == theirs) return {};
+    return info.name + " has the roles " + role_list(schema) + ", " + other.info.name + " has " + role_list(other.schema);
 }
 
 Result<void> TypeRegistry::add(Registrar&& registrar, const std::string& plugin)
@@ -191,8 +166,7 @@ Result<void> TypeRegistry::add(Registrar&& registrar, const std::string& plugin)
         TypeCheck(type, errors).run();
     }
     for (Error& e : errors) e.where.file = "plugin " + plugin;
-    if (!errors.empty())
-        return errors;
+    if (!errors.empty()) return errors;
     for (ComponentType& type : fresh) types_.push_back(std::move(type));
     return {};
 }
@@ -200,8 +174,7 @@ Result<void> TypeRegistry::add(Registrar&& registrar, const std::string& plugin)
 const ComponentType* TypeRegistry::find(std::string_view name) const
 {
     for (const ComponentType& t : types_)
-        if (t.info.name == name)
-            return &t;
+        if (t.info.name == name) return &t;
     return nullptr;
 }
 

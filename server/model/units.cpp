@@ -41,8 +41,7 @@ constexpr Symbol kSymbols[] = {
 const Symbol* find_symbol(std::string_view name)
 {
     for (const Symbol& s : kSymbols)
-        if (s.name == name)
-            return &s;
+        if (s.name == name) return &s;
     return nullptr;
 }
 
@@ -75,8 +74,7 @@ bool multiply(UnitFactor& f, const Symbol& symbol, int power)
     for (std::size_t i = 0; i < f.dimension.power.size(); ++i)
     {
         const int sum = f.dimension.power[i] + symbol.dimension.power[i] * power;
-        if (std::abs(sum) > kMostPower)
-            return false;
+        if (std::abs(sum) > kMostPower) return false;
         f.dimension.power[i] = static_cast<signed char>(sum);
     }
     f.pi_power += symbol.pi_power * power;
@@ -99,8 +97,7 @@ public:
     {
         UnitFactor out;
         // "1/s": a quotient without numerator.
-        if (text_.starts_with("1") && trimmed(text_.substr(1)).starts_with("/"))
-            at_ = 1;
+        if (text_.starts_with("1") && trimmed(text_.substr(1)).starts_with("/")) at_ = 1;
         bool first = at_ == 0;
         while (skip_blanks(), at_ < text_.size())
         {
@@ -111,8 +108,7 @@ public:
                 skip_blanks();
             }
             first = false;
-            if (auto r = read_factor(out, sign); !r)
-                return r.errors();
+            if (auto r = read_factor(out, sign); !r) return r.errors();
         }
         return out;
     }
@@ -126,15 +122,11 @@ private:
     Result<void> read_factor(UnitFactor& out, int sign)
     {
         const std::size_t begin = at_;
-        while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' && text_[at_] != '*' &&
-               text_[at_] != '^')
-            ++at_;
+        while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' && text_[at_] != '*' && text_[at_] != '^') ++at_;
         const std::string_view name = text_.substr(begin, at_ - begin);
-        if (name.empty() || !is_letter(name.front()))
-            return reason(quoted(text_) + " is not a unit");
+        if (name.empty() || !is_letter(name.front())) return reason(quoted(text_) + " is not a unit");
         const Symbol* symbol = find_symbol(name);
-        if (!symbol)
-            return unknown_unit(name);
+        if (!symbol) return unknown_unit(name);
         int power = 1;
         if (at_ < text_.size() && text_[at_] == '^')
         {
@@ -146,8 +138,7 @@ private:
             if (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' && text_[at_] != '*')
                 return reason(quoted(text_) + " is not a unit");
         }
-        if (!multiply(out, *symbol, sign * power))
-            return reason(quoted(text_) + " is not a sensible unit");
+        if (!multiply(out, *symbol, sign * power)) return reason(quoted(text_) + " is not a sensible unit");
         return {};
     }
 
@@ -165,17 +156,13 @@ double UnitFactor::to_si(double value) const
     return out;
 }
 
-Result<UnitFactor> parse_unit(std::string_view text)
-{
-    return UnitReader(trimmed(text)).read();
-}
+Result<UnitFactor> parse_unit(std::string_view text) { return UnitReader(trimmed(text)).read(); }
 
 bool unit_fits(const Dimension& written, const Dimension& declared)
 {
-    if (written == declared)
-        return true;
-    const bool rest_agrees = written.power[0] == declared.power[0] && written.power[1] == declared.power[1] &&
-                             written.power[2] == declared.power[2];
+    if (written == declared) return true;
+    const bool rest_agrees =
+        written.power[0] == declared.power[0] && written.power[1] == declared.power[1] && written.power[2] == declared.power[2];
     // Only where there is mass: "2 Hz" for rad/s would hide whether turns or radians were meant.
     return rest_agrees && written.power[3] == 0 && declared.power[1] != 0;
 }
@@ -184,14 +171,10 @@ std::string describe_unit(const Unit& unit)
 {
     std::string others;
     for (const Symbol& s : kSymbols)
-        if (s.dimension == unit.dimension && s.name != unit.symbol)
-            others += (others.empty() ? "" : ", ") + std::string(s.name);
+        if (s.dimension == unit.dimension && s.name != unit.symbol) others += (others.empty() ? "" : ", ") + std::string(s.name);
     return std::string(unit.symbol) + (others.empty() ? "" : " (or " + others + ")");
 }
 
-bool is_unit_symbol(std::string_view text)
-{
-    return find_symbol(text) != nullptr;
-}
+bool is_unit_symbol(std::string_view text) { return find_symbol(text) != nullptr; }
 
 }  // namespace plab::model

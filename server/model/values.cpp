@@ -18,15 +18,9 @@ namespace
 {
 
 /// The field's name as the subject of a sentence.
-std::string subject(const Field& field)
-{
-    return field.name.empty() ? "the value" : field.name;
-}
+std::string subject(const Field& field) { return field.name.empty() ? "the value" : field.name; }
 
-Error complain(const Field& field, const std::string& why)
-{
-    return reason(subject(field) + ": " + why);
-}
+Error complain(const Field& field, const std::string& why) { return reason(subject(field) + ": " + why); }
 
 /// Numbers and the unit behind them, already in SI.
 struct Numbers
@@ -39,12 +33,9 @@ struct Numbers
 Result<UnitFactor> parse_fitting_unit(std::string_view text, const Unit& declared, const Field& field)
 {
     Result<UnitFactor> written = parse_unit(text);
-    if (!written)
-        return complain(field, written.error().reason);
-    if (unit_fits(written->dimension, declared.dimension))
-        return written;
-    if (declared == unit::one)
-        return reason(subject(field) + " is a pure number and takes no unit such as " + quoted(text));
+    if (!written) return complain(field, written.error().reason);
+    if (unit_fits(written->dimension, declared.dimension)) return written;
+    if (declared == unit::one) return reason(subject(field) + " is a pure number and takes no unit such as " + quoted(text));
     return reason(subject(field) + " must be in " + describe_unit(declared) + ", not in " + quoted(text));
 }
 
@@ -53,21 +44,17 @@ Result<Numbers> parse_numbers(std::string_view text, const Field& field)
 {
     Numbers out;
     std::string_view rest = trimmed(text);
-    if (rest.empty())
-        return reason(subject(field) + " is empty");
+    if (rest.empty()) return reason(subject(field) + " is empty");
     while (!rest.empty())
     {
         const std::string_view word = rest.substr(0, rest.find_first_of(" \t\n\r"));
-        if (!looks_like_number(word))
-            break;
+        if (!looks_like_number(word)) break;
         Result<double> number = parse_real(word);
-        if (!number)
-            return complain(field, number.error().reason);
+        if (!number) return complain(field, number.error().reason);
         out.values.push_back(*number);
         rest = trimmed(rest.substr(word.size()));
     }
-    if (out.values.empty())
-        return reason(subject(field) + " must be a number, not " + quoted(rest));
+    if (out.values.empty()) return reason(subject(field) + " must be a number, not " + quoted(rest));
     out.unit = rest;
     return out;
 }
@@ -76,19 +63,15 @@ Result<Numbers> parse_numbers(std::string_view text, const Field& field)
 Result<std::vector<double>> parse_reals(std::string_view text, const Field& field)
 {
     Result<Numbers> numbers = parse_numbers(text, field);
-    if (!numbers)
-        return numbers.errors();
-    if (numbers->unit.empty())
-        return std::move(numbers->values);
+    if (!numbers) return numbers.errors();
+    if (numbers->unit.empty()) return std::move(numbers->values);
     Result<UnitFactor> factor = parse_fitting_unit(numbers->unit, field.unit, field);
-    if (!factor)
-        return factor.errors();
+    if (!factor) return factor.errors();
     for (double& x : numbers->values)
     {
         const bool was_finite = std::isfinite(x);
         x = factor->to_si(x);
-        if (was_finite && !std::isfinite(x))
-            return reason(subject(field) + " is out of range");
+        if (was_finite && !std::isfinite(x)) return reason(subject(field) + " is out of range");
     }
     return std::move(numbers->values);
 }
@@ -102,13 +85,10 @@ Result<Value> parse_boolean(std::string_view text, const Field& field)
 {
     const std::string_view word = trimmed(text);
     for (const std::string_view yes : {"true", "yes", "1"})
-        if (word == yes)
-            return Value(true);
+        if (word == yes) return Value(true);
     for (const std::string_view no : {"false", "no", "0"})
-        if (word == no)
-            return Value(false);
-    if (word.empty())
-        return reason(subject(field) + " is empty");
+        if (word == no) return Value(false);
+    if (word.empty()) return reason(subject(field) + " is empty");
     return reason(subject(field) + " must be true or false, not " + quoted(word));
 }
 
@@ -117,11 +97,9 @@ Result<Integers> parse_integers(std::string_view text, const Field& field)
     Integers out;
     for (const std::string_view word : split_words(text))
     {
-        if (!out.empty() && !looks_like_number(word))
-            return reason(subject(field) + " takes no unit such as " + quoted(word));
+        if (!out.empty() && !looks_like_number(word)) return reason(subject(field) + " takes no unit such as " + quoted(word));
         Result<std::int64_t> number = parse_integer(word);
-        if (!number)
-            return complain(field, number.error().reason);
+        if (!number) return complain(field, number.error().reason);
         out.push_back(*number);
     }
     return out;
@@ -130,22 +108,17 @@ Result<Integers> parse_integers(std::string_view text, const Field& field)
 Result<Value> parse_single_integer(std::string_view text, const Field& field)
 {
     Result<Integers> numbers = parse_integers(text, field);
-    if (!numbers)
-        return numbers.errors();
-    if (numbers->empty())
-        return reason(subject(field) + " is empty");
-    if (numbers->size() != 1)
-        return wrong_count(field, "1 number", numbers->size());
+    if (!numbers) return numbers.errors();
+    if (numbers->empty()) return reason(subject(field) + " is empty");
+    if (numbers->size() != 1) return wrong_count(field, "1 number", numbers->size());
     return Value(numbers->front());
 }
 
 Result<Value> parse_vector(std::string_view text, const Field& field)
 {
     Result<std::vector<double>> n = parse_reals(text, field);
-    if (!n)
-        return n.errors();
-    if (n->size() != 3)
-        return wrong_count(field, "3 numbers", n->size());
+    if (!n) return n.errors();
+    if (n->size() != 3) return wrong_count(field, "3 numbers", n->size());
     return Value(Vec3{(*n)[0], (*n)[1], (*n)[2]});
 }
 
@@ -153,24 +126,19 @@ Result<Value> parse_vector(std::string_view text, const Field& field)
 Result<Value> parse_axis_angle(std::string_view text, const Field& field)
 {
     Result<Numbers> numbers = parse_numbers(text, field);
-    if (!numbers)
-        return numbers.errors();
+    if (!numbers) return numbers.errors();
     const std::vector<double>& n = numbers->values;
-    if (n.size() != 4)
-        return wrong_count(field, "'axis x y z angle'", n.size());
+    if (n.size() != 4) return wrong_count(field, "'axis x y z angle'", n.size());
     double angle = n[3];
     if (!numbers->unit.empty())
     {
         Result<UnitFactor> factor = parse_fitting_unit(numbers->unit, unit::radian, field);
-        if (!factor)
-            return factor.errors();
+        if (!factor) return factor.errors();
         angle = factor->to_si(angle);
     }
     const double scale = std::max({std::fabs(n[0]), std::fabs(n[1]), std::fabs(n[2])});
-    if (!(scale > 0))
-        return reason(subject(field) + " has an axis of length zero");
-    if (!std::isfinite(scale) || !std::isfinite(angle))
-        return reason(subject(field) + " must be finite");
+    if (!(scale > 0)) return reason(subject(field) + " has an axis of length zero");
+    if (!std::isfinite(scale) || !std::isfinite(angle)) return reason(subject(field) + " must be finite");
     const Vec3 axis = normalized(Vec3{n[0] / scale, n[1] / scale, n[2] / scale});
     return Value(normalized(exp_rotation(axis * angle)));
 }
@@ -178,38 +146,30 @@ Result<Value> parse_axis_angle(std::string_view text, const Field& field)
 Result<Value> parse_rotation(std::string_view text, const Field& field)
 {
     const std::string_view rest = trimmed(text);
-    if (rest.starts_with("axis") && rest.size() > 4 && is_blank(rest[4]))
-        return parse_axis_angle(rest.substr(4), field);
+    if (rest.starts_with("axis") && rest.size() > 4 && is_blank(rest[4])) return parse_axis_angle(rest.substr(4), field);
     Field pure = field;
     pure.unit = unit::one;
     Result<std::vector<double>> n = parse_reals(text, pure);
-    if (!n)
-        return n.errors();
-    if (n->size() != 4)
-        return wrong_count(field, "4 numbers (w x y z) or 'axis x y z angle'", n->size());
+    if (!n) return n.errors();
+    if (n->size() != 4) return wrong_count(field, "4 numbers (w x y z) or 'axis x y z angle'", n->size());
     return Value(Quat{(*n)[0], (*n)[1], (*n)[2], (*n)[3]});
 }
 
 Result<Value> parse_matrix(std::string_view text, const Field& field)
 {
     Result<std::vector<double>> r = parse_reals(text, field);
-    if (!r)
-        return r.errors();
+    if (!r) return r.errors();
     const std::vector<double>& n = *r;
-    if (n.size() == 3)
-        return Value(Mat3::diagonal(n[0], n[1], n[2]));
-    if (n.size() != 6)
-        return wrong_count(field, "3 numbers (xx yy zz) or 6 (xx yy zz xy xz yz)", n.size());
+    if (n.size() == 3) return Value(Mat3::diagonal(n[0], n[1], n[2]));
+    if (n.size() != 6) return wrong_count(field, "3 numbers (xx yy zz) or 6 (xx yy zz xy xz yz)", n.size());
     return Value(Mat3{{{n[0], n[3], n[4]}, {n[3], n[1], n[5]}, {n[4], n[5], n[2]}}});
 }
 
 Result<Value> parse_single_real(std::string_view text, const Field& field)
 {
     Result<std::vector<double>> n = parse_reals(text, field);
-    if (!n)
-        return n.errors();
-    if (n->size() != 1)
-        return wrong_count(field, "1 number", n->size());
+    if (!n) return n.errors();
+    if (n->size() != 1) return wrong_count(field, "1 number", n->size());
     return Value(n->front());
 }
 
@@ -219,23 +179,19 @@ Result<Value> parse_list(std::string_view text, const Field& field)
     if (field.type == FieldType::IntegerList)
     {
         Result<Integers> n = parse_integers(text, field);
-        if (!n)
-            return n.errors();
+        if (!n) return n.errors();
         return Value(n.take());
     }
-    if (trimmed(text).empty())
-        return Value(Reals{});
+    if (trimmed(text).empty()) return Value(Reals{});
     Result<std::vector<double>> n = parse_reals(text, field);
-    if (!n)
-        return n.errors();
+    if (!n) return n.errors();
     return Value(n.take());
 }
 
 bool has_options(const Field& field)
 {
     for (const Rule& rule : field.rules)
-        if (rule.kind == Rule::Kind::OneOf)
-            return true;
+        if (rule.kind == Rule::Kind::OneOf) return true;
     return false;
 }
 
@@ -274,10 +230,8 @@ Result<Value> parse_by_type(std::string_view text, const Field& field)
 Result<Value> parse_value(std::string_view text, const Field& field)
 {
     Result<Value> value = parse_by_type(text, field);
-    if (!value)
-        return value;
-    if (Result<void> checked = check_value(*value, field); !checked)
-        return checked.errors();
+    if (!value) return value;
+    if (Result<void> checked = check_value(*value, field); !checked) return checked.errors();
     return value;
 }
 

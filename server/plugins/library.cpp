@@ -29,8 +29,7 @@ PluginLibrary::PluginLibrary(const std::vector<std::string>& directories)
     for (const std::string& directory : directories)
     {
         const std::string folder = canonical(directory);
-        if (std::find(seen.begin(), seen.end(), folder) != seen.end())
-            continue;
+        if (std::find(seen.begin(), seen.end(), folder) != seen.end()) continue;
         seen.push_back(folder);
         for (Manifest& m : find_manifests(folder, problems_)) manifests_.push_back(std::move(m));
     }
@@ -51,8 +50,7 @@ std::vector<std::string> PluginLibrary::default_directories()
     for (std::size_t begin = 0; begin <= path.size();)
     {
         const std::size_t end = std::min(path.find(':', begin), path.size());
-        if (end > begin)
-            out.push_back(path.substr(begin, end - begin));
+        if (end > begin) out.push_back(path.substr(begin, end - begin));
         begin = end + 1;
     }
     return out;
@@ -72,39 +70,31 @@ Error PluginLibrary::unknown(const std::string& name) const
 {
     const std::vector<std::string> known = names();
     std::string why = "unknown type '" + name + "'" + model::did_you_mean(name, known);
-    if (known.empty())
-        why += "; no plugins were found";
+    if (known.empty()) why += "; no plugins were found";
     for (const Error& problem : problems_) why += "; " + problem.text();
     return reason(why);
 }
 
 Result<const model::ComponentType*> PluginLibrary::require(const std::string& name)
 {
-    if (const model::ComponentType* type = registry_.find(name))
-        return type;
+    if (const model::ComponentType* type = registry_.find(name)) return type;
     const auto at = homes_.find(name);
-    if (at == homes_.end())
-        return unknown(name);
+    if (at == homes_.end()) return unknown(name);
     const std::vector<const Manifest*>& homes = at->second;
     if (homes.size() > 1)
         return reason("type '" + name + "' is in two plugins, " + homes[0]->plugin + " and " + homes[1]->plugin +
                       "; take one of them away");
-    if (auto plugin = load_plugin(homes[0]->plugin); !plugin)
-        return plugin.errors();
-    if (const model::ComponentType* type = registry_.find(name))
-        return type;
-    return reason("type '" + name + "' is in " + homes[0]->path +
-                  ", but its plugin does not declare it; build the plugin again");
+    if (auto plugin = load_plugin(homes[0]->plugin); !plugin) return plugin.errors();
+    if (const model::ComponentType* type = registry_.find(name)) return type;
+    return reason("type '" + name + "' is in " + homes[0]->path + ", but its plugin does not declare it; build the plugin again");
 }
 
 Result<PluginInfo> PluginLibrary::load_plugin(const std::string& path)
 {
     const std::string file = canonical(path);
     for (const PluginInfo& plugin : loaded_)
-        if (plugin.path == file)
-            return plugin;
-    if (const auto earlier = failed_.find(file); earlier != failed_.end())
-        return earlier->second;
+        if (plugin.path == file) return plugin;
+    if (const auto earlier = failed_.find(file); earlier != failed_.end()) return earlier->second;
     Result<PluginInfo> plugin = open(file);
     if (!plugin)
         failed_[file] = plugin.errors();
@@ -116,8 +106,7 @@ Result<PluginInfo> PluginLibrary::load_plugin(const std::string& path)
 Result<PluginInfo> PluginLibrary::open(const std::string& path)
 {
     Result<OpenPlugin> plugin = open_plugin(path);
-    if (!plugin)
-        return plugin.errors();
+    if (!plugin) return plugin.errors();
     PluginInfo info{plugin->name, path, {}};
     for (const TypeInfo& type : plugin->registrar.types()) info.types.push_back(type.name);
     // Kept even if the registry refuses: its errors may have been made with the plugin's code.
@@ -125,8 +114,7 @@ Result<PluginInfo> PluginLibrary::open(const std::string& path)
     if (auto added = registry_.add(std::move(plugin->registrar), info.name); !added)
     {
         Errors errors;
-        for (const Error& e : added.errors())
-            errors.push_back(reason("plugin " + path + ": " + e.element + ": " + e.reason));
+        for (const Error& e : added.errors()) errors.push_back(reason("plugin " + path + ": " + e.element + ": " + e.reason));
         return errors;
     }
     return info;

@@ -36,21 +36,16 @@ Result<Manifest> read_manifest(const std::string& path)
 {
     std::ifstream in(path);
     std::string line;
-    if (!in || !std::getline(in, line))
-        return Error{{path, 0, 0}, {}, "cannot be read"};
+    if (!in || !std::getline(in, line)) return Error{{path, 0, 0}, {}, "cannot be read"};
     if (line != kManifestHeader)
-        return at_line(path, 1,
-                       "is no manifest of this version: the first line must be '" + std::string(kManifestHeader) + "'");
+        return at_line(path, 1, "is no manifest of this version: the first line must be '" + std::string(kManifestHeader) + "'");
     Manifest out;
     out.path = path, out.plugin = fs::path(path).replace_extension(".so").string();
     for (std::size_t n = 2; std::getline(in, line); ++n)
     {
-        if (line.empty())
-            continue;
-        if (!is_type_name(line))
-            return at_line(path, n, "is no type name; letters, digits, '_' and '/' are allowed");
-        if (out.types.size() >= kMostTypes)
-            return at_line(path, n, "more than " + std::to_string(kMostTypes) + " types");
+        if (line.empty()) continue;
+        if (!is_type_name(line)) return at_line(path, n, "is no type name; letters, digits, '_' and '/' are allowed");
+        if (out.types.size() >= kMostTypes) return at_line(path, n, "more than " + std::to_string(kMostTypes) + " types");
         out.types.push_back(line);
     }
     std::sort(out.types.begin(), out.types.end());
@@ -76,8 +71,7 @@ Result<void> write_manifest(const std::string& path, std::vector<std::string> ty
     }
     std::error_code failed;
     fs::rename(draft, path, failed);
-    if (!failed)
-        return {};
+    if (!failed) return {};
     std::remove(draft.c_str());
     return Error{{path, 0, 0}, {}, "cannot be written: " + failed.message()};
 }
@@ -87,10 +81,8 @@ std::vector<Manifest> find_manifests(const std::string& directory, Errors& probl
     std::error_code failed;
     std::vector<std::string> paths;
     for (fs::directory_iterator it(directory, failed), last; !failed && it != last; it.increment(failed))
-        if (it->path().extension() == ".manifest")
-            paths.push_back(it->path().string());
-    if (failed)
-        problems.push_back({{}, {}, "plugin folder " + directory + " cannot be read: " + failed.message()});
+        if (it->path().extension() == ".manifest") paths.push_back(it->path().string());
+    if (failed) problems.push_back({{}, {}, "plugin folder " + directory + " cannot be read: " + failed.message()});
     std::sort(paths.begin(), paths.end());  // the system's order is any order
 
     std::vector<Manifest> out;

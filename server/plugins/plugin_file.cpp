@@ -11,15 +11,9 @@ namespace
 
 using RegisterFunction = void (*)(Registrar&);
 
-Error refused(const std::string& path, const std::string& why)
-{
-    return reason("plugin " + path + ": " + why);
-}
+Error refused(const std::string& path, const std::string& why) { return reason("plugin " + path + ": " + why); }
 
-std::string compiler_of(const PluginStamp& stamp)
-{
-    return stamp.compiler ? std::string(" (compiler ") + stamp.compiler + ")" : "";
-}
+std::string compiler_of(const PluginStamp& stamp) { return stamp.compiler ? std::string(" (compiler ") + stamp.compiler + ")" : ""; }
 
 /// Nothing is thrown across the boundary, and where a plugin breaks that, it ends here.
 Result<void> register_types(RegisterFunction entry, OpenPlugin& plugin)
@@ -32,33 +26,27 @@ Result<void> register_types(RegisterFunction entry, OpenPlugin& plugin)
     {
         return refused(plugin.path, "threw an exception while registering its types");
     }
-    if (plugin.registrar.types().empty())
-        return refused(plugin.path, "declares no types");
+    if (plugin.registrar.types().empty()) return refused(plugin.path, "declares no types");
     return {};
 }
 
 }  // namespace
 
-void LibraryCloser::operator()(void* library) const
-{
-    dlclose(library);
-}
+void LibraryCloser::operator()(void* library) const { dlclose(library); }
 
 std::string why_not_usable(const PluginStamp& stamp)
 {
     // The version and the size come first in every stamp there ever was; the rest means something only if they fit.
     const std::string rebuild = "; build it again with this SDK";
     if (stamp.sdk_version != kSdkVersion)
-        return "was built for version " + std::to_string(stamp.sdk_version) + " of the SDK, version " +
-               std::to_string(kSdkVersion) + " is needed" + rebuild;
+        return "was built for version " + std::to_string(stamp.sdk_version) + " of the SDK, version " + std::to_string(kSdkVersion) +
+               " is needed" + rebuild;
     if (stamp.size != sizeof(PluginStamp))
-        return "its stamp has " + std::to_string(stamp.size) + " bytes, " + std::to_string(sizeof(PluginStamp)) +
-               " are needed" + rebuild;
+        return "its stamp has " + std::to_string(stamp.size) + " bytes, " + std::to_string(sizeof(PluginStamp)) + " are needed" + rebuild;
     if (stamp.layout != layout_stamp())
-        return "its structures are laid out differently: layout " + std::to_string(stamp.layout) + compiler_of(stamp) +
-               ", " + std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + rebuild;
-    if (!stamp.name || !*stamp.name)
-        return "its stamp has no name";
+        return "its structures are laid out differently: layout " + std::to_string(stamp.layout) + compiler_of(stamp) + ", " +
+               std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + rebuild;
+    if (!stamp.name || !*stamp.name) return "its stamp has no name";
     return {};
 }
 
@@ -75,16 +63,12 @@ Result<OpenPlugin> open_plugin(const std::string& path)
         return refused(file, std::string("cannot be loaded: ") + (why ? why : "unknown reason"));
     }
     const auto* stamp = static_cast<const PluginStamp*>(dlsym(plugin.library.get(), kStampSymbol));
-    if (!stamp)
-        return refused(file, std::string("is no pLab plugin: it has no symbol ") + kStampSymbol);
-    if (const std::string why = why_not_usable(*stamp); !why.empty())
-        return refused(file, why);
+    if (!stamp) return refused(file, std::string("is no pLab plugin: it has no symbol ") + kStampSymbol);
+    if (const std::string why = why_not_usable(*stamp); !why.empty()) return refused(file, why);
     const auto entry = reinterpret_cast<RegisterFunction>(dlsym(plugin.library.get(), kRegisterSymbol));
-    if (!entry)
-        return refused(file, std::string("has no symbol ") + kRegisterSymbol);
+    if (!entry) return refused(file, std::string("has no symbol ") + kRegisterSymbol);
     plugin.name = stamp->name;
-    if (auto done = register_types(entry, plugin); !done)
-        return done.errors();
+    if (auto done = register_types(entry, plugin); !done) return done.errors();
     return plugin;
 }
 
@@ -92,8 +76,7 @@ std::string installed_plugin_directory()
 {
     std::error_code failed;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);
-    if (failed)
-        return {};
+    if (failed) return {};
     return (program.parent_path().parent_path() / "lib" / "plab").string();
 }
 

@@ -10,7 +10,8 @@ namespace plab::simulation
 void Stepper::advance_all()
 {
     const bool contacts_rest = std::any_of(cache_.pairs().begin(), cache_.pairs().end(), [](const PairState& p) { return p.resting; });
-    if (contacts_rest || std::any_of(groups_.all.begin(), groups_.all.end(), [](const Group& g) { return g.solver == kNoIndex && !(g.bodies.empty() && g.shafts.empty()); }))
+    if (contacts_rest || std::any_of(groups_.all.begin(), groups_.all.end(),
+                                     [](const Group& g) { return g.solver == kNoIndex && !(g.bodies.empty() && g.shafts.empty()); }))
     {
         advance(island_all_, 0, frame_.step, {&work_, 1}, false);
     }
@@ -29,7 +30,8 @@ void Stepper::advance_batches()
     }
     // The frame is new in each step; its pointers are the same.
     for (std::size_t b = 0; b < batches_.size(); ++b) batch_systems_[b]->set_frame(frame_);
-    const auto job = [this](std::size_t b) {
+    const auto job = [this](std::size_t b)
+    {
         std::vector<double>& work = batches_.size() == 1 ? work_ : batch_work_[b];
         batch_fine_[b] = run_clusters(*batch_systems_[b], batches_[b], {&work, 1}) ? 1 : 0;
     };
@@ -90,7 +92,8 @@ void Stepper::collect_shadows(std::span<const std::uint32_t> groups)
     group_flags_.assign(groups_.all.size(), 0);
     for (const std::uint32_t g : groups) group_flags_[g] = 1;
     shadows_.clear();
-    const auto look = [&](std::uint32_t g) {
+    const auto look = [&](std::uint32_t g)
+    {
         for (const std::uint32_t up : groups_.all[g].upstream)
             if (!group_flags_[up]) group_flags_[up] = 1, shadows_.push_back(up);
     };
@@ -141,10 +144,12 @@ void Stepper::advance_smooth(std::span<const std::uint32_t> groups, std::span<co
     solvers_.clear();
     for (const std::uint32_t g : groups)
         if (std::find(solvers_.begin(), solvers_.end(), groups_.all[g].solver) == solvers_.end()) solvers_.push_back(groups_.all[g].solver);
-    std::sort(solvers_.begin(), solvers_.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const auto rank = [&](std::uint32_t s) { return s == kNoIndex ? kNoIndex : world_.rank(s); };
-        return rank(a) < rank(b);
-    });
+    std::sort(solvers_.begin(), solvers_.end(),
+              [&](std::uint32_t a, std::uint32_t b)
+              {
+                  const auto rank = [&](std::uint32_t s) { return s == kNoIndex ? kNoIndex : world_.rank(s); };
+                  return rank(a) < rank(b);
+              });
     if (solvers_.size() == 1)
     {
         GroupSystem& system = system_for(groups, shadows);
@@ -196,7 +201,8 @@ void Stepper::restore_end(std::uint32_t g)
 void Stepper::freeze(GroupSystem& system)
 {
     world::HostTables& host = world_.host();
-    const auto report = [&](Ref ref) {
+    const auto report = [&](Ref ref)
+    {
         report_.frozen.push_back(ref);
         Event e;
         e.time = frame_.start_time + frame_.step, e.kind = "state.not_finite", e.severity = Severity::Failure;

@@ -26,11 +26,13 @@ void Stepper::update_pair(PairState& pair, std::size_t begin, std::size_t end)
         separating = separating && normal_velocity(c) > 0;
         found_[i].contact.id = cache_.contact_of(pair, c.feature).id;
     }
-    const auto seen = [&](const KnownContact& k) {
+    const auto seen = [&](const KnownContact& k)
+    {
         return std::any_of(found_.begin() + static_cast<std::ptrdiff_t>(begin), found_.begin() + static_cast<std::ptrdiff_t>(end),
                            [&](const FoundContact& f) { return f.contact.feature == k.feature; });
     };
-    const auto past = std::remove_if(pair.contacts.begin(), pair.contacts.begin() + pair.count, [&](const KnownContact& k) { return !seen(k); });
+    const auto past =
+        std::remove_if(pair.contacts.begin(), pair.contacts.begin() + pair.count, [&](const KnownContact& k) { return !seen(k); });
     pair.count = static_cast<std::uint32_t>(past - pair.contacts.begin());
     pair.overlapping = overlaps;
     if (end > begin) pair.normal = found_[begin].contact.normal;
@@ -46,9 +48,11 @@ bool Stepper::is_of_pair(const FoundContact& f, const PairState& pair) const
 std::size_t Stepper::first_of_pair(const PairState& pair, std::size_t from) const
 {
     // Both lists stand in the order of detector, a, b: one walk serves all pairs.
-    const auto key = [&](std::uint32_t detector, Ref a, Ref b) { return std::tuple(world_.rank(detector), world_.rank(a), world_.rank(b)); };
+    const auto key = [&](std::uint32_t detector, Ref a, Ref b)
+    { return std::tuple(world_.rank(detector), world_.rank(a), world_.rank(b)); };
     const auto wanted = key(pair.detector, pair.a, pair.b);
-    while (from < found_.size() && key(detectors_[found_[from].detector].component, found_[from].contact.a, found_[from].contact.b) < wanted)
+    while (from < found_.size() &&
+           key(detectors_[found_[from].detector].component, found_[from].contact.a, found_[from].contact.b) < wanted)
         ++from;
     return from;
 }

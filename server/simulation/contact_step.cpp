@@ -42,7 +42,8 @@ void Stepper::detect_all(std::vector<FoundContact>& out)
 
 void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out)
 {
-    const auto member = [&](Ref r) {
+    const auto member = [&](Ref r)
+    {
         const std::uint32_t g = groups_.of(r);
         return g != kNoIndex && std::binary_search(groups.begin(), groups.end(), g);
     };
@@ -77,7 +78,8 @@ void Stepper::fill_material(FoundContact& f) const
     const std::uint32_t response = detectors_[f.detector].response;
     if (response == kNoIndex) return;
     const Row row = world_.component(response).row;
-    const auto number = [&](const char* name) {
+    const auto number = [&](const char* name)
+    {
         const Field* field = world_.table_of(response).schema().find_field(name);
         const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
         return column ? (*column)[row] : 0.0;

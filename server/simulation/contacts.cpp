@@ -15,12 +15,10 @@ auto key_of(const world::World& world, std::uint32_t detector, Ref a, Ref b)
 
 auto key_of(const world::World& world, const PairState& p) { return key_of(world, p.detector, p.a, p.b); }
 
-std::vector<PairState>::iterator position_of(std::vector<PairState>& pairs, const world::World& world, std::uint32_t detector, Ref a,
-                                             Ref b)
+std::vector<PairState>::iterator position_of(std::vector<PairState>& pairs, const world::World& world, std::uint32_t detector, Ref a, Ref b)
 {
     const auto key = key_of(world, detector, a, b);
-    return std::lower_bound(pairs.begin(), pairs.end(), key,
-                            [&](const PairState& p, const auto& k) { return key_of(world, p) < k; });
+    return std::lower_bound(pairs.begin(), pairs.end(), key, [&](const PairState& p, const auto& k) { return key_of(world, p) < k; });
 }
 
 }  // namespace
@@ -54,8 +52,10 @@ KnownContact& ContactCache::contact_of(PairState& pair, std::uint32_t feature)
 
 void ContactCache::refresh(const world::World& world, const std::vector<Detector>& detectors)
 {
-    const auto gone = [&](const PairState& p) {
-        const bool has_detector = std::any_of(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == p.detector; });
+    const auto gone = [&](const PairState& p)
+    {
+        const bool has_detector =
+            std::any_of(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == p.detector; });
         const auto lives = [&](Ref r) { return world.host().component_of(r) != kNoIndex; };
         return !has_detector || !lives(p.a) || !lives(p.b);
     };
@@ -84,7 +84,8 @@ void ContactCache::save(const world::World& world, ByteWriter& out) const
 std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule)
 {
     std::vector<Detector> out;
-    const auto runs = [&](std::uint32_t component, Phase phase) {
+    const auto runs = [&](std::uint32_t component, Phase phase)
+    {
         if (component == kNoIndex || world.component(component).quarantined) return false;
         const auto& c = world.component(component);
         const auto& commands = world.type_of(component)->info.commands;
@@ -108,15 +109,15 @@ std::vector<Detector> find_detectors(const world::World& world, const Schedule& 
             d.local = d.locates && world.type_of(d.resolution)->info.local;
             out.push_back(d);
         }
-    std::sort(out.begin(), out.end(), [&](const Detector& x, const Detector& y) { return world.rank(x.component) < world.rank(y.component); });
+    std::sort(out.begin(), out.end(),
+              [&](const Detector& x, const Detector& y) { return world.rank(x.component) < world.rank(y.component); });
     return out;
 }
 
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world)
 {
-    const auto key = [&](const FoundContact& f) {
-        return std::tuple(f.detector, world.rank(f.contact.a), world.rank(f.contact.b), f.contact.feature);
-    };
+    const auto key = [&](const FoundContact& f)
+    { return std::tuple(f.detector, world.rank(f.contact.a), world.rank(f.contact.b), f.contact.feature); };
     std::sort(contacts.begin(), contacts.end(), [&](const FoundContact& x, const FoundContact& y) { return key(x) < key(y); });
 }
 

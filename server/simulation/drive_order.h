@@ -20,7 +20,7 @@ struct OneWayDrive
 
 /// What is wrong with the drives: circles (of circles that share a shaft, at least one), and drives of prescribed
 /// shafts. `root` by shaft: shafts that the constraint graph joins are one link of a circle.
-Errors check_drives(std::vector<OneWayDrive> drives, std::span<const std::uint32_t> root,
-                    std::span<const std::uint8_t> prescribed, const ShaftDirectory& directory);
+Errors check_drives(std::vector<OneWayDrive> drives, std::span<const std::uint32_t> root, std::span<const std::uint8_t> prescribed,
+                    const ShaftDirectory& directory);
 
 }  // namespace plab::simulation

@@ -180,7 +180,8 @@ void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double 
     system.begin(at, s_->frame_.step, {}, nullptr);
     system.evaluate_here();
     const Bodies& bodies = s_->world_.host().bodies;
-    const auto acceleration = [&](std::uint32_t body, const Vec3& p) -> Vec3 {
+    const auto acceleration = [&](std::uint32_t body, const Vec3& p) -> Vec3
+    {
         const auto members = system.bodies();
         const auto found = std::find(members.begin(), members.end(), body);
         if (found == members.end()) return {};
@@ -278,7 +279,11 @@ bool EventLocator::process(Candidate& candidate)
 void EventLocator::look_again(std::vector<FoundContact>& found)
 {
     // Only pairs with a member that went back can have changed; the rest of what was known stands.
-    const auto touched = [&](Ref r) { const std::uint32_t g = s_->groups_.of(r); return g != kNoIndex && in_scope_[g]; };
+    const auto touched = [&](Ref r)
+    {
+        const std::uint32_t g = s_->groups_.of(r);
+        return g != kNoIndex && in_scope_[g];
+    };
     const auto stale = [&](Ref a, Ref b) { return touched(a) || touched(b); };
     std::erase_if(candidates_, [&](const Candidate& c) { return stale(c.a, c.b); });
     s_->detect_all(found);

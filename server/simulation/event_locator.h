@@ -25,10 +25,10 @@ private:
         std::uint32_t detector = 0;
         Ref a, b;
         bool located = false;
-        bool stuck = false;     ///< overlaps where the piece begins: there is nothing to bracket
-        bool at_end = false;    ///< no event location: answered where the step ends
-        double bracket = 0;     ///< s between the last clear and the first overlapping trial
-        double time = 0;        ///< s since the start of the step, on the clear side
+        bool stuck = false;                  ///< overlaps where the piece begins: there is nothing to bracket
+        bool at_end = false;                 ///< no event location: answered where the step ends
+        double bracket = 0;                  ///< s between the last clear and the first overlapping trial
+        double time = 0;                     ///< s since the start of the step, on the clear side
         std::vector<FoundContact> contacts;  ///< as seen on the overlapping side
     };
 

@@ -13,10 +13,7 @@ namespace
 
 constexpr Int128 kWordMax = std::numeric_limits<std::int64_t>::max();
 
-Int128 magnitude(Int128 a)
-{
-    return a < 0 ? -a : a;
-}
+Int128 magnitude(Int128 a) { return a < 0 ? -a : a; }
 
 // Euclid; 128-bit division is slow, so it hands over as soon as both fit a word.
 Int128 gcd(Int128 a, Int128 b)
@@ -27,8 +24,7 @@ Int128 gcd(Int128 a, Int128 b)
         const Int128 rest = a % b;
         a = b, b = rest;
     }
-    if (b == 0)
-        return a;
+    if (b == 0) return a;
     return std::gcd(static_cast<std::int64_t>(a), static_cast<std::int64_t>(b));
 }
 
@@ -36,23 +32,18 @@ Int128 gcd(Int128 a, Int128 b)
 std::optional<Int128> product(Int128 a, Int128 b)
 {
     Int128 r = 0;
-    if (__builtin_mul_overflow(a, b, &r))
-        return {};
+    if (__builtin_mul_overflow(a, b, &r)) return {};
     constexpr Int128 lowest = static_cast<Int128>(static_cast<unsigned __int128>(1) << 127);
-    if (r == lowest)
-        return {};
+    if (r == lowest) return {};
     return r;
 }
 
 std::string digits(Int128 a)
 {
-    if (a == 0)
-        return "0";
+    if (a == 0) return "0";
     std::string out;
-    for (Int128 rest = magnitude(a); rest > 0; rest /= 10)
-        out.push_back(static_cast<char>('0' + static_cast<int>(rest % 10)));
-    if (a < 0)
-        out.push_back('-');
+    for (Int128 rest = magnitude(a); rest > 0; rest /= 10) out.push_back(static_cast<char>('0' + static_cast<int>(rest % 10)));
+    if (a < 0) out.push_back('-');
     std::reverse(out.begin(), out.end());
     return out;
 }
@@ -82,19 +73,16 @@ std::optional<ExactRatio> ExactRatio::from(const Ratio& ratio)
 {
     if (ratio.exact)
     {
-        if (ratio.numerator == 0 || ratio.denominator == 0)
-            return {};
+        if (ratio.numerator == 0 || ratio.denominator == 0) return {};
         return rational(ratio.numerator, ratio.denominator);
     }
-    if (ratio.value == 0 || !std::isfinite(ratio.value))
-        return {};
+    if (ratio.value == 0 || !std::isfinite(ratio.value)) return {};
     return inexact(ratio.value, 0);
 }
 
 ExactRatio::Scaled ExactRatio::scaled() const
 {
-    if (!exact_)
-        return scaled_;
+    if (!exact_) return scaled_;
     Scaled s;
     s.mantissa = std::frexp(static_cast<double>(numerator_) / static_cast<double>(denominator_), &s.exponent);
     return s;
@@ -106,15 +94,11 @@ double ExactRatio::value() const
     return std::ldexp(s.mantissa, s.exponent);
 }
 
-int ExactRatio::exponent() const
-{
-    return scaled().exponent;
-}
+int ExactRatio::exponent() const { return scaled().exponent; }
 
 ExactRatio ExactRatio::inverse() const
 {
-    if (exact_)
-        return rational(denominator_, numerator_);
+    if (exact_) return rational(denominator_, numerator_);
     return inexact(1.0 / scaled_.mantissa, -scaled_.exponent);
 }
 
@@ -127,8 +111,7 @@ ExactRatio operator*(const ExactRatio& a, const ExactRatio& b)
         const Int128 h = gcd(b.numerator_, a.denominator_);
         const auto numerator = product(a.numerator_ / g, b.numerator_ / h);
         const auto denominator = product(a.denominator_ / h, b.denominator_ / g);
-        if (numerator && denominator)
-            return ExactRatio::rational(*numerator, *denominator);
+        if (numerator && denominator) return ExactRatio::rational(*numerator, *denominator);
     }
     const ExactRatio::Scaled p = a.scaled();
     const ExactRatio::Scaled q = b.scaled();
@@ -137,8 +120,7 @@ ExactRatio operator*(const ExactRatio& a, const ExactRatio& b)
 
 bool ExactRatio::same(const ExactRatio& other, double tolerance) const
 {
-    if (exact_ && other.exact_)
-        return numerator_ == other.numerator_ && denominator_ == other.denominator_;
+    if (exact_ && other.exact_) return numerator_ == other.numerator_ && denominator_ == other.denominator_;
     const Scaled p = scaled();
     const Scaled q = other.scaled();
     return std::fabs(std::ldexp(q.mantissa, q.exponent - p.exponent) - p.mantissa) <= tolerance * std::fabs(p.mantissa);
@@ -152,8 +134,7 @@ std::string ExactRatio::text() const
         std::snprintf(number, sizeof number, "%.15g", value());
     else
         std::snprintf(number, sizeof number, "%.15g * 2^%d", s.mantissa, s.exponent);
-    if (!exact_ || denominator_ == 1)
-        return number;
+    if (!exact_ || denominator_ == 1) return number;
     return std::string(number) + " (" + digits(numerator_) + "/" + digits(denominator_) + ")";
 }
 

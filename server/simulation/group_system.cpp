@@ -19,9 +19,10 @@ void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_
     for (auto* flags : {&active_shafts_, &accounted_shafts_}) flags->assign(host.shafts.size(), 0);
     collect_members(groups, true);
     collect_members(shadows, false);
-    std::sort(shafts_.begin(), shafts_.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b});
-    });
+    std::sort(shafts_.begin(), shafts_.end(),
+              [&](std::uint32_t a, std::uint32_t b) {
+                  return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b});
+              });
     for (const std::uint32_t s : shafts_)
         if (host.shafts.root[s] == s) roots_.push_back(s);
     has_shadows_ = !shadows.empty();
@@ -43,8 +44,9 @@ void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_
 
 void GroupSystem::collect_members(std::span<const std::uint32_t> groups, bool accounted)
 {
-    const auto take = [accounted](const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& to,
-                                  std::vector<std::uint8_t>& active, std::vector<std::uint8_t>& booked) {
+    const auto take = [accounted](const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& to, std::vector<std::uint8_t>& active,
+                                  std::vector<std::uint8_t>& booked)
+    {
         to.insert(to.end(), from.begin(), from.end());
         for (const std::uint32_t i : from) active[i] = 1, booked[i] = accounted ? 1 : 0;
     };
@@ -99,7 +101,8 @@ void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events
         start_position_[i] = host.bodies.position[b], start_orientation_[i] = host.bodies.orientation[b];
         put(speeds_, 6 * i, host.bodies.velocity[b]);
         put(speeds_, 6 * i + 3,
-            host.bodies.needle[b] != 0 ? rotate_back(host.bodies.orientation[b], host.bodies.angular_velocity[b]) : host.bodies.angular_momentum[b]);
+            host.bodies.needle[b] != 0 ? rotate_back(host.bodies.orientation[b], host.bodies.angular_velocity[b])
+                                       : host.bodies.angular_momentum[b]);
     }
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {

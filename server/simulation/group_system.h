@@ -101,7 +101,7 @@ private:
     StepFrame frame_;
     std::vector<std::uint32_t> bodies_, shafts_, prescribed_bodies_, prescribed_shafts_;
     std::vector<std::uint32_t> roots_;  ///< shafts that carry coordinates
-    std::vector<Selected> selected_;  ///< forces; the first selected_count_ are valid
+    std::vector<Selected> selected_;    ///< forces; the first selected_count_ are valid
     std::size_t selected_count_ = 0;
     std::vector<BlockRow> merged_;
     std::vector<std::uint32_t> groups_;

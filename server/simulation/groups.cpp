@@ -41,8 +41,8 @@ Participation participation(const world::World& world, std::uint32_t component)
     Participation p;
     for (const Role& role : world.table_of(component).schema().roles())
     {
-        const bool in_space = std::any_of(role.facets.begin(), role.facets.end(),
-                                          [](Facet f) { return f == Facet::Body || f == Facet::Shaft; });
+        const bool in_space =
+            std::any_of(role.facets.begin(), role.facets.end(), [](Facet f) { return f == Facet::Body || f == Facet::Shaft; });
         if (!in_space) continue;
         for (const Ref ref : world.participants(component, role)) (role.writes ? p.acts_on : p.reads).push_back(ref);
         if (role.writes && !role.independent) p.joins = true;
@@ -81,8 +81,7 @@ private:
     template <class Visit>
     void for_each_interaction(Visit visit) const
     {
-        for (const Phase phase : {Phase::Force, Phase::Couple, Phase::Connect})
-            for_each_row(phase, visit);
+        for (const Phase phase : {Phase::Force, Phase::Couple, Phase::Connect}) for_each_row(phase, visit);
     }
 
     template <class Visit>
@@ -137,22 +136,24 @@ private:
     void link_rows()
     {
         for (const Phase phase : {Phase::Force, Phase::Couple})
-            for_each_row(phase, [&](std::uint32_t component, std::uint32_t block, Row row) {
-                const Participation p = participation(world_, component);
-                for (const Ref ref : p.acts_on)
-                {
-                    if (groups_.of(ref) == kNoIndex) continue;
-                    Group& group = groups_.all[groups_.of(ref)];
-                    auto& rows = phase == Phase::Force ? group.forces : group.couplings;
-                    rows.push_back({block, world_.rank(component), row});
-                    // A participant that is acted on is read as well: a force between two feels both.
-                    for (const auto* others : {&p.reads, &p.acts_on})
-                        if (others == &p.reads || p.joins)
-                            for (const Ref other : *others)
-                                if (groups_.of(other) != kNoIndex && groups_.of(other) != groups_.of(ref))
-                                    group.upstream.push_back(groups_.of(other));
-                }
-            });
+            for_each_row(phase,
+                         [&](std::uint32_t component, std::uint32_t block, Row row)
+                         {
+                             const Participation p = participation(world_, component);
+                             for (const Ref ref : p.acts_on)
+                             {
+                                 if (groups_.of(ref) == kNoIndex) continue;
+                                 Group& group = groups_.all[groups_.of(ref)];
+                                 auto& rows = phase == Phase::Force ? group.forces : group.couplings;
+                                 rows.push_back({block, world_.rank(component), row});
+                                 // A participant that is acted on is read as well: a force between two feels both.
+                                 for (const auto* others : {&p.reads, &p.acts_on})
+                                     if (others == &p.reads || p.joins)
+                                         for (const Ref other : *others)
+                                             if (groups_.of(other) != kNoIndex && groups_.of(other) != groups_.of(ref))
+                                                 group.upstream.push_back(groups_.of(other));
+                             }
+                         });
         for (Group& group : groups_.all)
             for (auto* list : {&group.forces, &group.couplings})
             {
@@ -196,11 +197,13 @@ private:
     {
         std::vector<std::uint32_t> best(groups_.clusters, kNoIndex);
         std::vector<std::uint8_t> mixed(groups_.clusters, 0);
-        const auto better = [&](std::uint32_t a, std::uint32_t b) {
+        const auto better = [&](std::uint32_t a, std::uint32_t b)
+        {
             const int pa = world_.type_of(a)->info.order, pb = world_.type_of(b)->info.order;
             return pa != pb ? pa > pb : world_.rank(a) < world_.rank(b);
         };
-        const auto consider = [&](const Group& group, Ref ref) {
+        const auto consider = [&](const Group& group, Ref ref)
+        {
             const std::uint32_t solver = solver_of(ref);
             std::uint32_t& chosen = best[group.cluster];
             if (solver == kNoIndex || solver == chosen) return;

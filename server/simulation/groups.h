@@ -23,14 +23,14 @@ struct BlockRow
 
 struct Group
 {
-    std::vector<std::uint32_t> bodies;  ///< dynamic, in id order
-    std::vector<std::uint32_t> shafts;  ///< dynamic, in id order
+    std::vector<std::uint32_t> bodies;                                ///< dynamic, in id order
+    std::vector<std::uint32_t> shafts;                                ///< dynamic, in id order
     std::vector<std::uint32_t> prescribed_bodies, prescribed_shafts;  ///< a group of its own for each
-    std::vector<std::uint32_t> upstream;  ///< groups whose state its forces read, ascending
+    std::vector<std::uint32_t> upstream;                              ///< groups whose state its forces read, ascending
     std::vector<BlockRow> forces, couplings;
-    std::uint32_t solver = kNoIndex;    ///< component; kNoIndex for prescribed motion
-    bool mixed_solvers = false;         ///< members named different ones; the one of highest order was taken
-    std::uint32_t cluster = 0;          ///< groups joined by reading, advanced in one batch
+    std::uint32_t solver = kNoIndex;  ///< component; kNoIndex for prescribed motion
+    bool mixed_solvers = false;       ///< members named different ones; the one of highest order was taken
+    std::uint32_t cluster = 0;        ///< groups joined by reading, advanced in one batch
 };
 
 struct Groups

@@ -28,18 +28,14 @@ public:
     {
         sort_edges();
         refuse_self_couplings();
-        if (!errors_.empty())
-            return errors_;
+        if (!errors_.empty()) return errors_;
         choose_tree_edges();
         for (const std::uint32_t shaft : root_candidates())
-            if (position_[shaft] == kNoIndex)
-                grow_tree(shaft);
+            if (position_[shaft] == kNoIndex) grow_tree(shaft);
         forest_.tree_begin.push_back(static_cast<std::uint32_t>(forest_.nodes.size()));
         for (std::uint32_t e = 0; e < forest_.edges.size(); ++e)
-            if (!in_tree_[e])
-                close_loop(e);
-        if (!errors_.empty())
-            return errors_;
+            if (!in_tree_[e]) close_loop(e);
+        if (!errors_.empty()) return errors_;
         return std::move(forest_);
     }
 
@@ -52,24 +48,21 @@ private:
 
     void refuse(std::uint32_t component, std::string why)
     {
-        if (errors_.size() < kMostErrors)
-            errors_.push_back({{}, directory_.component_id(component), std::move(why)});
+        if (errors_.size() < kMostErrors) errors_.push_back({{}, directory_.component_id(component), std::move(why)});
     }
 
     void sort_edges()
     {
-        std::stable_sort(
-            forest_.edges.begin(), forest_.edges.end(),
-            [this](const RatioEdge& a, const RatioEdge& b)
-            { return directory_.rank_of_component(a.component) < directory_.rank_of_component(b.component); });
+        std::stable_sort(forest_.edges.begin(), forest_.edges.end(),
+                         [this](const RatioEdge& a, const RatioEdge& b)
+                         { return directory_.rank_of_component(a.component) < directory_.rank_of_component(b.component); });
     }
 
     void refuse_self_couplings()
     {
         for (const RatioEdge& e : forest_.edges)
             if (e.driver == e.driven)
-                refuse(e.component,
-                       "couples " + directory_.shaft_id(e.driver) + " to itself; driver and driven must be two shafts");
+                refuse(e.component, "couples " + directory_.shaft_id(e.driver) + " to itself; driver and driven must be two shafts");
     }
 
     // Kruskal's forest in the order of ids, with path halving.
@@ -89,8 +82,7 @@ private:
             const RatioEdge& edge = forest_.edges[e];
             const std::uint32_t a = find(edge.driver);
             const std::uint32_t b = find(edge.driven);
-            if (a == b)
-                continue;
+            if (a == b) continue;
             set[std::max(a, b)] = std::min(a, b);
             in_tree_[e] = 1;
             ++links_of_[edge.driver], ++links_of_[edge.driven];
@@ -105,8 +97,7 @@ private:
         links_.resize(links_of_.back());
         for (std::uint32_t k = static_cast<std::uint32_t>(forest_.edges.size()); k-- > 0;)
         {
-            if (!in_tree_[k])
-                continue;
+            if (!in_tree_[k]) continue;
             const RatioEdge& edge = forest_.edges[k];
             links_[--links_of_[edge.driver]] = {k, edge.driven};
             links_[--links_of_[edge.driven]] = {k, edge.driver};
@@ -122,13 +113,11 @@ private:
     {
         std::vector<std::uint32_t> out;
         for (std::uint32_t i = 0; i < prescribed_.size(); ++i)
-            if (!links(i).empty())
-                out.push_back(i);
+            if (!links(i).empty()) out.push_back(i);
         std::sort(out.begin(), out.end(),
                   [this](std::uint32_t a, std::uint32_t b)
                   {
-                      if ((prescribed_[a] != 0) != (prescribed_[b] != 0))
-                          return prescribed_[a] != 0;
+                      if ((prescribed_[a] != 0) != (prescribed_[b] != 0)) return prescribed_[a] != 0;
                       return directory_.rank_of_shaft(a) < directory_.rank_of_shaft(b);
                   });
         return out;
@@ -144,8 +133,7 @@ private:
         nodes.push_back({root, begin, kNoIndex, {}});
         for (std::uint32_t at = begin; at < nodes.size(); ++at)
             for (const Link& link : links(nodes[at].shaft))
-                if (position_[link.other] == kNoIndex)
-                    add_child(root, at, link);
+                if (position_[link.other] == kNoIndex) add_child(root, at, link);
     }
 
     void add_child(std::uint32_t root, std::uint32_t parent, const Link& link)
@@ -154,9 +142,8 @@ private:
         const ExactRatio step = edge.driven == link.other ? edge.ratio : edge.ratio.inverse();
         const ExactRatio ratio = forest_.nodes[parent].ratio * step;
         if (std::abs(ratio.exponent()) > kLargestExponent)
-            refuse(edge.component, "makes " + directory_.shaft_id(link.other) + " turn " + ratio.text() +
-                                       " times per turn of " + directory_.shaft_id(root) +
-                                       "; must be between 2^-400 and 2^400");
+            refuse(edge.component, "makes " + directory_.shaft_id(link.other) + " turn " + ratio.text() + " times per turn of " +
+                                       directory_.shaft_id(root) + "; must be between 2^-400 and 2^400");
         if (prescribed_[link.other] != 0)
             refuse(edge.component, "joins " + directory_.shaft_id(root) + " and " + directory_.shaft_id(link.other) +
                                        ", whose motion is prescribed both; at most one may be");
@@ -173,9 +160,8 @@ private:
         if (around.same(ExactRatio{}, kLoopTolerance))
             forest_.redundant.push_back(e);
         else
-            refuse(edge.component, "contradiction: the loop " + path_text(from, to) +
-                                       directory_.component_id(edge.component) + " multiplies to " + around.text() +
-                                       ", must be 1; change a factor or remove one of them");
+            refuse(edge.component, "contradiction: the loop " + path_text(from, to) + directory_.component_id(edge.component) +
+                                       " multiplies to " + around.text() + ", must be 1; change a factor or remove one of them");
     }
 
     // "g1 -> g2 -> ": the edges from one node to another, by way of their common ancestor.

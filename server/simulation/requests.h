@@ -92,8 +92,8 @@ struct Request
 {
     std::uint64_t id = 0;
     std::vector<Operation> operations;
-    std::optional<Tick> at;                ///< takes effect before this step; one that has passed is refused as late
-    std::optional<std::uint64_t> revision; ///< refused if structural requests came between
+    std::optional<Tick> at;                 ///< takes effect before this step; one that has passed is refused as late
+    std::optional<std::uint64_t> revision;  ///< refused if structural requests came between
 };
 
 enum class Fate : std::uint8_t
@@ -114,17 +114,17 @@ struct FieldFate
 /// Energy, momentum and error over the first step after a swap, beside what the old component would have given.
 struct StepOutcome
 {
-    double energy = 0;            ///< J, kinetic and stored, at the end of the step
-    Vec3 momentum;                ///< N s
-    double error = 0;             ///< largest reported error of the component
-    double cost_ns = 0;           ///< of the whole step
+    double energy = 0;   ///< J, kinetic and stored, at the end of the step
+    Vec3 momentum;       ///< N s
+    double error = 0;    ///< largest reported error of the component
+    double cost_ns = 0;  ///< of the whole step
 };
 
 struct SwapReport
 {
     std::string id, from, to;
     std::vector<FieldFate> fields;
-    double energy_before = 0;     ///< J, at the boundary
+    double energy_before = 0;  ///< J, at the boundary
     StepOutcome with_old, with_new;
 };
 
@@ -132,11 +132,11 @@ struct Reply
 {
     std::uint64_t request = 0;
     bool done = false;
-    bool late = false;            ///< refused: the named step has passed
-    Errors errors;                ///< why it was refused; nothing has changed then
-    Tick step = 0;                ///< boundary at which it took effect
-    double pause_ns = 0;          ///< how long it held the loop up
-    std::uint64_t revision = 0;   ///< afterwards
+    bool late = false;           ///< refused: the named step has passed
+    Errors errors;               ///< why it was refused; nothing has changed then
+    Tick step = 0;               ///< boundary at which it took effect
+    double pause_ns = 0;         ///< how long it held the loop up
+    std::uint64_t revision = 0;  ///< afterwards
     std::vector<SwapReport> swaps;
 };
 

@@ -21,18 +21,15 @@ void ShaftCoupling::begin_level(Level level, const ConstraintGraph& graph, const
 
 double ShaftCoupling::inertia_of(std::uint32_t root) const
 {
-    if (const ShaftTree* tree = graph_->tree_of(root))
-        return tree->inertia;
+    if (const ShaftTree* tree = graph_->tree_of(root)) return tree->inertia;
     return shafts_->dynamic(root) ? shafts_->inertia[root] : 0.0;
 }
 
 ShaftCoupling::Root& ShaftCoupling::enter(std::uint32_t root, double rate)
 {
     Root& r = roots_[root];
-    if (r.solve == solve_)
-        return r;
-    if (!takes_part(root))
-        take_in(root, 0);
+    if (r.solve == solve_) return r;
+    if (!takes_part(root)) take_in(root, 0);
     r.solve = solve_, r.sweep = 0, r.driver = r.driven = kNoIndex, r.touched = false;
     r.rate = rate, r.scale = std::fabs(rate), r.torque = 0;
     r.inertia = inertia_of(root);
@@ -46,9 +43,8 @@ void ShaftCoupling::take_in(std::uint32_t shaft, double torque)
     torque_[shaft] = torque;
 }
 
-void ShaftCoupling::begin_accelerations(const ConstraintGraph& graph, const Shafts& shafts,
-                                        std::span<const double> torque, std::span<const std::uint32_t> members,
-                                        std::span<const std::uint32_t> prescribed)
+void ShaftCoupling::begin_accelerations(const ConstraintGraph& graph, const Shafts& shafts, std::span<const double> torque,
+                                        std::span<const std::uint32_t> members, std::span<const std::uint32_t> prescribed)
 {
     begin_level(Level::Acceleration, graph, shafts);
     members_ = members;
@@ -60,16 +56,15 @@ void ShaftCoupling::begin_accelerations(const ConstraintGraph& graph, const Shaf
     }
     for (const std::uint32_t i : members)
     {
-        if (shafts.root[i] != i)
-            continue;
+        if (shafts.root[i] != i) continue;
         Root& r = roots_[i];
         r.rate = r.torque / r.inertia;
         r.scale = std::fabs(r.rate);
     }
 }
 
-void ShaftCoupling::begin_speeds(const ConstraintGraph& graph, const Shafts& shafts,
-                                 std::span<const std::uint32_t> members, std::span<const std::uint32_t> prescribed)
+void ShaftCoupling::begin_speeds(const ConstraintGraph& graph, const Shafts& shafts, std::span<const std::uint32_t> members,
+                                 std::span<const std::uint32_t> prescribed)
 {
     begin_level(Level::Speed, graph, shafts);
     members_ = members;
@@ -91,11 +86,9 @@ void ShaftCoupling::start_sweep()
 void ShaftCoupling::begin(std::uint32_t component, Ref driven)
 {
     current_ = component;
-    if (component >= shares_.size())
-        shares_.resize(component + 1);
+    if (component >= shares_.size()) shares_.resize(component + 1);
     Share& share = shares_[component];
-    if (share.solve == solve_)
-        return;
+    if (share.solve == solve_) return;
     share = {solve_, driven.index, 0, 0};
     participants_.push_back(component);
 }
@@ -103,16 +96,14 @@ void ShaftCoupling::begin(std::uint32_t component, Ref driven)
 double ShaftCoupling::rate(Ref shaft) const
 {
     const std::uint32_t root = root_of(shaft);
-    if (entered(root))
-        return shafts_->ratio[shaft.index] * roots_[root].rate;
+    if (entered(root)) return shafts_->ratio[shaft.index] * roots_[root].rate;
     return level_ == Level::Speed ? shafts_->speed[shaft.index] : 0.0;
 }
 
 double ShaftCoupling::mobility(Ref shaft) const
 {
     const std::uint32_t root = root_of(shaft);
-    if (!entered(root) || assigned(roots_[root]))
-        return 0;
+    if (!entered(root) || assigned(roots_[root])) return 0;
     const double ratio = shafts_->ratio[shaft.index];
     return ratio * ratio * roots_[root].mobility;
 }
@@ -123,12 +114,10 @@ void ShaftCoupling::change_rate(Root& r, double rate)
     r.touched = r.touched || rate != r.rate;
     r.scale = std::max({r.scale, std::fabs(rate), std::fabs(r.rate)});
     r.rate = rate;
-    if (change == 0)
-        return;
+    if (change == 0) return;
     const double relative = change / r.scale;
     // A rate that is not a number never settles.
-    largest_change_ =
-        std::max(largest_change_, std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity());
+    largest_change_ = std::max(largest_change_, std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity());
 }
 
 void ShaftCoupling::apply(Ref shaft, double torque)
@@ -138,29 +127,23 @@ void ShaftCoupling::apply(Ref shaft, double torque)
     const double ratio = shafts_->ratio[i];
     const std::uint32_t root = root_of(shaft);
     Share& share = shares_[current_];
-    if (i == share.driven)
-        share.reaction += torque;
-    if (!entered(root))
-        return;  // not advanced here: nothing pushes it
+    if (i == share.driven) share.reaction += torque;
+    if (!entered(root)) return;  // not advanced here: nothing pushes it
     Root& r = roots_[root];
     torque_[i] += torque;
     r.torque += ratio * torque;
 
     const double before = r.rate;
-    if (!assigned(r))
-        change_rate(r, r.rate + ratio * torque * r.mobility);
+    if (!assigned(r)) change_rate(r, r.rate + ratio * torque * r.mobility);
     if (level_ == Level::Acceleration)
     {
-        if (shafts_->dynamic(i))
-            share.work += torque * shafts_->speed[i];
+        if (shafts_->dynamic(i)) share.work += torque * shafts_->speed[i];
         return;
     }
     // Summed over the sweeps this is the change of kinetic energy; a drive takes what is done on what it holds.
     const double work = 0.5 * ratio * torque * (before + r.rate);
-    if (r.mobility > 0)
-        share.work += work;
-    if (assigned(r))
-        shares_[r.driver].work -= work;
+    if (r.mobility > 0) share.work += work;
+    if (assigned(r)) shares_[r.driver].work -= work;
 }
 
 void ShaftCoupling::assign(Ref shaft, double rate)
@@ -178,8 +161,7 @@ void ShaftCoupling::assign(Ref shaft, double rate)
         return;
     }
     r.sweep = sweep_, r.driver = current_, r.driven = i;
-    if (level_ == Level::Speed)
-        shares_[current_].work += 0.5 * r.inertia * (root_rate - r.rate) * (root_rate + r.rate);
+    if (level_ == Level::Speed) shares_[current_].work += 0.5 * r.inertia * (root_rate - r.rate) * (root_rate + r.rate);
     change_rate(r, root_rate);
 }
 
@@ -192,17 +174,14 @@ void ShaftCoupling::store_speeds(Shafts& shafts) const
 {
     assert(level_ == Level::Speed);
     for (const std::uint32_t i : members_)
-        if (const Root& r = roots_[shafts.root[i]]; r.touched)
-            shafts.speed[i] = shafts.ratio[i] * r.rate;
+        if (const Root& r = roots_[shafts.root[i]]; r.touched) shafts.speed[i] = shafts.ratio[i] * r.rate;
 }
 
 double ShaftCoupling::total_torque(std::uint32_t shaft) const
 {
-    if (!takes_part(shaft))
-        return 0;
+    if (!takes_part(shaft)) return 0;
     const Root& r = roots_[shafts_->root[shaft]];
-    if (assigned(r))
-        return torque_[shaft] + (r.driven == shaft ? holding_torque(r) / shafts_->ratio[shaft] : 0.0);
+    if (assigned(r)) return torque_[shaft] + (r.driven == shaft ? holding_torque(r) / shafts_->ratio[shaft] : 0.0);
     return shafts_->dynamic(shaft) ? torque_[shaft] : torque_[shaft] + holding_torque(r);
 }
 
@@ -224,11 +203,9 @@ void ShaftCoupling::account(std::vector<double>& work, double share)
             done += holding_torque(roots_[root]) * shafts_->speed[root];
         work[c] += share * done;
     }
-    if (level_ != Level::Acceleration)
-        return;
+    if (level_ != Level::Acceleration) return;
     for (const ShaftTree& tree : graph_->trees())
-        if (tree.prescribed && entered(tree.root))
-            account_prescribed(tree, work, share);
+        if (tree.prescribed && entered(tree.root)) account_prescribed(tree, work, share);
 }
 
 // Power through each coupling of the prescribed shaft: (sum rho^2 J alpha_root - sum rho tau) w_root over what is

@@ -51,8 +51,7 @@ public:
                       std::span<const std::uint32_t> prescribed);
     /// Runs `couple_all` (all Phase::Couple rows, in order) until nothing changes.
     template <class CoupleAll>
-    CouplingReport solve(CoupleAll&& couple_all, int max_sweeps = kMaxCouplingSweeps,
-                         double tolerance = kCouplingTolerance)
+    CouplingReport solve(CoupleAll&& couple_all, int max_sweeps = kMaxCouplingSweeps, double tolerance = kCouplingTolerance)
     {
         CouplingReport report;
         do {

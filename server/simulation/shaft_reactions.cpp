@@ -6,15 +6,11 @@
 namespace plab::simulation
 {
 
-void ShaftTorques::clear()
-{
-    std::fill(torque_.begin(), torque_.end(), std::nullopt);
-}
+void ShaftTorques::clear() { std::fill(torque_.begin(), torque_.end(), std::nullopt); }
 
 void ShaftTorques::set(std::uint32_t component, double torque)
 {
-    if (component >= torque_.size())
-        torque_.resize(component + 1);
+    if (component >= torque_.size()) torque_.resize(component + 1);
     torque_[component] = torque;
 }
 
@@ -25,8 +21,7 @@ void ShaftTorques::add(const ShaftCoupling& coupling)
     own_.resize(coupling.graph().nodes().size());
     sums_.resize(own_.size());
     for (const ShaftTree& tree : coupling.graph().trees())
-        if (coupling.takes_part(tree))
-            add_tree(coupling, tree);
+        if (coupling.takes_part(tree)) add_tree(coupling, tree);
 }
 
 // With A the inertia and B the torque at the root, in: of a node's side of its coupling, out: of the other side, the
@@ -41,8 +36,7 @@ void ShaftTorques::add_tree(const ShaftCoupling& coupling, const ShaftTree& tree
     for (std::uint32_t k = tree.first + 1; k < end; ++k)
     {
         const ShaftNode& n = nodes[k];
-        if (!coupling.takes_part(n.shaft))
-            continue;  // another group's branch of a prescribed shaft
+        if (!coupling.takes_part(n.shaft)) continue;  // another group's branch of a prescribed shaft
         const double side = (n.inertia_inside * sums_.outside[k] - n.inertia_outside * sums_.inside[k]) / tree.inertia;
         set(n.component, n.drives_parent ? -side / nodes[n.parent].ratio : side / n.ratio);
     }

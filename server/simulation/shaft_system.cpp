@@ -17,8 +17,8 @@ ShaftSystem::Part& ShaftSystem::part_of_cluster(std::uint32_t cluster)
     return part;
 }
 
-void ShaftSystem::configure(const world::World& world, const Schedule& schedule, const Groups& groups, std::span<const std::uint32_t> members,
-                            const ConstraintGraph& graph)
+void ShaftSystem::configure(const world::World& world, const Schedule& schedule, const Groups& groups,
+                            std::span<const std::uint32_t> members, const ConstraintGraph& graph)
 {
     world_ = &world, schedule_ = &schedule, graph_ = &graph;
     count_ = 0;
@@ -34,7 +34,9 @@ void ShaftSystem::configure(const world::World& world, const Schedule& schedule,
         part.prescribed.insert(part.prescribed.end(), group.prescribed_shafts.begin(), group.prescribed_shafts.end());
         part.couplings.insert(part.couplings.end(), group.couplings.begin(), group.couplings.end());
     }
-    const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b}); };
+    const auto by_rank = [&](std::uint32_t a, std::uint32_t b) {
+        return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b});
+    };
     for (std::uint32_t i = 0; i < count_; ++i)
     {
         Part& part = parts_[i];
@@ -54,16 +56,18 @@ CouplingReport ShaftSystem::sweep(Part& part, const StepContext& outer)
     PhaseCall call;
     call.context = &context, call.shaft_motion = &part.coupling;
     const auto& blocks = schedule_->of(Phase::Couple);
-    return part.coupling.solve([&] {
-        for (const BlockRow& row : part.couplings)
+    return part.coupling.solve(
+        [&]
         {
-            const Block& block = blocks[row.block];
-            const world::Table& table = *world_->tables()[block.table];
-            context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-            call.rows = Rows(&row.row, 1);
-            (void)block.command->run(call, table.rows());
-        }
-    });
+            for (const BlockRow& row : part.couplings)
+            {
+                const Block& block = blocks[row.block];
+                const world::Table& table = *world_->tables()[block.table];
+                context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+                call.rows = Rows(&row.row, 1);
+                (void)block.command->run(call, table.rows());
+            }
+        });
 }
 
 void ShaftSystem::solve_accelerations(const StepContext& context, std::span<const double> torque)

@@ -14,12 +14,12 @@ namespace plab::simulation
 /// Mechanical totals of the scene at one time.
 struct Totals
 {
-    double kinetic = 0;        ///< J
-    double stored = 0;         ///< J, of components that say so (Phase::Potential)
-    double work = 0;           ///< J, done by all interactions since the run began
-    Vec3 momentum;             ///< N s, of dynamic bodies
-    Vec3 angular_momentum;     ///< N m s about the origin of W, of dynamic bodies
-    double shaft_momentum = 0; ///< N m s, sum over shafts about their own axles
+    double kinetic = 0;         ///< J
+    double stored = 0;          ///< J, of components that say so (Phase::Potential)
+    double work = 0;            ///< J, done by all interactions since the run began
+    Vec3 momentum;              ///< N s, of dynamic bodies
+    Vec3 angular_momentum;      ///< N m s about the origin of W, of dynamic bodies
+    double shaft_momentum = 0;  ///< N m s, sum over shafts about their own axles
 };
 
 class Simulation
@@ -89,8 +89,8 @@ private:
 
     Tick tick_ = 0;
     model::StepLength dt_;
-    Tick base_tick_ = 0;      ///< where the present dt began
-    double base_time_ = 0;    ///< s
+    Tick base_tick_ = 0;    ///< where the present dt began
+    double base_time_ = 0;  ///< s
     bool paused_ = false;
     std::int64_t steps_left_ = 0;
     double rate_ = 0;

@@ -30,7 +30,8 @@ inline constexpr StepNode kStepTree[] = {
     {Stage::PreStep, "drive", "scripts' drive(step); the parameter changes that they ask for", &Stepper::anything_drives, &Stepper::drive},
     {Stage::PreStep, "couple_speeds", "bring the speeds of coupled shafts together", &Stepper::anything_couples, &Stepper::couple_speeds},
     {Stage::Step, "advance", "each group by its solver over the whole step", &Stepper::anything_moves, &Stepper::advance_all},
-    {Stage::PostStep, "locate", "find events inside the step; rewind, respond, go on", &Stepper::anything_collides, &Stepper::locate_events},
+    {Stage::PostStep, "locate", "find events inside the step; rewind, respond, go on", &Stepper::anything_collides,
+     &Stepper::locate_events},
     {Stage::PostStep, "contacts", "contacts that begin, persist and end", &Stepper::anything_collides, &Stepper::finish_contacts},
     {Stage::PostStep, "finish", "outputs and history", &Stepper::anything_finishes, &Stepper::finish},
 };

@@ -14,14 +14,14 @@ namespace plab::simulation
 /// What a step did, beside moving the world.
 struct StepReport
 {
-    int events = 0;               ///< impacts located and answered
-    int trials = 0;               ///< trial advances made to locate them
-    int rewinds = 0;              ///< groups rewound
+    int events = 0;   ///< impacts located and answered
+    int trials = 0;   ///< trial advances made to locate them
+    int rewinds = 0;  ///< groups rewound
     int resting_pairs = 0;
-    double worst_residual = 0;    ///< m/s, left over by contact responses
-    double coupling_residual = 0; ///< relative, left over by shaft couplings
-    double deepest = 0;           ///< m, overlap left at the end of the step
-    std::vector<Ref> frozen;      ///< objects whose state was not finite any more
+    double worst_residual = 0;     ///< m/s, left over by contact responses
+    double coupling_residual = 0;  ///< relative, left over by shaft couplings
+    double deepest = 0;            ///< m, overlap left at the end of the step
+    std::vector<Ref> frozen;       ///< objects whose state was not finite any more
 };
 
 /// CPU time by component type and phase, and per step; ns.

@@ -68,7 +68,8 @@ Result<std::uint32_t> Transaction::find_typed(const std::string& id) const
 Result<void> Transaction::apply(const Operation& operation)
 {
     return std::visit(
-        [this](const auto& op) -> Result<void> {
+        [this](const auto& op) -> Result<void>
+        {
             using T = std::decay_t<decltype(op)>;
             if constexpr (requires { this->apply_one(op); })
                 return apply_one(op);
@@ -93,7 +94,8 @@ Result<void> Transaction::apply(const Operation& operation)
             }
             else
             {
-                const model::SceneSpec scene = [&] {
+                const model::SceneSpec scene = [&]
+                {
                     if constexpr (std::is_same_v<T, LoadOperation>)
                         return op.scene;
                     else
@@ -174,7 +176,8 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
         if (type_of(value) != field.type)
         {
             fate = Fate::Fresh;
-            if (field.required) errors.push_back({{}, element, op.type + " needs " + field.name + ", which " + old.info.name + " does not have"});
+            if (field.required)
+                errors.push_back({{}, element, op.type + " needs " + field.name + ", which " + old.info.name + " does not have"});
         }
         else
         {
@@ -194,8 +197,7 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
             errors.push_back({{}, element, op.type + " has no parameter '" + v.name + "'" + model::did_you_mean(v.name, names)});
     if (!errors.empty()) return errors;
     // A scene that selects commands keeps selecting the same ones where the new type has them.
-    if (spec.explicit_commands)
-        std::erase_if(spec.commands, [&](const std::string& c) { return type.find_command(c) < 0; });
+    if (spec.explicit_commands) std::erase_if(spec.commands, [&](const std::string& c) { return type.find_command(c) < 0; });
     return spec;
 }
 
@@ -300,7 +302,7 @@ Result<Value> Transaction::new_value(std::uint32_t component, const Field& field
         if (entry.name != op.name.substr(dot + 1)) continue;
         Field as;
         as.name = entry.name;
-        as.type = std::holds_alternative<bool>(entry.value) ? FieldType::Boolean
+        as.type = std::holds_alternative<bool>(entry.value)     ? FieldType::Boolean
                   : std::holds_alternative<double>(entry.value) ? FieldType::Real
                                                                 : FieldType::Text;
         auto parsed = text ? model::parse_value(*text, as) : Result<Value>(std::get<Value>(op.value));

@@ -10,8 +10,9 @@ namespace
 /// Requests to the clock touch no component.
 bool concerns_the_scene(const Operation& op)
 {
-    return std::holds_alternative<AddOperation>(op) || std::holds_alternative<RemoveOperation>(op) || std::holds_alternative<SwapOperation>(op) ||
-           std::holds_alternative<SetOperation>(op) || std::holds_alternative<PushOperation>(op);
+    return std::holds_alternative<AddOperation>(op) || std::holds_alternative<RemoveOperation>(op) ||
+           std::holds_alternative<SwapOperation>(op) || std::holds_alternative<SetOperation>(op) ||
+           std::holds_alternative<PushOperation>(op);
 }
 
 bool starts_anew(const Operation& op) { return std::holds_alternative<ResetOperation>(op) || std::holds_alternative<LoadOperation>(op); }
@@ -46,7 +47,11 @@ void Transaction::compare_with_old(const State& before)
         if (const auto* swap = std::get_if<SwapOperation>(&op))
             if (auto component = find_typed(swap->id)) old_errors_.push_back(s_->error_of(*component));
     restore(before, false);
-    energy_before_ = [&] { const Totals t = s_->totals(); return t.kinetic + t.stored; }();
+    energy_before_ = [&]
+    {
+        const Totals t = s_->totals();
+        return t.kinetic + t.stored;
+    }();
 }
 
 Result<void> Transaction::try_new()

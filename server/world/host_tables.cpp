@@ -30,7 +30,8 @@ void resize(Bodies& b, std::size_t n)
 {
     b.motion.resize(n, Motion::Static), b.position.resize(n), b.orientation.resize(n), b.velocity.resize(n);
     b.angular_velocity.resize(n), b.angular_momentum.resize(n), b.mass.resize(n), b.inverse_mass.resize(n);
-    b.inertia_B.resize(n), b.inverse_inertia_B.resize(n), b.center_B.resize(n), b.needle.resize(n), b.material.resize(n), b.shapes.resize(n);
+    b.inertia_B.resize(n), b.inverse_inertia_B.resize(n), b.center_B.resize(n), b.needle.resize(n), b.material.resize(n),
+        b.shapes.resize(n);
 }
 
 void clear_row(Bodies& b, std::uint32_t i)
@@ -146,10 +147,14 @@ std::uint32_t HostTables::component_of(Ref ref) const
 {
     switch (ref.facet)
     {
-        case Facet::Body: return component_of_body[ref.index];
-        case Facet::Shaft: return component_of_shaft[ref.index];
-        case Facet::Shape: return component_of_shape[ref.index];
-        case Facet::Component: break;
+        case Facet::Body:
+            return component_of_body[ref.index];
+        case Facet::Shaft:
+            return component_of_shaft[ref.index];
+        case Facet::Shape:
+            return component_of_shape[ref.index];
+        case Facet::Component:
+            break;
     }
     return ref.index;
 }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "plab/bytes.h"
-#include "plab/tables.h"
 #include "plab/result.h"
+#include "plab/tables.h"
 
 namespace plab::world
 {

@@ -122,8 +122,8 @@ void World::bind(std::uint32_t component, const model::ComponentSpec& spec)
     const Table& table = table_of(component);
     for (const Role& role : table.schema().roles())
     {
-        const auto given = std::find_if(spec.roles.begin(), spec.roles.end(),
-                                        [&](const model::RoleSpec& r) { return r.name == role.name; });
+        const auto given =
+            std::find_if(spec.roles.begin(), spec.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
         bind_role(role, components_[component].row, given == spec.roles.end() ? nullptr : &*given);
     }
 }
@@ -167,9 +167,11 @@ Result<void> World::add(const model::SceneSpec& scene)
         if (components_[c.component].table != kNoIndex) bind(c.component, *c.spec);
     if (errors.empty())
     {
-        std::sort(created.begin(), created.end(), [&](const Created& a, const Created& b) {
-            return std::pair(prepare_order(a.component), rank_[a.component]) < std::pair(prepare_order(b.component), rank_[b.component]);
-        });
+        std::sort(created.begin(), created.end(),
+                  [&](const Created& a, const Created& b) {
+                      return std::pair(prepare_order(a.component), rank_[a.component]) <
+                             std::pair(prepare_order(b.component), rank_[b.component]);
+                  });
         for (const Created& c : created)
         {
             if (auto done = prepare(c.component); !done) errors.insert(errors.end(), done.errors().begin(), done.errors().end());
@@ -276,8 +278,7 @@ void World::restore(const Backup& b)
         tables_[c.table]->load(c.row, kLiveKinds, cells);
     }
     for (const Component& c : newer)
-        if (c.alive && c.table != kNoIndex && tables_[c.table]->component_of_row()[c.row] == kNoIndex)
-            tables_[c.table]->remove(c.row);
+        if (c.alive && c.table != kNoIndex && tables_[c.table]->component_of_row()[c.row] == kNoIndex) tables_[c.table]->remove(c.row);
     std::erase_if(parked_, [&](const Parked& p) { return tables_[p.table]->component_of_row()[p.row] != kNoIndex; });
     sort_by_id();
     for (const model::ComponentSpec& spec : scene_.components)

@@ -26,7 +26,7 @@ struct Component
     Row row = kNoIndex;
     Facet facet = Facet::Component;
     std::uint32_t host_index = kNoIndex;
-    std::uint64_t commands = 0;      ///< bit per command of its type: takes part
+    std::uint64_t commands = 0;  ///< bit per command of its type: takes part
     bool alive = false;
     bool quarantined = false;
 

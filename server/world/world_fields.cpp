@@ -67,7 +67,8 @@ Result<void> World::set(std::uint32_t component, const std::string& name, const 
     const Table& table = *tables_[c.table];
     const Field* field = table.schema().find_field(name);
     if (!field) return reason("has no field '" + name + "'");
-    if (field->kind == FieldKind::Output || field->kind == FieldKind::Scratch) return reason("'" + name + "' is computed, it cannot be set");
+    if (field->kind == FieldKind::Output || field->kind == FieldKind::Scratch)
+        return reason("'" + name + "' is computed, it cannot be set");
     if (plab::type_of(value) != field->type) return reason("'" + name + "' has another type");
     if (field->hosted)
         set_hosted(host_, c.facet, c.host_index, name, value);

@@ -11,5 +11,6 @@ TEST_CASE("the reference of component types is current")
     REQUIRE(file);
     std::stringstream text;
     text << file.rdbuf();
-    CHECK_MESSAGE(text.str() == plab::blueprint::write_reference(plab::test::library()), "run: build/bin/plabd --reference > server/docs/reference.md");
+    CHECK_MESSAGE(text.str() == plab::blueprint::write_reference(plab::test::library()),
+                  "run: build/bin/plabd --reference > server/docs/reference.md");
 }

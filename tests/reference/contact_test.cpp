@@ -9,9 +9,11 @@ using plab::test::Scene;
 namespace
 {
 
-const char* const kGround = "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>";
+const char* const kGround =
+    "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>";
 
-std::string contact(const std::string& between, const std::string& resolution, const std::string& restitution, const std::string& friction = "0")
+std::string contact(const std::string& between, const std::string& resolution, const std::string& restitution,
+                    const std::string& friction = "0")
 {
     return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + resolution +
            "\" response=\"Response/Impulse\" response.restitution=\"" + restitution + "\" response.friction=\"" + friction + "\"/>";
@@ -40,8 +42,8 @@ TEST_CASE("C1: head-on spheres, mass ratios to 1e9, to 1e-14")
         {
             CAPTURE(mass);
             CAPTURE(e);
-            Scene s(ball("a", "mass=\"1\" position=\"-0.3 0 0\" linear_velocity=\"1 0 0\"") + ball("b", std::string("mass=\"") + mass + "\" position=\"0.3 0 0\"") +
-                        contact("a b", "LocalBisection", e),
+            Scene s(ball("a", "mass=\"1\" position=\"-0.3 0 0\" linear_velocity=\"1 0 0\"") +
+                        ball("b", std::string("mass=\"") + mass + "\" position=\"0.3 0 0\"") + contact("a b", "LocalBisection", e),
                     "dt=\"1/60\"");
             REQUIRE_MESSAGE(s.loaded(), s.error());
             s.run(1);
@@ -61,7 +63,9 @@ TEST_CASE("C2: a sphere meets a wall at an angle: stick and slip, the same in al
             const Vec3 t{std::cos(angle), std::sin(angle), 0};
             char velocity[128];
             std::snprintf(velocity, sizeof velocity, "linear_velocity=\"%.17g %.17g -4\"", vt * t.x, vt * t.y);
-            Scene s(kGround + ball("a", std::string("mass=\"1\" position=\"0 0 0.5\" ") + velocity) + contact("a ground", "LocalBisection", "0.8", "0.3"), "dt=\"1/60\"");
+            Scene s(kGround + ball("a", std::string("mass=\"1\" position=\"0 0 0.5\" ") + velocity) +
+                        contact("a ground", "LocalBisection", "0.8", "0.3"),
+                    "dt=\"1/60\"");
             REQUIRE_MESSAGE(s.loaded(), s.error());
             s.run(0.5);
             const double vt_after = vt == 3.0 ? 15.0 / 7 : 9.84, w_after = vt == 3.0 ? 150.0 / 7 : 54.0;
@@ -74,13 +78,15 @@ TEST_CASE("C2: a sphere meets a wall at an angle: stick and slip, the same in al
 TEST_CASE("C3: the end of a rod hits an edge: a quarter of its mass answers")
 {
     // A slender rod along x, m = 1, L = 1, falls with v = 1; its end meets a small fixed sphere.
-    Scene s("<component id=\"rod.shape\" type=\"Shape/Box\" half_extents=\"0.5 0.001 0.001\"/>"
-            "<component id=\"rod\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1e-3 0.083333333333333333 0.083333333333333333\" shape=\"rod.shape\" "
-            "position=\"0 0 0.5\" linear_velocity=\"0 0 -1\"/>"
-            "<component id=\"edge.shape\" type=\"Shape/Sphere\" radius=\"0.1\"/>"
-            "<component id=\"edge\" type=\"State/Static\" shape=\"edge.shape\" position=\"0.499999999 0 0\"/>" +
-                contact("rod edge", "LocalBisection", "0.5"),
-            "dt=\"1/60\"");
+    Scene s(
+        "<component id=\"rod.shape\" type=\"Shape/Box\" half_extents=\"0.5 0.001 0.001\"/>"
+        "<component id=\"rod\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1e-3 0.083333333333333333 0.083333333333333333\" "
+        "shape=\"rod.shape\" "
+        "position=\"0 0 0.5\" linear_velocity=\"0 0 -1\"/>"
+        "<component id=\"edge.shape\" type=\"Shape/Sphere\" radius=\"0.1\"/>"
+        "<component id=\"edge\" type=\"State/Static\" shape=\"edge.shape\" position=\"0.499999999 0 0\"/>" +
+            contact("rod edge", "LocalBisection", "0.5"),
+        "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;
     while (s.count("contact.impact") == 0 && s.simulation().time() < 1) s.step();
@@ -149,7 +155,8 @@ TEST_CASE("C6: Galperin's balls count the digits of pi")
         char heavy[160];
         std::snprintf(heavy, sizeof heavy, "mass=\"%.17g\" position=\"0 0 3\" linear_velocity=\"0 0 -0.1\"", mass);
         Scene s("<component id=\"wall.shape\" type=\"Shape/Plane\"/><component id=\"wall\" type=\"State/Static\" shape=\"wall.shape\"/>" +
-                    ball("light", "mass=\"1\" position=\"0 0 1.5\"", 0.5) + ball("heavy", heavy, 0.5) + contact("light heavy wall", "LocalBisection", "1"),
+                    ball("light", "mass=\"1\" position=\"0 0 1.5\"", 0.5) + ball("heavy", heavy, 0.5) +
+                    contact("light heavy wall", "LocalBisection", "1"),
                 k < 3 ? "dt=\"1/60\"" : "dt=\"1/240\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.keep_events = true;
@@ -177,7 +184,8 @@ TEST_CASE("a box rests on the ground without drift or spin")
 TEST_CASE("a material pair overrides the response's own law")
 {
     Scene s(kGround + ball("a", "mass=\"1\" material=\"rubber\" position=\"0 0 0.6\" linear_velocity=\"0 0 -1\"") +
-                "<component id=\"law\" type=\"Material/Pair\" a=\"rubber\" b=\"stone\" friction=\"0\" restitution=\"1\"/>" + contact("a ground", "LocalBisection", "0"),
+                "<component id=\"law\" type=\"Material/Pair\" a=\"rubber\" b=\"stone\" friction=\"0\" restitution=\"1\"/>" +
+                contact("a ground", "LocalBisection", "0"),
             "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.ask(simulation::SetOperation{"ground", "material", std::string("stone")});
@@ -188,7 +196,8 @@ TEST_CASE("a material pair overrides the response's own law")
 TEST_CASE("a sensor tells the time of the touch and pushes nobody")
 {
     Scene s(kGround + ball("a", "mass=\"1\" position=\"0 0 0.6\" linear_velocity=\"0 0 -1\"") +
-                "<component id=\"contact\" type=\"CDetection/ODE\" between=\"a ground\" resolution=\"Resolution/LocalBisection\" response=\"Response/None\"/>",
+                "<component id=\"contact\" type=\"CDetection/ODE\" between=\"a ground\" resolution=\"Resolution/LocalBisection\" "
+                "response=\"Response/None\"/>",
             "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;

@@ -17,10 +17,11 @@ std::string dt(int per_second) { return "dt=\"1/" + std::to_string(per_second) +
 /// A1: thrown at (5, 10, 0) from (0, 10, 0), two seconds.
 double projectile_error(const std::string& type, int per_second)
 {
-    Scene s(solver(type) +
-                "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"0 10 0\" linear_velocity=\"5 10 0\"/>"
-                "<component id=\"g\" type=\"Field/Gravity\" between=\"*\" acceleration=\"0 -9.81 0\"/>",
-            dt(per_second));
+    Scene s(
+        solver(type) +
+            "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"0 10 0\" linear_velocity=\"5 10 0\"/>"
+            "<component id=\"g\" type=\"Field/Gravity\" between=\"*\" acceleration=\"0 -9.81 0\"/>",
+        dt(per_second));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(2);
     return distance(s.vec("ball", "position"), {10, 10 + 20 - 0.5 * 9.81 * 4, 0});
@@ -43,7 +44,8 @@ BoxRun free_box(const std::string& type, int per_second)
     s.run(5);
     const Quat expected{-0.36486374298686260041, 0.02356335734258868336, 0.02126200105200739735, -0.93051982491273477482};
     const auto t = s.simulation().totals();
-    return {attitude_error(expected, s.quat("box", "orientation")), std::fabs(t.kinetic / e0 - 1), distance(t.angular_momentum, l0) / length(l0)};
+    return {attitude_error(expected, s.quat("box", "orientation")), std::fabs(t.kinetic / e0 - 1),
+            distance(t.angular_momentum, l0) / length(l0)};
 }
 
 double observed_order(double coarse, double fine) { return std::log2(coarse / fine); }
@@ -121,7 +123,8 @@ TEST_CASE("A5: degenerate inertias move as the symmetric top does, impossible on
     }
     SUBCASE("a rod with I3 = 1e-12 spinning at 1000 rad/s about itself")
     {
-        Scene s("<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1e-12\" angular_velocity=\"0.1 0 1000\"/>", dt(100000));
+        Scene s("<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1e-12\" angular_velocity=\"0.1 0 1000\"/>",
+                dt(100000));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(0.1);
         const Vec3 w = rotate_back(s.quat("b", "orientation"), s.vec("b", "angular_velocity"));
@@ -130,9 +133,8 @@ TEST_CASE("A5: degenerate inertias move as the symmetric top does, impossible on
     }
     SUBCASE("impossible ones")
     {
-        const auto refusal = [](const std::string& attributes) {
-            return Scene("<component id=\"b\" type=\"State/RigidBody\" " + attributes + "/>").error();
-        };
+        const auto refusal = [](const std::string& attributes)
+        { return Scene("<component id=\"b\" type=\"State/RigidBody\" " + attributes + "/>").error(); };
         CHECK(refusal("mass=\"1\" inertia=\"1 1 3\"").find("triangle") != std::string::npos);
         CHECK(refusal("mass=\"-1\" inertia=\"1 1 1\"").find("mass must be positive") != std::string::npos);
         CHECK(refusal("mass=\"nan\" inertia=\"1 1 1\"").find("mass") != std::string::npos);

@@ -7,15 +7,17 @@ using plab::test::Scene;
 
 TEST_CASE("A6: Kepler with a script as the force, fourth order, e = 0.9")
 {
-    const auto error = [](int per_second) {
-        Scene s(R"(<component id="planet" type="State/RigidBody" mass="1" inertia="1 1 1" position="0.1 0 0" linear_velocity="0 4.358898943540674 0"/>
+    const auto error = [](int per_second)
+    {
+        Scene s(
+            R"(<component id="planet" type="State/RigidBody" mass="1" inertia="1 1 1" position="0.1 0 0" linear_velocity="0 4.358898943540674 0"/>
                    <component id="sun" type="Script/Lua" driven="planet"><param name="code">
                    function force(t, state)
                        local r = driven.position
                        local d = r:length()
                        driven:add_force(r * (-1 / (d * d * d)))
                    end</param></component>)",
-                "dt=\"1/" + std::to_string(per_second) + "\"");
+            "dt=\"1/" + std::to_string(per_second) + "\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(10);
         return distance(s.vec("planet", "position"), {-1.8538537094055792, -0.130885404839925551, 0});

@@ -20,8 +20,8 @@ std::string gear(const std::string& id, const std::string& type, const std::stri
 }
 std::string torque(const std::string& on, const std::string& value)
 {
-    return "<component id=\"torque\" type=\"Script/Lua\" driven=\"" + on + "\"><param name=\"code\">function force(t, state) driven:add_torque(" + value +
-           ") end</param></component>";
+    return "<component id=\"torque\" type=\"Script/Lua\" driven=\"" + on +
+           "\"><param name=\"code\">function force(t, state) driven:add_torque(" + value + ") end</param></component>";
 }
 
 }  // namespace
@@ -53,13 +53,16 @@ TEST_CASE("F1, one way: an assigned shaft follows and the driver feels nothing")
 
 TEST_CASE("F2: six meshes of 10:1, both ways")
 {
-    const auto train = [](const char* factor) {
+    const auto train = [](const char* factor)
+    {
         std::string body;
         for (int i = 0; i < 7; ++i) body += shaft("s" + std::to_string(i), 0.001);
-        for (int i = 0; i < 6; ++i) body += gear("g" + std::to_string(i), "Graph", "s" + std::to_string(i), "s" + std::to_string(i + 1), factor);
+        for (int i = 0; i < 6; ++i)
+            body += gear("g" + std::to_string(i), "Graph", "s" + std::to_string(i), "s" + std::to_string(i + 1), factor);
         return body + torque("s0", "1");
     };
-    const auto inertia = [](double r) {
+    const auto inertia = [](double r)
+    {
         double sum = 0;
         for (int i = 6; i >= 0; --i) sum += std::pow(r * r, i) * 1e-3;
         return sum;
@@ -77,7 +80,8 @@ TEST_CASE("F3: sudden engagement at run time shares the momentum")
     Scene s(shaft("a", 1, 100) + shaft("b", 2), "dt=\"1/100\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     const double before = s.simulation().totals().kinetic;
-    model::Blueprint fragment = *blueprint::read_blueprint("<plab version=\"1\">" + gear("g", "Graph", "a", "b", "-0.5") + "</plab>", "add.xml");
+    model::Blueprint fragment =
+        *blueprint::read_blueprint("<plab version=\"1\">" + gear("g", "Graph", "a", "b", "-0.5") + "</plab>", "add.xml");
     auto compiled = model::compile(fragment, test::library(), &s.simulation().world().scene());
     REQUIRE_MESSAGE(compiled.ok(), (compiled.ok() ? "" : test::first_error(compiled.errors())));
     const auto reply = s.ask(simulation::AddOperation{*compiled});
@@ -90,7 +94,8 @@ TEST_CASE("F3: sudden engagement at run time shares the momentum")
 
 TEST_CASE("F4: a consistent loop and fifty duplicate meshes are redundant, counted, and change nothing")
 {
-    const std::string three = shaft("a", 1) + shaft("b", 2) + shaft("c", 3) + gear("g1", "Graph", "a", "b", "2") + gear("g2", "Graph", "b", "c", "3");
+    const std::string three =
+        shaft("a", 1) + shaft("b", 2) + shaft("c", 3) + gear("g1", "Graph", "a", "b", "2") + gear("g2", "Graph", "b", "c", "3");
     std::string loop = three + gear("g3", "Graph", "c", "a", "1/6");
     for (int i = 0; i < 50; ++i) loop += gear("h" + std::to_string(i), "Graph", "a", "b", "2");
     Scene tree(three + torque("a", "5")), ring(loop + torque("a", "5"));
@@ -103,8 +108,8 @@ TEST_CASE("F4: a consistent loop and fifty duplicate meshes are redundant, count
 
 TEST_CASE("F5: a contradictory loop is refused with its edges and product")
 {
-    const std::string ring = shaft("a", 1) + shaft("b", 2) + shaft("c", 3) + gear("g1", "Graph", "a", "b", "2") + gear("g2", "Graph", "b", "c", "3") +
-                             gear("g3", "Graph", "c", "a", "0.16666388893518441");
+    const std::string ring = shaft("a", 1) + shaft("b", 2) + shaft("c", 3) + gear("g1", "Graph", "a", "b", "2") +
+                             gear("g2", "Graph", "b", "c", "3") + gear("g3", "Graph", "c", "a", "0.16666388893518441");
     const std::string error = Scene(ring).error();
     CHECK(error.find("g1") != std::string::npos);
     CHECK(error.find("g2") != std::string::npos);
@@ -128,8 +133,8 @@ TEST_CASE("F7: a line of 1000 gears has no drift at all")
         std::snprintf(before, sizeof before, "s%04d", i - 1);
         seed = seed * 6364136223846793005ull + 1442695040888963407ull;
         const int driver = 20 + static_cast<int>((seed >> 33) % 40), driven = 20 + static_cast<int>((seed >> 43) % 40);
-        body += "<component id=\"g" + std::string(id) + "\" type=\"Constraint/AngularVelocity/Graph\" driver=\"" + before + "\" driven=\"" + id +
-                "\" driver_teeth=\"" + std::to_string(driver) + "\" driven_teeth=\"" + std::to_string(driven) + "\"/>";
+        body += "<component id=\"g" + std::string(id) + "\" type=\"Constraint/AngularVelocity/Graph\" driver=\"" + before + "\" driven=\"" +
+                id + "\" driver_teeth=\"" + std::to_string(driver) + "\" driven_teeth=\"" + std::to_string(driven) + "\"/>";
         rho *= -static_cast<double>(driver) / driven;
         rhos.push_back(rho);
     }

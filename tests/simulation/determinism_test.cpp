@@ -53,8 +53,10 @@ TEST_CASE("the paper's scene too, at every step, and two worlds interleaved equa
 
 TEST_CASE("the order of a blueprint's components does not matter")
 {
-    const std::string x = "<component id=\"x\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"3\"/>", y = "<component id=\"y\" type=\"State/Shaft\" inertia=\"2\"/>",
-                      g = "<component id=\"g\" type=\"Constraint/AngularVelocity/Graph\" driver=\"x\" driven=\"y\" velocity_factor=\"0.3\"/>";
+    const std::string
+        x = "<component id=\"x\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"3\"/>",
+        y = "<component id=\"y\" type=\"State/Shaft\" inertia=\"2\"/>",
+        g = "<component id=\"g\" type=\"Constraint/AngularVelocity/Graph\" driver=\"x\" driven=\"y\" velocity_factor=\"0.3\"/>";
     Scene one(x + y + g), two(g + y + x);
     one.run(1), two.run(1);
     CHECK(one.hash() == two.hash());

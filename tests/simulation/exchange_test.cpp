@@ -12,7 +12,10 @@ namespace
 
 constexpr const char* kPaper = "scenes/fan_and_balloons.xml";
 
-SwapOperation swap(const std::string& id, const std::string& type, std::vector<NamedValue> values = {}) { return {id, type, std::move(values)}; }
+SwapOperation swap(const std::string& id, const std::string& type, std::vector<NamedValue> values = {})
+{
+    return {id, type, std::move(values)};
+}
 
 model::SceneSpec fragment(Scene& s, const std::string& body)
 {
@@ -107,7 +110,8 @@ TEST_CASE("a refused request leaves everything as it was, bit for bit")
 {
     Scene s = Scene::file(kPaper), alone = Scene::file(kPaper);
     s.run(1), alone.run(1);
-    const auto refused = [&](std::vector<Operation> ops, const std::string& why) {
+    const auto refused = [&](std::vector<Operation> ops, const std::string& why)
+    {
         const Reply reply = s.ask_all(std::move(ops));
         CHECK(!reply.done);
         CHECK_MESSAGE(first_error(reply.errors).find(why) != std::string::npos, first_error(reply.errors));
@@ -126,7 +130,9 @@ TEST_CASE("a refused request leaves everything as it was, bit for bit")
     refused({RemoveOperation{"red"}}, "is still used by");
     // The first operation of a transaction is taken back when the second fails.
     refused({SetOperation{"red", "mass", std::string("5")}, swap("gears", "Response/None")}, "cannot be exchanged");
-    refused({AddOperation{fragment(s, "<component id=\"clash\" type=\"Constraint/AngularVelocity/Graph\" driver=\"axle\" driven=\"large_gear\" velocity_factor=\"3\"/>")}},
+    refused({AddOperation{fragment(s,
+                                   "<component id=\"clash\" type=\"Constraint/AngularVelocity/Graph\" driver=\"axle\" "
+                                   "driven=\"large_gear\" velocity_factor=\"3\"/>")}},
             "clash");
     s.run(6), alone.run(6);
     CHECK(s.hash() == alone.hash());
@@ -169,7 +175,9 @@ TEST_CASE("push, add, remove")
     CHECK(s.vec("green", "linear_velocity").z == vz);
     // A newcomer joins roles that mean everybody.
     REQUIRE(s.ask(AddOperation{fragment(s, "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>")}).done);
-    REQUIRE(s.ask(AddOperation{fragment(s, "<component id=\"third\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"0 5 9\"/>")}).done);
+    REQUIRE(s.ask(AddOperation{
+                      fragment(s, "<component id=\"third\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"0 5 9\"/>")})
+                .done);
     s.run(2);
     CHECK(near(s.vec("third", "linear_velocity").z, -9.81 * 0.5, 1e-12));
 }
@@ -235,12 +243,14 @@ TEST_CASE("a change of the step length keeps time")
 
 TEST_CASE("a standing contact is swapped too: the box neither pops nor sinks")
 {
-    Scene s("<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>"
-            "<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.5 0.5 0.5\"/>"
-            "<component id=\"box\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"0 0 0.5\"/>"
-            "<component id=\"g\" type=\"Field/Gravity\" between=\"box\"/>"
-            "<component id=\"contact\" type=\"CDetection/ODE\" between=\"box ground\" resolution=\"Resolution/LocalBisection\" response=\"Response/Impulse\"/>",
-            "dt=\"1/60\"");
+    Scene s(
+        "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>"
+        "<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.5 0.5 0.5\"/>"
+        "<component id=\"box\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"0 0 0.5\"/>"
+        "<component id=\"g\" type=\"Field/Gravity\" between=\"box\"/>"
+        "<component id=\"contact\" type=\"CDetection/ODE\" between=\"box ground\" resolution=\"Resolution/LocalBisection\" "
+        "response=\"Response/Impulse\"/>",
+        "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(1);
     REQUIRE(s.ask(swap("contact.response", "Response/Impulse", {{"friction", std::string("0.3")}})).done);

@@ -34,7 +34,8 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 
 const char* const kShafts = R"(<component id="a" type="State/Shaft" inertia="1"/><component id="b" type="State/Shaft" inertia="1"/>
   <component id="g" type="Constraint/AngularVelocity/Graph" driver="a" driven="b" velocity_factor="-0.5"/>)";
-const char* const kScript = R"(<component id="m" type="Script/Lua" driven="a"><param name="code">function force(t, state) driven:add_torque(1) end</param></component>)";
+const char* const kScript =
+    R"(<component id="m" type="Script/Lua" driven="a"><param name="code">function force(t, state) driven:add_torque(1) end</param></component>)";
 const char* const kBall = R"(<component id="s" type="Shape/Sphere" radius="0.1"/><component id="floor" type="Shape/Plane"/>
   <component id="ball" type="State/RigidBody" mass="1" shape="s" position="0 0 1"/><component id="ground" type="State/Static" shape="floor"/>
   <component id="gravity" type="Field/Gravity" between="ball"/>
@@ -52,7 +53,8 @@ long allocations_of(Scene& s, int steps)
 
 TEST_CASE("no script, no Lua; no collision, no ODE; only what is named is mapped")
 {
-    const std::string shafts = mapped_libraries(kShafts), script = mapped_libraries(std::string(kShafts) + kScript), ball = mapped_libraries(kBall);
+    const std::string shafts = mapped_libraries(kShafts), script = mapped_libraries(std::string(kShafts) + kScript),
+                      ball = mapped_libraries(kBall);
     CHECK(!has(shafts, "liblua"));
     CHECK(!has(shafts, "libode"));
     CHECK(has(shafts, "constraints.so"));
@@ -77,13 +79,18 @@ TEST_CASE("a warm step allocates nothing")
 {
     Scene shafts(std::string(kShafts) + kScript);
     CHECK(allocations_of(shafts, 1000) == 0);
-    Scene free_body("<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 2 2.5\" angular_velocity=\"1 2 3\"/><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>");
+    Scene free_body(
+        "<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 2 2.5\" angular_velocity=\"1 2 3\"/><component id=\"g\" "
+        "type=\"Field/Gravity\" between=\"*\"/>");
     CHECK(allocations_of(free_body, 1000) == 0);
     // At rest: contact stays, no event is made.
-    Scene resting("<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"floor\" type=\"Shape/Plane\"/>"
-                  "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\" position=\"0 0 0.1001\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
-                  "<component id=\"gravity\" type=\"Field/Gravity\" between=\"ball\"/>"
-                  "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball ground\" resolution=\"Resolution/LocalBisection\" response=\"Response/Impulse\"/>");
+    Scene resting(
+        "<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"floor\" type=\"Shape/Plane\"/>"
+        "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\" position=\"0 0 0.1001\"/><component id=\"ground\" "
+        "type=\"State/Static\" shape=\"floor\"/>"
+        "<component id=\"gravity\" type=\"Field/Gravity\" between=\"ball\"/>"
+        "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball ground\" resolution=\"Resolution/LocalBisection\" "
+        "response=\"Response/Impulse\"/>");
     CHECK(allocations_of(resting, 1000) == 0);
 }
 
@@ -105,8 +112,10 @@ TEST_CASE("an empty step costs less than a microsecond")
 TEST_CASE("ten thousand bodies load in seconds")
 {
     const auto before = std::chrono::steady_clock::now();
-    Scene s("<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><repeat id=\"all\" count=\"100 100\" step=\"1 1 0\">"
-            "<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\"/></repeat><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>");
+    Scene s(
+        "<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><repeat id=\"all\" count=\"100 100\" step=\"1 1 0\">"
+        "<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\"/></repeat><component id=\"g\" type=\"Field/Gravity\" "
+        "between=\"*\"/>");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(2);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();

@@ -15,7 +15,8 @@ std::string bystanders(const std::string& resolution, bool with_floor)
         "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"b\" position=\"0 0 0.6\"/>"
         "<component id=\"box\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 2 2.5\" position=\"9 9 50\" angular_velocity=\"1 2 3\"/>"
         "<component id=\"g\" type=\"Field/Gravity\" between=\"ball box\"/>"
-        "<component id=\"p\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"1\"/><component id=\"q\" type=\"State/Shaft\" inertia=\"2\"/>"
+        "<component id=\"p\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"1\"/><component id=\"q\" type=\"State/Shaft\" "
+        "inertia=\"2\"/>"
         "<component id=\"gear\" type=\"Constraint/AngularVelocity/Graph\" driver=\"p\" driven=\"q\" velocity_factor=\"0.3\"/>"
         "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>";
     if (with_floor)
@@ -54,14 +55,16 @@ TEST_CASE("a reader upstream keeps its bits when the one it pushes is rewound")
 {
     const std::string scene =
         "<component id=\"fan\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"3\"/>"
-        "<component id=\"load\" type=\"Script/Lua\" driven=\"fan\"><param name=\"code\">function force(t, state) driven:add_torque(-0.3 * driven.speed) end</param></component>"
+        "<component id=\"load\" type=\"Script/Lua\" driven=\"fan\"><param name=\"code\">function force(t, state) driven:add_torque(-0.3 * "
+        "driven.speed) end</param></component>"
         "<component id=\"b\" type=\"Shape/Sphere\" radius=\"0.1\"/><component id=\"floor\" type=\"Shape/Plane\"/>"
         "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"b\" position=\"0 0 0.4\"/>"
         "<component id=\"push\" type=\"Script/Lua\" driver=\"fan\" driven=\"ball\"><param name=\"code\">"
         "function force(t, state) driven:add_force(vec(0, 0, -driver.speed)) end</param></component>"
         "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>";
     const std::string contact =
-        "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball ground\" resolution=\"Resolution/LocalBisection\" response=\"Response/Impulse\" "
+        "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball ground\" resolution=\"Resolution/LocalBisection\" "
+        "response=\"Response/Impulse\" "
         "response.restitution=\"1\"/>";
     Scene with(scene + contact, "dt=\"1/60\""), without(scene, "dt=\"1/60\""), fine(scene + contact, "dt=\"1/3000\"");
     REQUIRE_MESSAGE(with.loaded(), with.error());

@@ -94,10 +94,7 @@ struct SampleMesh
 struct SampleSolver
 {
     Column<std::int64_t> substeps;
-    void describe(Schema& s)
-    {
-        s.param(substeps, "substeps", unit::one, "per step").or_else(1).at_least(1).at_most(100);
-    }
+    void describe(Schema& s) { s.param(substeps, "substeps", unit::one, "per step").or_else(1).at_least(1).at_most(100); }
 };
 
 struct SampleDetection
@@ -110,12 +107,8 @@ struct SampleDetection
     {
         s.role(between, "between", {Facet::Body}, "bodies that meet each other").at_least(1);
         s.role(against, "against", {Facet::Body}, "bodies that the others meet").optional();
-        s.role(resolution, "resolution", {Facet::Component}, "finds the time")
-            .family("Resolution/")
-            .default_type("Resolution/Bisection");
-        s.role(response, "response", {Facet::Component}, "pushes apart")
-            .family("Response/")
-            .default_type("Response/Impulse");
+        s.role(resolution, "resolution", {Facet::Component}, "finds the time").family("Resolution/").default_type("Resolution/Bisection");
+        s.role(response, "response", {Facet::Component}, "pushes apart").family("Response/").default_type("Response/Impulse");
         s.param(space, "space", unit::one, "broad phase").or_else("hash").one_of({"simple", "hash", "sweep"});
     }
 };
@@ -123,10 +116,7 @@ struct SampleDetection
 struct SampleResolution
 {
     Column<double> tolerance;
-    void describe(Schema& s)
-    {
-        s.param(tolerance, "tolerance", unit::metre, "overlap that is left").or_else(1e-9).positive();
-    }
+    void describe(Schema& s) { s.param(tolerance, "tolerance", unit::metre, "overlap that is left").or_else(1e-9).positive(); }
 };
 
 struct SampleResponse
@@ -179,8 +169,7 @@ struct SampleScript
 
 inline void register_sample_objects(Registrar& r)
 {
-    const auto restore = [](auto&& type)
-    { type.host_command(Phase::Restore, "State/Restore", "back to the saved state"); };
+    const auto restore = [](auto&& type) { type.host_command(Phase::Restore, "State/Restore", "back to the saved state"); };
     const auto shape = [](auto&& type)
     {
         type.facet(Facet::Shape)
@@ -210,11 +199,8 @@ inline void register_sample_interactions(Registrar& r)
         r.component<SampleResolution>(name, "finds the time of an event")
             .host_command(Phase::Locate, "Resolution/Locate", "next time to try");
     for (const char* name : {"Response/Impulse", "Response/None"})
-        r.component<SampleResponse>(name, "answers contacts")
-            .host_command(Phase::Respond, "Response/Respond", "applies impulses");
-    r.component<SampleField>("Field/Gravity", "weight")
-        .family("Field/Gravity")
-        .host_command(Phase::Force, "Field/Apply", "adds m g");
+        r.component<SampleResponse>(name, "answers contacts").host_command(Phase::Respond, "Response/Respond", "applies impulses");
+    r.component<SampleField>("Field/Gravity", "weight").family("Field/Gravity").host_command(Phase::Force, "Field/Apply", "adds m g");
     for (const char* name : {"Constraint/AngularVelocity/Graph", "Constraint/AngularVelocity/Impulse"})
         r.component<SampleGear>(name, "keeps a ratio of speeds")
             .host_command(Phase::Connect, "Constraint/Connect", "enters the graph")
@@ -238,10 +224,8 @@ public:
 
     Result<const model::ComponentType*> require(const std::string& name) override
     {
-        if (!added_)
-            return added_.errors();
-        if (const model::ComponentType* type = registry_.find(name))
-            return type;
+        if (!added_) return added_.errors();
+        if (const model::ComponentType* type = registry_.find(name)) return type;
         return reason("unknown type '" + name + "'" + model::did_you_mean(name, names()));
     }
     std::vector<std::string> names() const override

@@ -3,57 +3,43 @@
 namespace plab::constraints
 {
 
-RoleBuilder CouplingRows::describe_driver(Schema& s)
-{
-    return s.role(driver, "driver", {Facet::Shaft}, "turns the other");
-}
+RoleBuilder CouplingRows::describe_driver(Schema& s) { return s.role(driver, "driver", {Facet::Shaft}, "turns the other"); }
 
-RoleBuilder CouplingRows::describe_driven(Schema& s)
-{
-    return s.role(driven, "driven", {Facet::Shaft}, "is turned");
-}
+RoleBuilder CouplingRows::describe_driven(Schema& s) { return s.role(driven, "driven", {Facet::Shaft}, "is turned"); }
 
 void CouplingRows::describe_fields(Schema& s)
 {
     s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
-    s.param(driver_teeth, "driver_teeth", unit::one,
-            "tooth count of the driver; with driven_teeth, instead of velocity_factor")
+    s.param(driver_teeth, "driver_teeth", unit::one, "tooth count of the driver; with driven_teeth, instead of velocity_factor")
         .or_else(0)
         .not_negative();
     s.param(driven_teeth, "driven_teeth", unit::one, "tooth count of the driven").or_else(0).not_negative();
     s.param(mesh, "mesh", unit::one, "of teeth: external reverses, internal and belt keep the sense of rotation")
         .or_else("external")
         .one_of({"external", "internal", "belt"});
-    s.state(phase_offset, "phase_offset", unit::radian,
-            "angle_driven - factor * angle_driver when the coupling engaged");
+    s.state(phase_offset, "phase_offset", unit::radian, "angle_driven - factor * angle_driver when the coupling engaged");
     s.state(phase_factor, "phase_factor", unit::one, "factor for which phase_offset was taken; 0: not engaged yet");
-    s.output(velocity_error, "velocity_error", unit::radian_per_second, "speed_driven - factor * speed_driver")
-        .reported_as_error();
-    s.output(phase_error, "phase_error", unit::radian, "angle_driven - factor * angle_driver since it engaged")
-        .reported_as_error();
+    s.output(velocity_error, "velocity_error", unit::radian_per_second, "speed_driven - factor * speed_driver").reported_as_error();
+    s.output(phase_error, "phase_error", unit::radian, "angle_driven - factor * angle_driver since it engaged").reported_as_error();
     s.output(torque, "torque", unit::newton_metre, "on driven about its axle; 0 for a redundant coupling");
     s.scratch(ratio, "ratio", "the factor as a rational");
 }
 
 Result<void> prepare_ratio(CouplingRows& rows, Row row)
 {
-    const auto ratio =
-        ratio_of({rows.velocity_factor[row], rows.driver_teeth[row], rows.driven_teeth[row], rows.mesh[row]});
-    if (!ratio)
-        return ratio.errors();
+    const auto ratio = ratio_of({rows.velocity_factor[row], rows.driver_teeth[row], rows.driven_teeth[row], rows.mesh[row]});
+    if (!ratio) return ratio.errors();
     rows.ratio[row] = *ratio;
     return {};
 }
 
-void measure_coupling(CouplingRows& rows, Row row, const Shafts& shafts, const ShaftReactions& reactions,
-                      std::uint32_t component)
+void measure_coupling(CouplingRows& rows, Row row, const Shafts& shafts, const ShaftReactions& reactions, std::uint32_t component)
 {
     const double f = rows.ratio[row].value;
     const std::uint32_t a = rows.driver[row].index;
     const std::uint32_t b = rows.driven[row].index;
     const double phase = shafts.angle[b] - f * shafts.angle[a];
-    if (rows.phase_factor[row] != f)
-        rows.phase_offset[row] = phase, rows.phase_factor[row] = f;
+    if (rows.phase_factor[row] != f) rows.phase_offset[row] = phase, rows.phase_factor[row] = f;
     rows.phase_error[row] = phase - rows.phase_offset[row];
     rows.velocity_error[row] = shafts.speed[b] - f * shafts.speed[a];
     rows.torque[row] = reactions.torque(component).value_or(0.0);

@@ -33,8 +33,7 @@ protected:
 Result<void> prepare_ratio(CouplingRows& rows, Row row);
 /// Errors and torque of a finished step. The phase counts from the end of the first step, and anew when the factor
 /// changed.
-void measure_coupling(CouplingRows& rows, Row row, const Shafts& shafts, const ShaftReactions& reactions,
-                      std::uint32_t component);
+void measure_coupling(CouplingRows& rows, Row row, const Shafts& shafts, const ShaftReactions& reactions, std::uint32_t component);
 
 /// Phase::Prepare.
 template <class Table>

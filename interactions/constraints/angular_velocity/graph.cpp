@@ -12,8 +12,7 @@ void GraphRows::describe(Schema& s)
 
 void connect(const StepContext& step, Rows which, const GraphRows& rows, RatioGraph& graph)
 {
-    for (const Row row : which)
-        graph.add(step.component_of_row[row], rows.driver[row], rows.driven[row], rows.ratio[row]);
+    for (const Row row : which) graph.add(step.component_of_row[row], rows.driver[row], rows.driven[row], rows.ratio[row]);
 }
 
 }  // namespace plab::constraints

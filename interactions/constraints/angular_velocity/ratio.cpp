@@ -22,8 +22,7 @@ Ratio simple_ratio(double factor)
     Ratio r;
     r.value = factor;
     const double size = std::fabs(factor);
-    if (!(size >= 0.5 / static_cast<double>(kLargestDenominator)) || size >= kLargestInteger)
-        return r;
+    if (!(size >= 0.5 / static_cast<double>(kLargestDenominator)) || size >= kLargestInteger) return r;
     int exponent = 0;
     const double mantissa = std::frexp(size, &exponent);
     Wide rest = static_cast<Wide>(static_cast<std::uint64_t>(std::ldexp(mantissa, 53)));
@@ -34,15 +33,12 @@ Ratio simple_ratio(double factor)
         const Wide quotient = rest / divisor;
         const Wide remainder = rest % divisor;
         rest = divisor, divisor = remainder;
-        if (q != 0 && quotient > kLargestDenominator)
-            break;  // the next q is beyond; keeps products in range
+        if (q != 0 && quotient > kLargestDenominator) break;  // the next q is beyond; keeps products in range
         const Wide p_next = quotient * p + p_before;
         const Wide q_next = quotient * q + q_before;
         p_before = p, p = p_next, q_before = q, q = q_next;
-        if (q > kLargestDenominator || static_cast<double>(p) > kLargestInteger)
-            break;
-        if (static_cast<double>(p) / static_cast<double>(q) != size)
-            continue;
+        if (q > kLargestDenominator || static_cast<double>(p) > kLargestInteger) break;
+        if (static_cast<double>(p) / static_cast<double>(q) != size) continue;
         r.exact = true;
         r.numerator = factor < 0 ? -static_cast<std::int64_t>(p) : static_cast<std::int64_t>(p);
         r.denominator = static_cast<std::int64_t>(q);
@@ -66,20 +62,16 @@ Result<Ratio> ratio_of(const FactorGiven& given)
 {
     const bool driver = given.driver_teeth != 0;
     const bool driven = given.driven_teeth != 0;
-    if (given.driver_teeth < 0)
-        return reason("driver_teeth must be positive, not " + std::to_string(given.driver_teeth));
-    if (given.driven_teeth < 0)
-        return reason("driven_teeth must be positive, not " + std::to_string(given.driven_teeth));
+    if (given.driver_teeth < 0) return reason("driver_teeth must be positive, not " + std::to_string(given.driver_teeth));
+    if (given.driven_teeth < 0) return reason("driven_teeth must be positive, not " + std::to_string(given.driven_teeth));
     if (driver != driven)
         return reason(std::string("driver_teeth and driven_teeth must be given together and positive; ") +
                       (driver ? "driven_teeth" : "driver_teeth") + " is missing or 0");
     if (driver && given.velocity_factor != 1)
         return reason("the ratio is given twice; give either velocity_factor or driver_teeth and driven_teeth");
-    if (driver)
-        return tooth_ratio(given.driver_teeth, given.driven_teeth, given.mesh == "external");
+    if (driver) return tooth_ratio(given.driver_teeth, given.driven_teeth, given.mesh == "external");
     if (given.mesh != "external")
-        return reason("mesh '" + given.mesh +
-                      "' needs driver_teeth and driven_teeth; a velocity_factor has its own sign");
+        return reason("mesh '" + given.mesh + "' needs driver_teeth and driven_teeth; a velocity_factor has its own sign");
     if (given.velocity_factor == 0 || !std::isfinite(given.velocity_factor))
         return reason("velocity_factor must be finite and other than 0");
     return simple_ratio(given.velocity_factor);

@@ -15,8 +15,7 @@ constexpr std::size_t kStep = 16, kSmall = 512, kSmallClasses = kSmall / kStep;
 /// Steps of 16 bytes to 512, then four sizes per octave.
 constexpr std::size_t class_of(std::size_t size)
 {
-    if (size <= kSmall)
-        return (size + kStep - 1) / kStep;
+    if (size <= kSmall) return (size + kStep - 1) / kStep;
     const auto octave = static_cast<std::size_t>(std::bit_width(size - 1)) - 1;
     const std::size_t quarter = (size - 1) >> (octave - 2);  // 4..7
     return kSmallClasses + (octave - 9) * 4 + (quarter - 4) + 1;
@@ -24,8 +23,7 @@ constexpr std::size_t class_of(std::size_t size)
 
 constexpr std::size_t size_of(std::size_t piece_class)
 {
-    if (piece_class <= kSmallClasses)
-        return piece_class * kStep;
+    if (piece_class <= kSmallClasses) return piece_class * kStep;
     const std::size_t k = piece_class - kSmallClasses - 1;
     return (k % 4 + 5) << (9 + k / 4 - 2);
 }
@@ -35,9 +33,7 @@ static_assert(size_of(class_of(512)) == 512 && size_of(class_of(513)) == 640 && 
 
 }  // namespace
 
-Arena::Arena(std::size_t capacity) : block_(std::make_unique_for_overwrite<std::byte[]>(capacity)), capacity_(capacity)
-{
-}
+Arena::Arena(std::size_t capacity) : block_(std::make_unique_for_overwrite<std::byte[]>(capacity)), capacity_(capacity) {}
 
 void Arena::clear()
 {
@@ -47,8 +43,7 @@ void Arena::clear()
 
 void* Arena::allocate(std::size_t size)
 {
-    if (size > capacity_)
-        return nullptr;
+    if (size > capacity_) return nullptr;
     const std::size_t c = class_of(size), rounded = size_of(c);
     assert(c < kClasses);
     void* piece = free_[c];
@@ -61,8 +56,7 @@ void* Arena::allocate(std::size_t size)
     }
     else
         piece = take_larger(c);
-    if (piece)
-        used_ += rounded;
+    if (piece) used_ += rounded;
     return piece;
 }
 
@@ -70,16 +64,14 @@ void* Arena::take_larger(std::size_t wanted)
 {
     for (std::size_t c = wanted + 1; c < kClasses; ++c)
     {
-        if (!free_[c])
-            continue;
+        if (!free_[c]) continue;
         Piece* piece = free_[c];
         free_[c] = piece->next;
         std::byte* rest = reinterpret_cast<std::byte*>(piece) + size_of(wanted);
         for (std::size_t left = size_of(c) - size_of(wanted); left > 0;)
         {
             std::size_t part = class_of(left);
-            if (size_of(part) > left)
-                --part;
+            if (size_of(part) > left) --part;
             keep(rest, size_of(part));
             rest += size_of(part);
             left -= size_of(part);
@@ -97,8 +89,7 @@ void Arena::keep(void* piece, std::size_t size)
 
 void Arena::release(void* piece, std::size_t size)
 {
-    if (!piece)
-        return;
+    if (!piece) return;
     keep(piece, size);
     used_ -= size_of(class_of(size));
 }
@@ -106,8 +97,7 @@ void Arena::release(void* piece, std::size_t size)
 void* Arena::resize(void* piece, std::size_t old_size, std::size_t size)
 {
     const std::size_t from = class_of(old_size), to = class_of(size);
-    if (from == to)
-        return piece;
+    if (from == to) return piece;
     void* moved = allocate(size);
     if (moved)
     {
@@ -115,8 +105,7 @@ void* Arena::resize(void* piece, std::size_t old_size, std::size_t size)
         release(piece, old_size);
         return moved;
     }
-    if (to > from)
-        return nullptr;
+    if (to > from) return nullptr;
     used_ -= size_of(from) - size_of(to);  // stays where it is; the end of the piece is lost until clear()
     return piece;
 }

@@ -17,8 +17,7 @@ int protected_call(lua_State* lua)
     lua_pushboolean(lua, 1);
     lua_insert(lua, 1);
     const int status = lua_pcall(lua, lua_gettop(lua) - 2, LUA_MULTRET, 0);
-    if (status == LUA_OK)
-        return lua_gettop(lua);
+    if (status == LUA_OK) return lua_gettop(lua);
     rethrow_if_doomed(lua, status);
     charge(lua, kCatchCost);
     lua_pushboolean(lua, 0);
@@ -36,8 +35,7 @@ int protected_call_with_handler(lua_State* lua)
     lua_pushvalue(lua, 1);
     lua_rotate(lua, 3, 2);
     const int status = lua_pcall(lua, lua_gettop(lua) - 4, LUA_MULTRET, 0);
-    if (status == LUA_OK)
-        return lua_gettop(lua) - 2;
+    if (status == LUA_OK) return lua_gettop(lua) - 2;
     rethrow_if_doomed(lua, status);
     charge(lua, kCatchCost);
     lua_pushvalue(lua, 2);
@@ -64,10 +62,8 @@ int raise(lua_State* lua)
 int assert_true(lua_State* lua)
 {
     luaL_checkany(lua, 1);
-    if (lua_toboolean(lua, 1))
-        return lua_gettop(lua);
-    if (lua_isnoneornil(lua, 2))
-        return luaL_error(lua, "assertion failed");
+    if (lua_toboolean(lua, 1)) return lua_gettop(lua);
+    if (lua_isnoneornil(lua, 2)) return luaL_error(lua, "assertion failed");
     lua_settop(lua, 2);
     return lua_error(lua);
 }
@@ -76,12 +72,10 @@ int select_from(lua_State* lua)
 {
     const int count = lua_gettop(lua) - 1;
     charge(lua, 1 + count / 8);
-    if (lua_type(lua, 1) == LUA_TSTRING && std::string_view(lua_tostring(lua, 1)) == "#")
-        return lua_pushinteger(lua, count), 1;
+    if (lua_type(lua, 1) == LUA_TSTRING && std::string_view(lua_tostring(lua, 1)) == "#") return lua_pushinteger(lua, count), 1;
     const lua_Integer n = luaL_checkinteger(lua, 1);
     luaL_argcheck(lua, n != 0 && n >= -count, 1, "index out of range");
-    if (n < 0)
-        return static_cast<int>(-n);
+    if (n < 0) return static_cast<int>(-n);
     return n > count ? 0 : count - static_cast<int>(n) + 1;
 }
 
@@ -104,15 +98,12 @@ int to_text(lua_State* lua)
 int to_number(lua_State* lua)
 {
     luaL_checkany(lua, 1);
-    if (lua_gettop(lua) > 1)
-        return luaL_error(lua, "tonumber takes one value; there are no other bases");
-    if (lua_type(lua, 1) == LUA_TNUMBER)
-        return lua_settop(lua, 1), 1;
+    if (lua_gettop(lua) > 1) return luaL_error(lua, "tonumber takes one value; there are no other bases");
+    if (lua_type(lua, 1) == LUA_TNUMBER) return lua_settop(lua, 1), 1;
     if (lua_type(lua, 1) == LUA_TSTRING)
     {
         const std::string_view text = check_text(lua, 1);
-        if (lua_stringtonumber(lua, text.data()) == text.size() + 1)
-            return 1;
+        if (lua_stringtonumber(lua, text.data()) == text.size() + 1) return 1;
     }
     lua_pushnil(lua);
     return 1;
@@ -143,8 +134,7 @@ int next_in_order(lua_State* lua)
         lua_settop(lua, 0);
         lua_rawgeti(lua, lua_upvalueindex(2), at);
         lua_pushvalue(lua, -1);
-        if (lua_rawget(lua, lua_upvalueindex(1)) == LUA_TNIL)
-            continue;  // removed meanwhile
+        if (lua_rawget(lua, lua_upvalueindex(1)) == LUA_TNIL) continue;  // removed meanwhile
         lua_pushinteger(lua, at);
         lua_replace(lua, lua_upvalueindex(4));
         return 2;
@@ -159,8 +149,7 @@ int pairs_in_order(lua_State* lua)
     push_content(lua, 1);
     bool others = false;
     const int count = push_ordered_keys(lua, -1, others);
-    if (others)
-        return luaL_error(lua, "pairs has an order for keys that are numbers or texts only");
+    if (others) return luaL_error(lua, "pairs has an order for keys that are numbers or texts only");
     lua_pushinteger(lua, count);
     lua_pushinteger(lua, 0);
     lua_pushcclosure(lua, next_in_order, 4);
@@ -175,9 +164,6 @@ constexpr NativeFunction kFunctions[] = {{"pcall", protected_call}, {"xpcall", p
 
 }  // namespace
 
-void open_base(lua_State* lua)
-{
-    add_functions(lua, kFunctions);
-}
+void open_base(lua_State* lua) { add_functions(lua, kFunctions); }
 
 }  // namespace plab::scripts

@@ -16,8 +16,7 @@ const Call& effective_call(lua_State* lua, const char* what)
 {
     charge(lua, kEffectCost);
     const Call& call = running_call(lua, what);
-    if (call.entry != EntryPoint::Drive)
-        luaL_error(lua, "%s is for drive(step): force(t, state) must be pure", what);
+    if (call.entry != EntryPoint::Drive) luaL_error(lua, "%s is for drive(step): force(t, state) must be pure", what);
     return call;
 }
 
@@ -43,8 +42,7 @@ Value checked_value(lua_State* lua, int argument)
             break;
     }
     const Vec3* v = to_vector(lua, argument);
-    if (!v)
-        luaL_typeerror(lua, argument, "number, truth value, text or vec");
+    if (!v) luaL_typeerror(lua, argument, "number, truth value, text or vec");
     luaL_argcheck(lua, is_finite(*v), argument, "must be finite");
     return *v;
 }
@@ -53,19 +51,16 @@ int set_parameter(lua_State* lua)
 {
     const Call& call = effective_call(lua, "set");
     ParameterChange change{checked_string(lua, 1), checked_string(lua, 2), checked_value(lua, 3)};
-    if (!call.context->changes)
-        return luaL_error(lua, "set cannot be used: the host takes no changes in this call");
+    if (!call.context->changes) return luaL_error(lua, "set cannot be used: the host takes no changes in this call");
     call.context->changes->push_back(std::move(change));
     return 0;
 }
 
 bool is_event_kind(std::string_view kind)
 {
-    if (kind.empty() || kind.size() > 64)
-        return false;
+    if (kind.empty() || kind.size() > 64) return false;
     for (const char c : kind)
-        if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.' || c == '_'))
-            return false;
+        if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.' || c == '_')) return false;
     return true;
 }
 
@@ -91,13 +86,11 @@ int print(lua_State* lua)
 {
     charge(lua, kEffectCost);
     const Call& call = *session_of(lua).call;
-    if (call.entry == EntryPoint::Force)
-        return luaL_error(lua, "print is for drive(step): force(t, state) must be pure");
+    if (call.entry == EntryPoint::Force) return luaL_error(lua, "print is for drive(step): force(t, state) must be pure");
     Text line;
     for (int i = 1; i <= lua_gettop(lua) && line.fits(); ++i)
     {
-        if (i > 1)
-            line.append('\t');
+        if (i > 1) line.append('\t');
         append_shown(lua, i, line);
     }
     if (!line.fits() || !is_utf8(line.view()))
@@ -110,9 +103,6 @@ constexpr NativeFunction kFunctions[] = {{"set", set_parameter}, {"emit", emit_e
 
 }  // namespace
 
-void open_effects(lua_State* lua)
-{
-    add_functions(lua, kFunctions);
-}
+void open_effects(lua_State* lua) { add_functions(lua, kFunctions); }
 
 }  // namespace plab::scripts

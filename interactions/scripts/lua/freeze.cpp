@@ -22,14 +22,10 @@ struct Key
 /// Keys of one table differ, so this is a total order.
 bool precedes(const Key& a, const Key& b)
 {
-    if (a.text != b.text)
-        return b.text;
-    if (a.text)
-        return a.bytes < b.bytes;
-    if (a.integer && b.integer)
-        return a.whole < b.whole;
-    if (a.number != b.number)
-        return a.number < b.number;
+    if (a.text != b.text) return b.text;
+    if (a.text) return a.bytes < b.bytes;
+    if (a.integer && b.integer) return a.whole < b.whole;
+    if (a.number != b.number) return a.number < b.number;
     return a.integer && !b.integer;  // an integer beyond 2^53 and the float that it rounds to
 }
 
@@ -107,8 +103,7 @@ void copy_others(lua_State* lua, int table, int copy)
     for (lua_pushnil(lua); lua_next(lua, table) != 0; lua_pop(lua, 1))
     {
         const int type = lua_type(lua, -2);
-        if (type == LUA_TNUMBER || type == LUA_TSTRING)
-            continue;
+        if (type == LUA_TNUMBER || type == LUA_TSTRING) continue;
         lua_pushvalue(lua, -2);
         lua_pushvalue(lua, -2);
         lua_rawset(lua, copy);
@@ -149,8 +144,7 @@ int push_ordered_keys(lua_State* lua, int index, bool& others)
 
 bool is_frozen(lua_State* lua, int index)
 {
-    if (lua_type(lua, index) != LUA_TTABLE || !lua_getmetatable(lua, index))
-        return false;
+    if (lua_type(lua, index) != LUA_TTABLE || !lua_getmetatable(lua, index)) return false;
     lua_pop(lua, 1);
     return true;
 }
@@ -171,8 +165,7 @@ void push_content(lua_State* lua, int argument)
 void check_changeable(lua_State* lua, int argument)
 {
     luaL_checktype(lua, argument, LUA_TTABLE);
-    if (is_frozen(lua, argument))
-        refuse_change(lua);
+    if (is_frozen(lua, argument)) refuse_change(lua);
 }
 
 void freeze_table(lua_State* lua, int index)
@@ -184,8 +177,7 @@ void freeze_table(lua_State* lua, int index)
     lua_createtable(lua, static_cast<int>(lua_rawlen(lua, table)), 0);
     const int copy = lua_gettop(lua);
     copy_ordered(lua, table, keys, count, copy);
-    if (others)
-        copy_others(lua, table, copy);
+    if (others) copy_others(lua, table, copy);
     clear_table(lua, table);
 
     lua_createtable(lua, 0, 3);
@@ -222,14 +214,12 @@ void reach(Walk& walk, int index)
         luaL_error(lua, "what pairs returns cannot be kept: call pairs where the loop is");  // it counts
     const bool table = type == LUA_TTABLE && !is_frozen(lua, index);
     const bool function = type == LUA_TFUNCTION && !lua_iscfunction(lua, index);
-    if (!table && !function)
-        return;
+    if (!table && !function) return;
     const int value = lua_absindex(lua, index);
     lua_pushvalue(lua, value);
     const bool known = lua_rawget(lua, walk.seen) != LUA_TNIL;
     lua_pop(lua, 1);
-    if (known)
-        return;
+    if (known) return;
     lua_pushvalue(lua, value);
     lua_pushboolean(lua, 1);
     lua_rawset(lua, walk.seen);
@@ -271,8 +261,7 @@ void reach_locals(Walk& walk)
     for (int i = 1; lua_getupvalue(lua, function, i); ++i, lua_pop(lua, 1))
     {
         const void* cell = lua_upvalueid(lua, function, i);
-        if (std::find(walk.cells.begin(), walk.cells.end(), cell) != walk.cells.end())
-            continue;
+        if (std::find(walk.cells.begin(), walk.cells.end(), cell) != walk.cells.end()) continue;
         walk.cells.push_back(cell);
         reach(walk, -1);
         Watch w = describe(lua, -1);
@@ -285,8 +274,7 @@ void reach_locals(Walk& walk)
             lua_rawseti(lua, walk.pinned, ++walk.pinned_count);
         holds_any = true;
     }
-    if (!holds_any)
-        return;
+    if (!holds_any) return;
     lua_pushvalue(lua, function);
     lua_rawseti(lua, walk.functions, ++walk.function_count);
 }
@@ -330,8 +318,7 @@ const char* find_changed_local(lua_State* lua, const Session& session)
         const char* name = lua_getupvalue(lua, before.function, before.upvalue);
         const Watch now = describe(lua, -1);
         lua_pop(lua, 1);
-        if (now.type != before.type || now.integer != before.integer || now.bits != before.bits)
-            return name;
+        if (now.type != before.type || now.integer != before.integer || now.bits != before.bits) return name;
     }
     return nullptr;
 }

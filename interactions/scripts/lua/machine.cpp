@@ -19,38 +19,32 @@ void note_line(Session& session)
 {
     lua_Debug at;
     session.refused_at = -1;
-    if (!session.lua)
-        return;
+    if (!session.lua) return;
     for (int level = 0; lua_getstack(session.lua, level, &at); ++level)
     {
         lua_getinfo(session.lua, "l", &at);
         session.refused_at = at.currentline;
-        if (at.currentline > 0)
-            return;
+        if (at.currentline > 0) return;
     }
 }
 
 void end_soon(Session& session)
 {
-    if (session.lua)
-        lua_sethook(session.lua, count_hook, LUA_MASKCOUNT, 1);
+    if (session.lua) lua_sethook(session.lua, count_hook, LUA_MASKCOUNT, 1);
 }
 
 /// Lua's allocator. On a refusal Lua collects all garbage and asks once more, which a call cannot have done for ever.
 void* reallocate(void* user, void* piece, std::size_t old_size, std::size_t size)
 {
     auto& session = *static_cast<Session*>(user);
-    if (size == 0)
-        return session.arena.release(piece, old_size), nullptr;
+    if (size == 0) return session.arena.release(piece, old_size), nullptr;
     // For a new object, the old size is its type.
     constexpr std::size_t kTextHeader = 64;
     const bool long_text = !piece && old_size == LUA_TSTRING && size > kLongestText + kTextHeader;
     void* result = nullptr;
-    if (!long_text)
-        result = piece ? session.arena.resize(piece, old_size, size) : session.arena.allocate(size);
+    if (!long_text) result = piece ? session.arena.resize(piece, old_size, size) : session.arena.allocate(size);
     const std::size_t moved = result ? (piece && size < old_size ? 0 : size) : session.arena.used();
-    if (!session.meter.move(moved))
-        end_soon(session);
+    if (!session.meter.move(moved)) end_soon(session);
     if (!result)
     {
         session.text_refused = long_text;
@@ -87,8 +81,7 @@ void push_entry_point(lua_State* lua, int globals, const char* name)
 {
     lua_pushstring(lua, name);
     const int type = lua_rawget(lua, globals);
-    if (type != LUA_TFUNCTION && type != LUA_TNIL)
-        luaL_error(lua, "%s must be a function, not a %s", name, type_name(lua, -1));
+    if (type != LUA_TFUNCTION && type != LUA_TNIL) luaL_error(lua, "%s must be a function, not a %s", name, type_name(lua, -1));
 }
 
 /// Builds the world of the script, runs its code, and leaves what StackSlot lists.
@@ -109,8 +102,7 @@ int build(lua_State* lua)
     open_participants(lua);
     bind_participants(lua, *session.call);
 
-    if (luaL_loadbufferx(lua, session.code.data(), session.code.size(), kChunkName, "t") != LUA_OK)
-        return lua_error(lua);
+    if (luaL_loadbufferx(lua, session.code.data(), session.code.size(), kChunkName, "t") != LUA_OK) return lua_error(lua);
     push_environment(lua, globals);
     lua_setupvalue(lua, -2, 1);
     lua_call(lua, 0, 0);
@@ -120,8 +112,7 @@ int build(lua_State* lua)
     luaL_checkstack(lua, count + 16, "too many functions share locals");
     push_entry_point(lua, globals, "drive");
     push_entry_point(lua, globals, "force");
-    if (lua_isnil(lua, -1) && lua_isnil(lua, -2))
-        return luaL_error(lua, "neither drive(step) nor force(t, state) is defined");
+    if (lua_isnil(lua, -1) && lua_isnil(lua, -2)) return luaL_error(lua, "neither drive(step) nor force(t, state) is defined");
     lua_pushliteral(lua, "state");
     lua_rawget(lua, globals);
     lua_rawgeti(lua, LUA_REGISTRYINDEX, kStep);
@@ -173,24 +164,18 @@ Report explain(Session& session, int status)
 {
     lua_State* lua = session.lua;
     const auto at = [&]
-    {
-        return session.refused_at > 0 ? std::string(kChunkName + 1) + ":" + std::to_string(session.refused_at) + ": "
-                                      : std::string();
-    };
-    const std::string said = lua_type(lua, -1) == LUA_TSTRING
-                                 ? std::string(lua_tostring(lua, -1), lua_rawlen(lua, -1))
-                                 : "the error is a " + std::string(type_name(lua, -1)) + ", not a text";
+    { return session.refused_at > 0 ? std::string(kChunkName + 1) + ":" + std::to_string(session.refused_at) + ": " : std::string(); };
+    const std::string said = lua_type(lua, -1) == LUA_TSTRING ? std::string(lua_tostring(lua, -1), lua_rawlen(lua, -1))
+                                                              : "the error is a " + std::string(type_name(lua, -1)) + ", not a text";
     using Doom = Meter::Doom;
-    if (status == LUA_ERRMEM)
-        session.meter.doom(session.text_refused ? Doom::Text : Doom::Memory);
+    if (status == LUA_ERRMEM) session.meter.doom(session.text_refused ? Doom::Text : Doom::Memory);
     switch (session.meter.why())
     {
         case Doom::Instructions:
         case Doom::Traffic:
             return {"script.over_budget", said};
         case Doom::Memory:
-            return {"script.out_of_memory",
-                    at() + "more than memory_limit = " + std::to_string(session.arena.capacity()) + " bytes"};
+            return {"script.out_of_memory", at() + "more than memory_limit = " + std::to_string(session.arena.capacity()) + " bytes"};
         case Doom::Text:
             return {"script.out_of_memory", at() + "a text of more than " + std::to_string(kLongestText) + " bytes"};
         case Doom::None:
@@ -214,8 +199,7 @@ Result<void> Machine::load(const std::string& code, const Call& call)
     s.meter.start(s.limits.instructions);
     failure_.reset();
     lua_State* lua = lua_newstate(reallocate, &s);
-    if (!lua)
-        return reason("memory_limit = " + std::to_string(s.arena.capacity()) + " bytes is too little for any script");
+    if (!lua) return reason("memory_limit = " + std::to_string(s.arena.capacity()) + " bytes is too little for any script");
     s.lua = lua;
     *static_cast<Session**>(lua_getextraspace(lua)) = &s;
 
@@ -224,21 +208,14 @@ Result<void> Machine::load(const std::string& code, const Call& call)
     lua_pushcfunction(lua, build);
     const int status = lua_pcall(lua, 0, LUA_MULTRET, 0);
     s.code = {};
-    if (status == LUA_OK)
-        return {};
+    if (status == LUA_OK) return {};
     const Report why = explain(s, status);
     fail(call, why.kind, why.message);
     return reason(as_load_error(why.message));
 }
 
-bool Machine::has_drive() const
-{
-    return !failure_ && !lua_isnil(session_->lua, kDriveSlot);
-}
-bool Machine::has_force() const
-{
-    return !failure_ && !lua_isnil(session_->lua, kForceSlot);
-}
+bool Machine::has_drive() const { return !failure_ && !lua_isnil(session_->lua, kDriveSlot); }
+bool Machine::has_force() const { return !failure_ && !lua_isnil(session_->lua, kForceSlot); }
 
 bool Machine::drive(const Call& call)
 {
@@ -254,8 +231,7 @@ bool Machine::drive(const Call& call)
         lua_pushvalue(s.lua, kStepSlot);
         done = run(kDriveSlot, 1, call);
     }
-    if (!done)
-        undo(call, changes, random_state);
+    if (!done) undo(call, changes, random_state);
     return done;
 }
 
@@ -263,18 +239,14 @@ bool Machine::force(const Call& call)
 {
     Session& s = *session_;
     const Running running(s, call, s.limits.instructions);
-    if (!bind(call))
-        return false;
+    if (!bind(call)) return false;
     lua_pushvalue(s.lua, kForceSlot);
     lua_pushnumber(s.lua, call.context->time);
     lua_pushvalue(s.lua, kStateSlot);
     return run(kForceSlot, 2, call);
 }
 
-std::span<const Action> Machine::actions() const
-{
-    return session_->actions;
-}
+std::span<const Action> Machine::actions() const { return session_->actions; }
 
 /// The function and its arguments are on the stack.
 bool Machine::run(int function, int arguments, const Call& call)
@@ -290,24 +262,20 @@ bool Machine::run(int function, int arguments, const Call& call)
         return false;
     }
     const char* changed = find_changed_local(s.lua, s);
-    if (!changed)
-        return true;
+    if (!changed) return true;
     const char* name = function == kDriveSlot ? "drive" : "force";
     fail(call, "script.error",
-         std::string("code: local '") + changed + "' was changed by " + name +
-             ": values that live across steps belong in `state`");
+         std::string("code: local '") + changed + "' was changed by " + name + ": values that live across steps belong in `state`");
     return false;
 }
 
 bool Machine::bind(const Call& call)
 {
     Session& s = *session_;
-    if (s.driver == call.driver && s.driven == call.driven && s.between == *call.between)
-        return true;
+    if (s.driver == call.driver && s.driven == call.driven && s.between == *call.between) return true;
     lua_pushcfunction(s.lua, bind_again);
     const int status = lua_pcall(s.lua, 0, 0, 0);
-    if (status == LUA_OK)
-        return true;
+    if (status == LUA_OK) return true;
     const Report why = explain(s, status);
     lua_pop(s.lua, 1);
     fail(call, why.kind, why.message);
@@ -319,8 +287,7 @@ void Machine::undo(const Call& call, std::size_t changes, std::int64_t random_st
     *call.writable_state = state_before_;
     *call.random_state = random_state;
     if (call.context->changes)
-        call.context->changes->erase(call.context->changes->begin() + static_cast<std::ptrdiff_t>(changes),
-                                     call.context->changes->end());
+        call.context->changes->erase(call.context->changes->begin() + static_cast<std::ptrdiff_t>(changes), call.context->changes->end());
 }
 
 void Machine::fail(const Call& call, std::string kind, std::string message)
@@ -331,13 +298,7 @@ void Machine::fail(const Call& call, std::string kind, std::string message)
     failure.tick = call.context->tick, failure.time = call.context->time;
 }
 
-std::int64_t Machine::take_instructions()
-{
-    return std::exchange(most_instructions_, 0);
-}
-std::size_t Machine::memory_used() const
-{
-    return session_->arena.used();
-}
+std::int64_t Machine::take_instructions() { return std::exchange(most_instructions_, 0); }
+std::size_t Machine::memory_used() const { return session_->arena.used(); }
 
 }  // namespace plab::scripts

@@ -82,20 +82,13 @@ int extreme(lua_State* lua, bool largest)
     for (int i = 2; i <= count; ++i)
     {
         luaL_checknumber(lua, i);
-        if (largest ? lua_compare(lua, best, i, LUA_OPLT) : lua_compare(lua, i, best, LUA_OPLT))
-            best = i;
+        if (largest ? lua_compare(lua, best, i, LUA_OPLT) : lua_compare(lua, i, best, LUA_OPLT)) best = i;
     }
     lua_pushvalue(lua, best);
     return 1;
 }
-int smallest(lua_State* lua)
-{
-    return extreme(lua, false);
-}
-int largest(lua_State* lua)
-{
-    return extreme(lua, true);
-}
+int smallest(lua_State* lua) { return extreme(lua, false); }
+int largest(lua_State* lua) { return extreme(lua, true); }
 
 int to_integer(lua_State* lua)
 {
@@ -121,8 +114,7 @@ int number_type(lua_State* lua)
 /// The generator's state; a stream of its own per seed and component where the scene gave none.
 std::uint64_t random_state(const Call& call)
 {
-    if (*call.random_state != 0)
-        return static_cast<std::uint64_t>(*call.random_state);
+    if (*call.random_state != 0) return static_cast<std::uint64_t>(*call.random_state);
     const auto owners = call.context->component_of_row;
     const std::uint32_t owner = call.row < owners.size() ? owners[call.row] : kNoIndex;
     char name[sizeof owner];
@@ -135,12 +127,10 @@ int random_number(lua_State* lua)
 {
     charge(lua, 1);
     const Call& call = running_call(lua, "math.random");
-    if (!call.random_state)
-        return luaL_error(lua, "math.random is for drive(step): force(t, state) must be pure");
+    if (!call.random_state) return luaL_error(lua, "math.random is for drive(step): force(t, state) must be pure");
     const int arguments = lua_gettop(lua);
     const lua_Integer low = arguments > 1 ? luaL_checkinteger(lua, 1) : 1;
-    const lua_Integer high =
-        arguments > 1 ? luaL_checkinteger(lua, 2) : (arguments == 1 ? luaL_checkinteger(lua, 1) : 1);
+    const lua_Integer high = arguments > 1 ? luaL_checkinteger(lua, 2) : (arguments == 1 ? luaL_checkinteger(lua, 1) : 1);
     luaL_argcheck(lua, low <= high, arguments > 1 ? 2 : 1, "the interval is empty");
     const lua_Unsigned span = static_cast<lua_Unsigned>(high) - static_cast<lua_Unsigned>(low);
     luaL_argcheck(lua, span<(1ull << 53), arguments> 1 ? 2 : 1, "the interval has more than 2^53 numbers");
@@ -155,12 +145,12 @@ int random_number(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {
-    {"abs", absolute},        {"sqrt", apply<std::sqrt>}, {"sin", apply<std::sin>},        {"cos", apply<std::cos>},
-    {"tan", apply<std::tan>}, {"asin", apply<std::asin>}, {"acos", apply<std::acos>},      {"atan", arc_tangent},
-    {"exp", apply<std::exp>}, {"log", logarithm},         {"floor", round_down},           {"ceil", round_up},
-    {"min", smallest},        {"max", largest},           {"fmod", remainder_of_division}, {"tointeger", to_integer},
-    {"type", number_type},    {"random", random_number}};
+constexpr NativeFunction kFunctions[] = {{"abs", absolute},          {"sqrt", apply<std::sqrt>}, {"sin", apply<std::sin>},
+                                         {"cos", apply<std::cos>},   {"tan", apply<std::tan>},   {"asin", apply<std::asin>},
+                                         {"acos", apply<std::acos>}, {"atan", arc_tangent},      {"exp", apply<std::exp>},
+                                         {"log", logarithm},         {"floor", round_down},      {"ceil", round_up},
+                                         {"min", smallest},          {"max", largest},           {"fmod", remainder_of_division},
+                                         {"tointeger", to_integer},  {"type", number_type},      {"random", random_number}};
 
 }  // namespace
 

@@ -42,22 +42,19 @@ public:
     bool spend(std::int64_t instructions)
     {
         used_ += std::min(instructions, budget_ + 1);
-        if (used_ >= budget_)
-            doom(Doom::Instructions);
+        if (used_ >= budget_) doom(Doom::Instructions);
         return !doomed();
     }
     /// False: the call moves too much memory.
     bool move(std::size_t bytes)
     {
         traffic_ += bytes;
-        if (traffic_ > static_cast<std::uint64_t>(budget_) * kBytesPerInstruction)
-            doom(Doom::Traffic);
+        if (traffic_ > static_cast<std::uint64_t>(budget_) * kBytesPerInstruction) doom(Doom::Traffic);
         return !doomed();
     }
     void doom(Doom why)
     {
-        if (doom_ == Doom::None)
-            doom_ = why;
+        if (doom_ == Doom::None) doom_ = why;
     }
     bool doomed() const { return doom_ != Doom::None; }
     Doom why() const { return doom_; }

@@ -90,8 +90,7 @@ public:
     void append(std::string_view part)
     {
         wanted_ += part.size();
-        if (wanted_ <= kLongestText)
-            part.copy(bytes_ + wanted_ - part.size(), part.size());
+        if (wanted_ <= kLongestText) part.copy(bytes_ + wanted_ - part.size(), part.size());
     }
     void append(char c) { append(std::string_view(&c, 1)); }
     bool fits() const { return wanted_ <= kLongestText; }

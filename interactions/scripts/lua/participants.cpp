@@ -38,34 +38,25 @@ const Call& readable(lua_State* lua, const ParticipantObject& p)
 {
     const Call& call = running_call(lua, "participants");
     const std::size_t size = p.ref.facet == Facet::Body ? call.bodies->size() : call.shafts->size();
-    if (p.ref.index >= size)
-        luaL_error(lua, "%s has no participant", RoleName(p.place).text);
+    if (p.ref.index >= size) luaL_error(lua, "%s has no participant", RoleName(p.place).text);
     return call;
 }
 
 int push_shaft_field(lua_State* lua, const Shafts& shafts, std::uint32_t i, std::string_view name)
 {
-    if (name == "angle")
-        return lua_pushnumber(lua, shafts.angle[i]), 1;
-    if (name == "speed")
-        return lua_pushnumber(lua, shafts.speed[i]), 1;
-    if (name == "inertia")
-        return lua_pushnumber(lua, shafts.inertia[i]), 1;
+    if (name == "angle") return lua_pushnumber(lua, shafts.angle[i]), 1;
+    if (name == "speed") return lua_pushnumber(lua, shafts.speed[i]), 1;
+    if (name == "inertia") return lua_pushnumber(lua, shafts.inertia[i]), 1;
     return 0;
 }
 
 int push_body_field(lua_State* lua, const Bodies& bodies, std::uint32_t i, std::string_view name)
 {
-    if (name == "position")
-        return push_vector(lua, bodies.position[i]), 1;
-    if (name == "velocity")
-        return push_vector(lua, bodies.velocity[i]), 1;
-    if (name == "angular_velocity")
-        return push_vector(lua, bodies.angular_velocity[i]), 1;
-    if (name == "orientation")
-        return push_rotation(lua, bodies.orientation[i]), 1;
-    if (name == "mass")
-        return lua_pushnumber(lua, bodies.mass[i]), 1;
+    if (name == "position") return push_vector(lua, bodies.position[i]), 1;
+    if (name == "velocity") return push_vector(lua, bodies.velocity[i]), 1;
+    if (name == "angular_velocity") return push_vector(lua, bodies.angular_velocity[i]), 1;
+    if (name == "orientation") return push_rotation(lua, bodies.orientation[i]), 1;
+    if (name == "mass") return lua_pushnumber(lua, bodies.mass[i]), 1;
     return 0;
 }
 
@@ -85,14 +76,12 @@ int participant_index(lua_State* lua)
                 return 1;
         }
         lua_pushvalue(lua, 2);
-        if (lua_rawget(lua, lua_upvalueindex(1)) != LUA_TNIL)
-            return 1;
+        if (lua_rawget(lua, lua_upvalueindex(1)) != LUA_TNIL) return 1;
     }
     return luaL_error(lua,
                       "%s has no '%s'; a shaft has angle, speed, inertia, a body has position, velocity, "
                       "angular_velocity, orientation, mass",
-                      RoleName(p.place).text,
-                      lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
+                      RoleName(p.place).text, lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
 }
 
 int refuse_assignment(lua_State* lua)
@@ -104,29 +93,24 @@ int refuse_assignment(lua_State* lua)
 const ParticipantObject& check_target(lua_State* lua)
 {
     const auto* p = to_object<ParticipantObject>(lua, 1, Tag::Participant);
-    if (!p)
-        luaL_typeerror(lua, 1, "participant");
+    if (!p) luaL_typeerror(lua, 1, "participant");
     const Call& call = readable(lua, *p);
-    if (call.entry != EntryPoint::Force)
-        luaL_error(lua, "forces are added in force(t, state), not in drive");
-    if (p->place == kDriverPlace)
-        luaL_error(lua, "driver is only read: forces are added to driven and between");
+    if (call.entry != EntryPoint::Force) luaL_error(lua, "forces are added in force(t, state), not in drive");
+    if (p->place == kDriverPlace) luaL_error(lua, "driver is only read: forces are added to driven and between");
     return *p;
 }
 
 const ParticipantObject& check_body_target(lua_State* lua)
 {
     const ParticipantObject& p = check_target(lua);
-    if (p.ref.facet != Facet::Body)
-        luaL_error(lua, "%s is a shaft: it takes add_torque(number)", RoleName(p.place).text);
+    if (p.ref.facet != Facet::Body) luaL_error(lua, "%s is a shaft: it takes add_torque(number)", RoleName(p.place).text);
     return p;
 }
 
 const Vec3& check_finite(lua_State* lua, const ParticipantObject& p, int argument, const char* what)
 {
     const Vec3& v = check_vector(lua, argument);
-    if (!is_finite(v))
-        luaL_error(lua, "%s on %s is not finite", what, RoleName(p.place).text);
+    if (!is_finite(v)) luaL_error(lua, "%s on %s is not finite", what, RoleName(p.place).text);
     return v;
 }
 
@@ -155,16 +139,13 @@ int add_torque(lua_State* lua)
 {
     charge(lua, 1);
     const ParticipantObject& p = check_target(lua);
-    if (p.ref.facet == Facet::Body)
-        return act(lua, {Action::Kind::Torque, p.ref, check_finite(lua, p, 2, "torque"), {}});
+    if (p.ref.facet == Facet::Body) return act(lua, {Action::Kind::Torque, p.ref, check_finite(lua, p, 2, "torque"), {}});
     const double torque = luaL_checknumber(lua, 2);
-    if (!std::isfinite(torque))
-        return luaL_error(lua, "torque on %s is not finite", RoleName(p.place).text);
+    if (!std::isfinite(torque)) return luaL_error(lua, "torque on %s is not finite", RoleName(p.place).text);
     return act(lua, {Action::Kind::ShaftTorque, p.ref, {torque, 0, 0}, {}});
 }
 
-constexpr NativeFunction kMethods[] = {
-    {"add_force", add_force}, {"add_force_at", add_force_at}, {"add_torque", add_torque}};
+constexpr NativeFunction kMethods[] = {{"add_force", add_force}, {"add_force_at", add_force_at}, {"add_torque", add_torque}};
 
 /// The global `name` is the object in `slot`, or nil without participant.
 void bind_one(lua_State* lua, int slot, const char* name, Ref ref)

@@ -17,10 +17,7 @@ const Entries& entries_of(lua_State* lua, const Object& window)
     return window.tag == Tag::State ? *running_call(lua, "state").state : *call.parameters;
 }
 
-const char* name_of(const Object& window)
-{
-    return window.tag == Tag::State ? "state" : "parameters";
-}
+const char* name_of(const Object& window) { return window.tag == Tag::State ? "state" : "parameters"; }
 
 int refuse_name(lua_State* lua, const Object& window, const Entries& entries)
 {
@@ -33,13 +30,11 @@ int refuse_name(lua_State* lua, const Object& window, const Entries& entries)
 
 const Entry* find_entry(lua_State* lua, const Entries& entries)
 {
-    if (lua_type(lua, 2) != LUA_TSTRING)
-        return nullptr;
+    if (lua_type(lua, 2) != LUA_TSTRING) return nullptr;
     std::size_t n = 0;
     const char* s = lua_tolstring(lua, 2, &n);
     for (const Entry& e : entries)
-        if (e.name == std::string_view(s, n))
-            return &e;
+        if (e.name == std::string_view(s, n)) return &e;
     return nullptr;
 }
 
@@ -48,8 +43,7 @@ int entry_get(lua_State* lua)
     const auto& window = *static_cast<Object*>(lua_touserdata(lua, 1));
     const Entries& entries = entries_of(lua, window);
     const Entry* e = find_entry(lua, entries);
-    if (!e)
-        return refuse_name(lua, window, entries);
+    if (!e) return refuse_name(lua, window, entries);
     if (const auto* number = std::get_if<double>(&e->value))
         lua_pushnumber(lua, *number);
     else if (const auto* truth = std::get_if<bool>(&e->value))
@@ -62,38 +56,32 @@ int entry_get(lua_State* lua)
 int refuse_type(lua_State* lua, const Entry& e)
 {
     constexpr const char* kTypes[] = {"truth value", "number", "text"};
-    return luaL_error(lua, "state.%s is a %s, and stays one: it cannot be a %s", e.name.c_str(),
-                      kTypes[e.value.index()], type_name(lua, 3));
+    return luaL_error(lua, "state.%s is a %s, and stays one: it cannot be a %s", e.name.c_str(), kTypes[e.value.index()],
+                      type_name(lua, 3));
 }
 
 int entry_set(lua_State* lua)
 {
     const auto& window = *static_cast<Object*>(lua_touserdata(lua, 1));
-    if (window.tag == Tag::Parameters)
-        return luaL_error(lua, "parameters are read-only in the script: a request sets them");
+    if (window.tag == Tag::Parameters) return luaL_error(lua, "parameters are read-only in the script: a request sets them");
     const Call& call = running_call(lua, "state");
-    if (!call.writable_state)
-        return luaL_error(lua, "state is read-only in force(t, state): change it in drive(step)");
+    if (!call.writable_state) return luaL_error(lua, "state is read-only in force(t, state): change it in drive(step)");
     const auto* found = find_entry(lua, *call.writable_state);
-    if (!found)
-        return refuse_name(lua, window, *call.writable_state);
+    if (!found) return refuse_name(lua, window, *call.writable_state);
     Entry& e = (*call.writable_state)[static_cast<std::size_t>(found - call.writable_state->data())];
     constexpr int kLuaType[] = {LUA_TBOOLEAN, LUA_TNUMBER, LUA_TSTRING};
-    if (lua_type(lua, 3) != kLuaType[e.value.index()])
-        return refuse_type(lua, e);
+    if (lua_type(lua, 3) != kLuaType[e.value.index()]) return refuse_type(lua, e);
     if (auto* truth = std::get_if<bool>(&e.value))
         *truth = lua_toboolean(lua, 3) != 0;
     else if (auto* number = std::get_if<double>(&e.value))
     {
-        if (!std::isfinite(lua_tonumber(lua, 3)))
-            return luaL_error(lua, "state.%s is not finite", e.name.c_str());
+        if (!std::isfinite(lua_tonumber(lua, 3))) return luaL_error(lua, "state.%s is not finite", e.name.c_str());
         *number = lua_tonumber(lua, 3);
     }
     else
     {
         const std::string_view text = check_text(lua, 3);
-        if (!is_utf8(text))
-            return luaL_error(lua, "state.%s must be UTF-8 text", e.name.c_str());
+        if (!is_utf8(text)) return luaL_error(lua, "state.%s must be UTF-8 text", e.name.c_str());
         std::get<std::string>(e.value) = text;
     }
     return 0;
@@ -114,10 +102,7 @@ int step_get(lua_State* lua)
     return 1;
 }
 
-int step_set(lua_State* lua)
-{
-    return luaL_error(lua, "step is read-only");
-}
+int step_set(lua_State* lua) { return luaL_error(lua, "step is read-only"); }
 
 void make_metatable(lua_State* lua, int slot, const char* name, lua_CFunction get, lua_CFunction set)
 {

@@ -33,14 +33,12 @@ int refuse_arguments(lua_State* lua)
 
 void count_hook(lua_State* lua, lua_Debug* at)
 {
-    if (lua_getlocal(lua, at, -(kMostArguments + 1)))
-        refuse_arguments(lua);
+    if (lua_getlocal(lua, at, -(kMostArguments + 1))) refuse_arguments(lua);
     Meter& meter = session_of(lua).meter;
     if (!meter.doomed() && meter.count_stride())
     {
         const int before = meter.stride();
-        if (meter.next_stride() != before)
-            lua_sethook(lua, count_hook, LUA_MASKCOUNT, meter.stride());
+        if (meter.next_stride() != before) lua_sethook(lua, count_hook, LUA_MASKCOUNT, meter.stride());
         return;
     }
     lua_sethook(lua, count_hook, LUA_MASKCOUNT, 1);
@@ -50,8 +48,7 @@ void count_hook(lua_State* lua, lua_Debug* at)
 void charge(lua_State* lua, std::int64_t instructions)
 {
     Meter& meter = session_of(lua).meter;
-    if (meter.spend(instructions))
-        return;
+    if (meter.spend(instructions)) return;
     lua_sethook(lua, count_hook, LUA_MASKCOUNT, 1);
     end_call(lua, 1);
 }
@@ -59,10 +56,8 @@ void charge(lua_State* lua, std::int64_t instructions)
 void rethrow_if_doomed(lua_State* lua, int status)
 {
     Session& session = session_of(lua);
-    if (status == LUA_ERRMEM)
-        session.meter.doom(session.text_refused ? Meter::Doom::Text : Meter::Doom::Memory);
-    if (!session.meter.doomed())
-        return;
+    if (status == LUA_ERRMEM) session.meter.doom(session.text_refused ? Meter::Doom::Text : Meter::Doom::Memory);
+    if (!session.meter.doomed()) return;
     lua_sethook(lua, count_hook, LUA_MASKCOUNT, 1);
     lua_error(lua);
 }
@@ -70,8 +65,7 @@ void rethrow_if_doomed(lua_State* lua, int status)
 const Call& running_call(lua_State* lua, const char* what)
 {
     const Call& call = *session_of(lua).call;
-    if (call.entry == EntryPoint::Load)
-        luaL_error(lua, "%s can be used in drive and force, not while the code is loaded", what);
+    if (call.entry == EntryPoint::Load) luaL_error(lua, "%s can be used in drive and force, not while the code is loaded", what);
     return call;
 }
 

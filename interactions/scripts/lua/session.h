@@ -75,10 +75,7 @@ struct Session
     std::string_view code;  ///< while loading
 };
 
-inline Session& session_of(lua_State* lua)
-{
-    return **static_cast<Session**>(lua_getextraspace(lua));
-}
+inline Session& session_of(lua_State* lua) { return **static_cast<Session**>(lua_getextraspace(lua)); }
 
 /// The count hook: ends a call that is over its budget, again and again until it is left.
 void count_hook(lua_State* lua, lua_Debug* at);

@@ -15,14 +15,12 @@ constexpr lua_Integer kMostBytes = 200;  // results of string.byte, arguments of
 /// A position as Lua counts: from 1, or from the end if negative.
 lua_Integer start_of(lua_Integer position, lua_Integer length)
 {
-    if (position > 0)
-        return position;
+    if (position > 0) return position;
     return position == 0 || position < -length ? 1 : length + position + 1;
 }
 lua_Integer end_of(lua_Integer position, lua_Integer length)
 {
-    if (position > length)
-        return length;
+    if (position > length) return length;
     return position >= 0 ? position : (position < -length ? 0 : length + position + 1);
 }
 
@@ -31,8 +29,7 @@ int part(lua_State* lua)
     const std::string_view s = check_text(lua, 1);
     const auto n = static_cast<lua_Integer>(s.size());
     const lua_Integer from = start_of(luaL_checkinteger(lua, 2), n), to = end_of(luaL_optinteger(lua, 3, -1), n);
-    push_text(lua, from > to ? std::string_view()
-                             : s.substr(static_cast<std::size_t>(from - 1), static_cast<std::size_t>(to - from + 1)));
+    push_text(lua, from > to ? std::string_view() : s.substr(static_cast<std::size_t>(from - 1), static_cast<std::size_t>(to - from + 1)));
     return 1;
 }
 
@@ -52,14 +49,8 @@ int change_case(lua_State* lua, char first, char last, int shift)
     push_text(lua, out);
     return 1;
 }
-int upper(lua_State* lua)
-{
-    return change_case(lua, 'a', 'z', 'A' - 'a');
-}
-int lower(lua_State* lua)
-{
-    return change_case(lua, 'A', 'Z', 'a' - 'A');
-}
+int upper(lua_State* lua) { return change_case(lua, 'a', 'z', 'A' - 'a'); }
+int lower(lua_State* lua) { return change_case(lua, 'A', 'Z', 'a' - 'A'); }
 
 int repeat(lua_State* lua)
 {
@@ -67,14 +58,12 @@ int repeat(lua_State* lua)
     const lua_Integer times = luaL_checkinteger(lua, 2);
     const std::string_view between = lua_isnoneornil(lua, 3) ? std::string_view() : check_text(lua, 3);
     Text out;
-    if (s.empty() && between.empty())
-        return push_text(lua, out), 1;
+    if (s.empty() && between.empty()) return push_text(lua, out), 1;
     // The last piece has nothing behind it, hence the one more; what is still too long, `out` notices.
     const auto most = static_cast<lua_Integer>(kLongestText / (s.size() + between.size())) + 1;
     for (lua_Integer i = 0; i < times && times <= most; ++i)
     {
-        if (i > 0)
-            out.append(between);
+        if (i > 0) out.append(between);
         out.append(s);
     }
     if (!out.fits() || times > most)
@@ -89,12 +78,10 @@ int bytes_of(lua_State* lua)
     const auto n = static_cast<lua_Integer>(s.size());
     const lua_Integer first = luaL_optinteger(lua, 2, 1);
     const lua_Integer from = start_of(first, n), to = end_of(luaL_optinteger(lua, 3, from), n);
-    if (from > to)
-        return 0;
+    if (from > to) return 0;
     luaL_argcheck(lua, to - from < kMostBytes, 3, "at most 200 bytes at a time");
     luaL_checkstack(lua, static_cast<int>(to - from + 1), "string.byte");
-    for (lua_Integer i = from; i <= to; ++i)
-        lua_pushinteger(lua, static_cast<unsigned char>(s[static_cast<std::size_t>(i - 1)]));
+    for (lua_Integer i = from; i <= to; ++i) lua_pushinteger(lua, static_cast<unsigned char>(s[static_cast<std::size_t>(i - 1)]));
     return static_cast<int>(to - from + 1);
 }
 
@@ -122,24 +109,19 @@ struct Conversion
 
     bool add(char c)
     {
-        if (length + 4 >= sizeof spec)
-            return false;
+        if (length + 4 >= sizeof spec) return false;
         spec[length++] = c;
         return true;
     }
 };
 
-bool is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Reads up to two digits; false if there are more.
 bool read_digits(std::string_view form, std::size_t& at, Conversion& out)
 {
     for (int n = 0; at < form.size() && is_digit(form[at]); ++at, ++n)
-        if (n == 2 || !out.add(form[at]))
-            return false;
+        if (n == 2 || !out.add(form[at])) return false;
     return true;
 }
 
@@ -148,18 +130,14 @@ bool read_conversion(std::string_view form, std::size_t& at, Conversion& out)
 {
     out.add('%');
     while (at < form.size() && std::string_view("-+ #0").find(form[at]) != std::string_view::npos)
-        if (!out.add(form[at++]))
-            return false;
-    if (!read_digits(form, at, out))
-        return false;
+        if (!out.add(form[at++])) return false;
+    if (!read_digits(form, at, out)) return false;
     if (at < form.size() && form[at] == '.')
     {
         out.add(form[at++]);
-        if (!read_digits(form, at, out))
-            return false;
+        if (!read_digits(form, at, out)) return false;
     }
-    if (at >= form.size())
-        return false;
+    if (at >= form.size()) return false;
     out.letter = form[at++];
     return true;
 }
@@ -197,8 +175,7 @@ void append_padded(lua_State* lua, const Conversion& c, int argument, Text& out)
     if (at < spec.size() && spec[at] == '.')
         for (precision = 0, ++at; at < spec.size() && is_digit(spec[at]); ++at)
             precision = precision * 10 + static_cast<std::size_t>(spec[at] - '0');
-    if (at != spec.size())
-        luaL_error(lua, "string.format: %%s takes '-', a width and a precision only");
+    if (at != spec.size()) luaL_error(lua, "string.format: %%s takes '-', a width and a precision only");
     const std::string_view text = shown.view().substr(0, precision);
     const std::size_t fill = width > text.size() ? width - text.size() : 0;
     for (std::size_t i = 0; !left && i < fill; ++i) out.append(' ');
@@ -235,9 +212,8 @@ int format(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {{"sub", part},      {"len", length_of},     {"upper", upper},
-                                         {"lower", lower},   {"rep", repeat},        {"byte", bytes_of},
-                                         {"format", format}, {"char", text_of_bytes}};
+constexpr NativeFunction kFunctions[] = {{"sub", part},   {"len", length_of}, {"upper", upper},   {"lower", lower},
+                                         {"rep", repeat}, {"byte", bytes_of}, {"format", format}, {"char", text_of_bytes}};
 
 }  // namespace
 

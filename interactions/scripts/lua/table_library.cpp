@@ -24,8 +24,7 @@ int insert(lua_State* lua)
 {
     const lua_Integer n = changeable_length(lua);
     const int arguments = lua_gettop(lua);
-    if (arguments != 2 && arguments != 3)
-        return luaL_error(lua, "table.insert takes (list, value) or (list, position, value)");
+    if (arguments != 2 && arguments != 3) return luaL_error(lua, "table.insert takes (list, value) or (list, position, value)");
     const lua_Integer at = arguments == 2 ? n + 1 : luaL_checkinteger(lua, 2);
     luaL_argcheck(lua, at >= 1 && at <= n + 1, 2, "position out of the list");
     charge(lua, 1 + (n - at + 1) / 4);
@@ -43,8 +42,7 @@ int remove(lua_State* lua)
 {
     const lua_Integer n = changeable_length(lua);
     const lua_Integer at = luaL_optinteger(lua, 2, n);
-    if (n == 0 && (at == 0 || at == 1))
-        return lua_pushnil(lua), 1;
+    if (n == 0 && (at == 0 || at == 1)) return lua_pushnil(lua), 1;
     luaL_argcheck(lua, at >= 1 && at <= n, 2, "position out of the list");
     charge(lua, 1 + (n - at) / 4);
     lua_rawgeti(lua, 1, at);
@@ -75,8 +73,7 @@ int concatenate(lua_State* lua)
             return luaL_error(lua, "table.concat joins texts and numbers; element %I is a %s", i, type_name(lua, -1));
         append_shown(lua, -1, out);
         lua_pop(lua, 1);
-        if (i < to)
-            out.append(between);
+        if (i < to) out.append(between);
     }
     push_text(lua, out);
     return 1;
@@ -88,14 +85,12 @@ int unpack(lua_State* lua)
     lua_replace(lua, 1);
     const lua_Integer from = luaL_optinteger(lua, 2, 1);
     const lua_Integer to = luaL_optinteger(lua, 3, static_cast<lua_Integer>(lua_rawlen(lua, 1)));
-    if (from > to)
-        return 0;
+    if (from > to) return 0;
     const auto count = static_cast<lua_Unsigned>(to) - static_cast<lua_Unsigned>(from);
     luaL_argcheck(lua, count < static_cast<lua_Unsigned>(kMostUnpacked), 3, "at most 200 values at a time");
     luaL_checkstack(lua, static_cast<int>(kMostUnpacked), "table.unpack");
     charge(lua, static_cast<lua_Integer>(count) / 4);
-    for (lua_Unsigned i = 0; i <= count; ++i)
-        lua_rawgeti(lua, 1, static_cast<lua_Integer>(static_cast<lua_Unsigned>(from) + i));
+    for (lua_Unsigned i = 0; i <= count; ++i) lua_rawgeti(lua, 1, static_cast<lua_Integer>(static_cast<lua_Unsigned>(from) + i));
     return static_cast<int>(count + 1);
 }
 
@@ -104,12 +99,10 @@ bool less_by_default(lua_State* lua, int a, int b)
 {
     const int type = lua_type(lua, a);
     if (type != lua_type(lua, b) || (type != LUA_TNUMBER && type != LUA_TSTRING))
-        luaL_error(lua, "table.sort orders numbers or texts; give it a function to compare a %s with a %s",
-                   type_name(lua, a), type_name(lua, b));
-    if (type == LUA_TNUMBER)
-        return lua_compare(lua, a, b, LUA_OPLT) != 0;
-    return std::string_view(lua_tostring(lua, a), lua_rawlen(lua, a)) <
-           std::string_view(lua_tostring(lua, b), lua_rawlen(lua, b));
+        luaL_error(lua, "table.sort orders numbers or texts; give it a function to compare a %s with a %s", type_name(lua, a),
+                   type_name(lua, b));
+    if (type == LUA_TNUMBER) return lua_compare(lua, a, b, LUA_OPLT) != 0;
+    return std::string_view(lua_tostring(lua, a), lua_rawlen(lua, a)) < std::string_view(lua_tostring(lua, b), lua_rawlen(lua, b));
 }
 
 /// Whether list[i] comes before list[j].
@@ -117,8 +110,7 @@ bool comes_before(lua_State* lua, int list, lua_Integer i, lua_Integer j)
 {
     charge(lua, 2);
     const bool own = !lua_isnoneornil(lua, 2);
-    if (own)
-        lua_pushvalue(lua, 2);
+    if (own) lua_pushvalue(lua, 2);
     lua_rawgeti(lua, list, i);
     lua_rawgeti(lua, list, j);
     bool less = false;
@@ -156,8 +148,7 @@ int sort(lua_State* lua)
 {
     const lua_Integer n = changeable_length(lua);
     luaL_argcheck(lua, n <= kLongestSort, 1, "at most 10000 elements can be sorted");
-    if (!lua_isnoneornil(lua, 2))
-        luaL_checktype(lua, 2, LUA_TFUNCTION);
+    if (!lua_isnoneornil(lua, 2)) luaL_checktype(lua, 2, LUA_TFUNCTION);
     lua_settop(lua, 2);
     charge(lua, 2 * n);
     lua_createtable(lua, static_cast<int>(n), 0);

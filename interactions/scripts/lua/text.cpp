@@ -59,15 +59,13 @@ int refuse_length(lua_State* lua, std::size_t bytes)
 
 void push_text(lua_State* lua, std::string_view text)
 {
-    if (text.size() > kLongestText)
-        refuse_length(lua, text.size());
+    if (text.size() > kLongestText) refuse_length(lua, text.size());
     lua_pushlstring(lua, text.data(), text.size());
 }
 
 void push_text(lua_State* lua, const Text& text)
 {
-    if (!text.fits())
-        refuse_length(lua, text.wanted());
+    if (!text.fits()) refuse_length(lua, text.wanted());
     charge(lua, static_cast<lua_Integer>(text.wanted() / 32));
     lua_pushlstring(lua, text.view().data(), text.view().size());
 }
@@ -112,14 +110,10 @@ namespace
 /// Bytes that follow a lead byte, and the smallest code point that may be written so; -1: no lead byte.
 int follow_bytes(unsigned char lead, std::uint32_t& smallest)
 {
-    if (lead < 0x80)
-        return smallest = 0, 0;
-    if (lead >= 0xc2 && lead < 0xe0)
-        return smallest = 0x80, 1;
-    if (lead >= 0xe0 && lead < 0xf0)
-        return smallest = 0x800, 2;
-    if (lead >= 0xf0 && lead < 0xf5)
-        return smallest = 0x10000, 3;
+    if (lead < 0x80) return smallest = 0, 0;
+    if (lead >= 0xc2 && lead < 0xe0) return smallest = 0x80, 1;
+    if (lead >= 0xe0 && lead < 0xf0) return smallest = 0x800, 2;
+    if (lead >= 0xf0 && lead < 0xf5) return smallest = 0x10000, 3;
     return -1;
 }
 
@@ -132,17 +126,14 @@ bool is_utf8(std::string_view text)
         const auto lead = static_cast<unsigned char>(text[i++]);
         std::uint32_t smallest = 0;
         const int follow = follow_bytes(lead, smallest);
-        if (follow < 0 || text.size() - i < static_cast<std::size_t>(follow))
-            return false;
+        if (follow < 0 || text.size() - i < static_cast<std::size_t>(follow)) return false;
         std::uint32_t code = follow == 0 ? lead : lead & (0x3fu >> follow);
         for (int k = 0; k < follow; ++k, ++i)
         {
-            if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80)
-                return false;
+            if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
             code = code << 6 | (static_cast<unsigned char>(text[i]) & 0x3f);
         }
-        if (code < smallest || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
-            return false;
+        if (code < smallest || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return false;
     }
     return true;
 }

@@ -42,10 +42,7 @@ int vector_subtract(lua_State* lua)
     const Operands of(lua);
     return push_vector(lua, of.a - of.b), 1;
 }
-int vector_negate(lua_State* lua)
-{
-    return push_vector(lua, -check_vector(lua, 1)), 1;
-}
+int vector_negate(lua_State* lua) { return push_vector(lua, -check_vector(lua, 1)), 1; }
 int vector_divide(lua_State* lua)
 {
     const Vec3& v = check_vector(lua, 1);
@@ -54,8 +51,7 @@ int vector_divide(lua_State* lua)
 int vector_multiply(lua_State* lua)
 {
     const Vec3 *a = to_vector(lua, 1), *b = to_vector(lua, 2);
-    if (a && b)
-        return luaL_error(lua, "vec * vec is neither: use a:dot(b) or a:cross(b)");
+    if (a && b) return luaL_error(lua, "vec * vec is neither: use a:dot(b) or a:cross(b)");
     push_vector(lua, a ? *a * luaL_checknumber(lua, 2) : check_vector(lua, 2) * luaL_checknumber(lua, 1));
     return 1;
 }
@@ -75,14 +71,8 @@ int vector_cross(lua_State* lua)
     const Operands of(lua);
     return push_vector(lua, cross(of.a, of.b)), 1;
 }
-int vector_length(lua_State* lua)
-{
-    return lua_pushnumber(lua, length(check_vector(lua, 1))), 1;
-}
-int vector_normalized(lua_State* lua)
-{
-    return push_vector(lua, normalized(check_vector(lua, 1))), 1;
-}
+int vector_length(lua_State* lua) { return lua_pushnumber(lua, length(check_vector(lua, 1))), 1; }
+int vector_normalized(lua_State* lua) { return push_vector(lua, normalized(check_vector(lua, 1))), 1; }
 
 int rotation_rotate(lua_State* lua, Vec3 (*turn)(const Quat&, const Vec3&))
 {
@@ -91,30 +81,21 @@ int rotation_rotate(lua_State* lua, Vec3 (*turn)(const Quat&, const Vec3&))
     push_vector(lua, turn(r->q, check_vector(lua, 2)));
     return 1;
 }
-int rotation_forth(lua_State* lua)
-{
-    return rotation_rotate(lua, rotate);
-}
-int rotation_back(lua_State* lua)
-{
-    return rotation_rotate(lua, rotate_back);
-}
+int rotation_forth(lua_State* lua) { return rotation_rotate(lua, rotate); }
+int rotation_back(lua_State* lua) { return rotation_rotate(lua, rotate_back); }
 
 /// A method out of the table that is this function's upvalue.
 int find_method(lua_State* lua, const char* what)
 {
     lua_pushvalue(lua, 2);
-    if (lua_rawget(lua, lua_upvalueindex(1)) != LUA_TNIL)
-        return 1;
-    return luaL_error(lua, "%s has no '%s'", what,
-                      lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
+    if (lua_rawget(lua, lua_upvalueindex(1)) != LUA_TNIL) return 1;
+    return luaL_error(lua, "%s has no '%s'", what, lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
 }
 
 /// The only character of the key, or 0.
 char letter_of(lua_State* lua)
 {
-    if (lua_type(lua, 2) != LUA_TSTRING)
-        return 0;
+    if (lua_type(lua, 2) != LUA_TSTRING) return 0;
     const char* key = lua_tostring(lua, 2);
     return key[0] != 0 && key[1] == 0 ? key[0] : '\0';
 }
@@ -153,10 +134,7 @@ int rotation_index(lua_State* lua)
     }
 }
 
-int refuse_assignment(lua_State* lua)
-{
-    return luaL_error(lua, "a %s does not change: make a new one", type_name(lua, 1));
-}
+int refuse_assignment(lua_State* lua) { return luaL_error(lua, "a %s does not change: make a new one", type_name(lua, 1)); }
 
 constexpr NativeFunction kVectorMethods[] = {
     {"dot", vector_dot}, {"cross", vector_cross}, {"length", vector_length}, {"normalized", vector_normalized}};
@@ -198,8 +176,7 @@ const Vec3* to_vector(lua_State* lua, int index)
 const Vec3& check_vector(lua_State* lua, int argument)
 {
     const Vec3* v = to_vector(lua, argument);
-    if (!v)
-        luaL_typeerror(lua, argument, "vec");  // does not return
+    if (!v) luaL_typeerror(lua, argument, "vec");  // does not return
     return *v;
 }
 

@@ -14,16 +14,13 @@ void BodyColumns::describe(Schema& schema)
 
 void VelocityColumns::describe(Schema& schema)
 {
-    schema.state(linear, "linear_velocity", unit::metre_per_second, "of the origin of the body's frame, in the world")
-        .hosted();
+    schema.state(linear, "linear_velocity", unit::metre_per_second, "of the origin of the body's frame, in the world").hosted();
     schema.state(angular, "angular_velocity", unit::radian_per_second, "in the world").hosted();
 }
 
 void describe_color(Column<Vec3>& color, Schema& schema)
 {
-    schema
-        .param(color, "color", unit::one,
-               "red, green, blue, each from 0 to 1; the shapes' colours are multiplied by it")
+    schema.param(color, "color", unit::one, "red, green, blue, each from 0 to 1; the shapes' colours are multiplied by it")
         .or_else({1, 1, 1})
         .at_least(0)
         .at_most(1);
@@ -36,8 +33,7 @@ void describe_solver(Column<Ref>& solver, Schema& schema)
         .optional();
 }
 
-void fill_unpushed(std::uint32_t index, Motion motion, Row row, const BodyColumns& body, Bodies& bodies,
-                   Materials& materials)
+void fill_unpushed(std::uint32_t index, Motion motion, Row row, const BodyColumns& body, Bodies& bodies, Materials& materials)
 {
     bodies.motion[index] = motion;
     bodies.mass[index] = 0;

@@ -35,7 +35,6 @@ void describe_color(Column<Vec3>& color, Schema& schema);
 void describe_solver(Column<Ref>& solver, Schema& schema);
 
 /// The host row of a body that forces do not move: no mass, no inverse mass, centre at B's origin.
-void fill_unpushed(std::uint32_t index, Motion motion, Row row, const BodyColumns& body, Bodies& bodies,
-                   Materials& materials);
+void fill_unpushed(std::uint32_t index, Motion motion, Row row, const BodyColumns& body, Bodies& bodies, Materials& materials);
 
 }  // namespace plab::bodies

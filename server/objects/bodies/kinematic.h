@@ -15,7 +15,6 @@ struct KinematicRows
     void describe(Schema& schema);
 };
 
-void prepare_kinematic(const StepContext& context, Row row, const KinematicRows& kinematics, Bodies& bodies,
-                       Materials& materials);
+void prepare_kinematic(const StepContext& context, Row row, const KinematicRows& kinematics, Bodies& bodies, Materials& materials);
 
 }  // namespace plab::bodies

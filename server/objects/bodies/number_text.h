@@ -21,8 +21,7 @@ inline std::string number_text(double value)
 /// Refuses what is not positive, or what has no finite inverse: the step divides by masses and inertias.
 inline Result<void> check_positive(const std::string& name, double value)
 {
-    if (!(value > 0))
-        return reason(name + " must be positive, not " + number_text(value));
+    if (!(value > 0)) return reason(name + " must be positive, not " + number_text(value));
     if (!std::isfinite(value) || !std::isfinite(1 / value))
         return reason(name + " must lie between 1e-307 and 1e307, not " + number_text(value));
     return {};

@@ -15,8 +15,7 @@ void add_state(plab::Registrar& registrar, std::string name, plab::Facet facet, 
     registrar.component<Table>(std::move(name), std::move(doc))
         .facet(facet)
         .family(std::move(family))
-        .template command<Prepare>(plab::Phase::Prepare, "State/Prepare",
-                                   "checks the parameters and hands them to the host")
+        .template command<Prepare>(plab::Phase::Prepare, "State/Prepare", "checks the parameters and hands them to the host")
         .host_command(plab::Phase::Restore, "State/Restore", "brings the saved state back when a step is rewound");
 }
 
@@ -26,12 +25,10 @@ PLAB_PLUGIN("bodies", registrar)
 {
     using namespace plab::bodies;
     using plab::Facet;
-    add_state<prepare_static, StaticRows>(registrar, "State/Static", Facet::Body, "State/Body",
-                                          "a body that never moves");
+    add_state<prepare_static, StaticRows>(registrar, "State/Static", Facet::Body, "State/Body", "a body that never moves");
     add_state<prepare_kinematic, KinematicRows>(registrar, "State/Kinematic", Facet::Body, "State/Body",
                                                 "a body that moves with the velocity it is given");
-    add_state<prepare_rigid_body, RigidBodyRows>(registrar, "State/RigidBody", Facet::Body, "State/Body",
-                                                 "a body that moves by forces");
+    add_state<prepare_rigid_body, RigidBodyRows>(registrar, "State/RigidBody", Facet::Body, "State/Body", "a body that moves by forces");
     add_state<prepare_shaft, ShaftRows>(registrar, "State/Shaft", Facet::Shaft, "State/Shaft",
                                         "one degree of freedom about an axle: a gear, a motor, a fan");
     registrar.component<MaterialPairRows>("Material/Pair", "friction and restitution between two materials")

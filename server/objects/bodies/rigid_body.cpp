@@ -19,28 +19,21 @@ struct Given
 
 Given given_of(Row row, const RigidBodyRows& rigid)
 {
-    return {rigid.mass[row] != 0, rigid.density[row] != 0, !(rigid.inertia[row] == Mat3{}),
-            !(rigid.center_of_mass[row] == kNotGiven), !rigid.body.shape[row].empty()};
+    return {rigid.mass[row] != 0, rigid.density[row] != 0, !(rigid.inertia[row] == Mat3{}), !(rigid.center_of_mass[row] == kNotGiven),
+            !rigid.body.shape[row].empty()};
 }
 
 Result<void> check_given(Row row, const RigidBodyRows& rigid, const Given& given)
 {
-    if (given.mass && given.density)
-        return reason("mass and density are both given; one of them must be left out");
-    if (!given.mass && !given.density)
-        return reason("mass must be positive: give mass (kg), or density (kg/m^3) and shapes");
-    if (auto positive =
-            given.mass ? check_positive("mass", rigid.mass[row]) : check_positive("density", rigid.density[row]);
-        !positive)
+    if (given.mass && given.density) return reason("mass and density are both given; one of them must be left out");
+    if (!given.mass && !given.density) return reason("mass must be positive: give mass (kg), or density (kg/m^3) and shapes");
+    if (auto positive = given.mass ? check_positive("mass", rigid.mass[row]) : check_positive("density", rigid.density[row]); !positive)
         return positive;
-    if (given.density && !given.shapes)
-        return reason("density needs shapes to fill; give a shape, or mass and inertia");
+    if (given.density && !given.shapes) return reason("density needs shapes to fill; give a shape, or mass and inertia");
     if (given.density && given.inertia)
         return reason("inertia is given with density; give mass with inertia, or leave the inertia to the shapes");
-    if (!given.inertia && !given.shapes)
-        return reason("mass needs an inertia, or shapes to compute it from");
-    if (given.center && !is_finite(rigid.center_of_mass[row]))
-        return reason("center_of_mass must be finite");
+    if (!given.inertia && !given.shapes) return reason("mass needs an inertia, or shapes to compute it from");
+    if (given.center && !is_finite(rigid.center_of_mass[row])) return reason("center_of_mass must be finite");
     return {};
 }
 
@@ -51,8 +44,7 @@ Result<MassProperties> solid_of(const RefList& parts, const Shapes& shapes)
     for (const Ref part : parts)
     {
         const std::string& why_not = shapes.unmeasurable[part.index];
-        if (!why_not.empty())
-            return reason("mass properties cannot be computed from its shapes: " + why_not + "; give mass and inertia");
+        if (!why_not.empty()) return reason("mass properties cannot be computed from its shapes: " + why_not + "; give mass and inertia");
         sum = combined(sum, shapes.solid[part.index]);
     }
     return sum;
@@ -64,14 +56,11 @@ Result<MassProperties> mass_properties_of(Row row, const RigidBodyRows& rigid, c
     if (!given.inertia)
     {
         const auto solid = solid_of(rigid.body.shape[row], shapes);
-        if (!solid)
-            return solid.error();
+        if (!solid) return solid.error();
         out = scaled(*solid, given.mass ? rigid.mass[row] / solid->mass : rigid.density[row]);
-        if (given.mass)
-            out.mass = rigid.mass[row];
+        if (given.mass) out.mass = rigid.mass[row];
     }
-    if (given.center)
-        out.center = rigid.center_of_mass[row];
+    if (given.center) out.center = rigid.center_of_mass[row];
     return out;
 }
 
@@ -89,26 +78,21 @@ void RigidBodyRows::describe(Schema& schema)
                "about the centre of mass, in the body's axes; zero: not given, then it is integrated over the shapes")
         .or_else({});
     schema
-        .param(
-            center_of_mass, "center_of_mass", unit::metre,
-            "in the body's frame; infinite: not given, then the shapes' centre, or the origin where inertia is given")
+        .param(center_of_mass, "center_of_mass", unit::metre,
+               "in the body's frame; infinite: not given, then the shapes' centre, or the origin where inertia is given")
         .or_else(kNotGiven)
         .may_be_infinite();
 }
 
-Result<void> prepare_rigid_body(const StepContext& context, Row row, const RigidBodyRows& rigid, Bodies& bodies,
-                                const Shapes& shapes, Materials& materials)
+Result<void> prepare_rigid_body(const StepContext& context, Row row, const RigidBodyRows& rigid, Bodies& bodies, const Shapes& shapes,
+                                Materials& materials)
 {
     const Given given = given_of(row, rigid);
-    if (auto complete = check_given(row, rigid, given); !complete)
-        return complete;
+    if (auto complete = check_given(row, rigid, given); !complete) return complete;
     const auto solid = mass_properties_of(row, rigid, given, shapes);
-    if (!solid)
-        return solid.error();
-    if (auto mass = check_positive("mass", solid->mass); !mass)
-        return mass;
-    if (auto inertia = check_inertia(solid->inertia); !inertia)
-        return inertia;
+    if (!solid) return solid.error();
+    if (auto mass = check_positive("mass", solid->mass); !mass) return mass;
+    if (auto inertia = check_inertia(solid->inertia); !inertia) return inertia;
 
     const std::uint32_t index = context.facet_of_row[row];
     bodies.motion[index] = Motion::Dynamic;

@@ -28,7 +28,7 @@ struct RigidBodyRows
 };
 
 /// Fills all of the host row but pose and velocities.
-Result<void> prepare_rigid_body(const StepContext& context, Row row, const RigidBodyRows& rigid, Bodies& bodies,
-                                const Shapes& shapes, Materials& materials);
+Result<void> prepare_rigid_body(const StepContext& context, Row row, const RigidBodyRows& rigid, Bodies& bodies, const Shapes& shapes,
+                                Materials& materials);
 
 }  // namespace plab::bodies

@@ -13,7 +13,6 @@ struct StaticRows
     void describe(Schema& schema) { body.describe(schema); }
 };
 
-void prepare_static(const StepContext& context, Row row, const StaticRows& statics, Bodies& bodies,
-                    Materials& materials);
+void prepare_static(const StepContext& context, Row row, const StaticRows& statics, Bodies& bodies, Materials& materials);
 
 }  // namespace plab::bodies

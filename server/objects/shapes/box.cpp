@@ -8,8 +8,7 @@ namespace plab::shapes
 void BoxRows::describe(Schema& schema)
 {
     shape.describe(schema);
-    schema.param(half_extents, "half_extents", unit::metre, "half of length, width and height along x, y, z")
-        .positive();
+    schema.param(half_extents, "half_extents", unit::metre, "half of length, width and height along x, y, z").positive();
 }
 
 void prepare_box(const StepContext& context, Row row, const BoxRows& boxes, Shapes& shapes)

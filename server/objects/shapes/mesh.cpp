@@ -16,8 +16,7 @@ Result<std::vector<Vec3>> vertices_of(const Reals& numbers)
     for (std::size_t i = 0; i < numbers.size(); i += 3)
     {
         out.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
-        if (!is_finite(out.back()))
-            return reason("vertex " + std::to_string(i / 3) + " must be finite");
+        if (!is_finite(out.back())) return reason("vertex " + std::to_string(i / 3) + " must be finite");
     }
     return out;
 }
@@ -25,8 +24,7 @@ Result<std::vector<Vec3>> vertices_of(const Reals& numbers)
 Result<std::vector<std::uint32_t>> triangles_of(const Integers& numbers, std::size_t vertex_count)
 {
     if (numbers.empty() || numbers.size() % 3 != 0)
-        return reason("triangles must be triples of vertex numbers, not " + std::to_string(numbers.size()) +
-                      " numbers");
+        return reason("triangles must be triples of vertex numbers, not " + std::to_string(numbers.size()) + " numbers");
     std::vector<std::uint32_t> out;
     out.reserve(numbers.size());
     for (const std::int64_t n : numbers)
@@ -45,8 +43,7 @@ void MeshRows::describe(Schema& schema)
 {
     shape.describe(schema);
     schema.param(vertices, "vertices", unit::metre, "x y z of each vertex, in the shape's frame");
-    schema.param(triangles, "triangles", unit::one,
-                 "three vertex numbers (from 0) per triangle, counter-clockwise seen from outside");
+    schema.param(triangles, "triangles", unit::one, "three vertex numbers (from 0) per triangle, counter-clockwise seen from outside");
     schema
         .param(hull_collides, "hull_collides", unit::one,
                "the mesh is drawn and integrated as given; it collides as its convex hull (true) or not at all (false)")
@@ -56,11 +53,9 @@ void MeshRows::describe(Schema& schema)
 Result<void> prepare_mesh(const StepContext& context, Row row, const MeshRows& meshes, Shapes& shapes)
 {
     auto vertices = vertices_of(meshes.vertices[row]);
-    if (!vertices)
-        return vertices.error();
+    if (!vertices) return vertices.error();
     auto triangles = triangles_of(meshes.triangles[row], vertices->size());
-    if (!triangles)
-        return triangles.error();
+    if (!triangles) return triangles.error();
 
     Geometry geometry;
     geometry.kind = GeometryKind::Mesh;
@@ -75,14 +70,11 @@ Result<void> prepare_mesh(const StepContext& context, Row row, const MeshRows& m
 Result<void> measure_mesh(Row row, const MeshRows& meshes, MassProperties& solid)
 {
     const auto vertices = vertices_of(meshes.vertices[row]);
-    if (!vertices)
-        return vertices.error();
+    if (!vertices) return vertices.error();
     const auto triangles = triangles_of(meshes.triangles[row], vertices->size());
-    if (!triangles)
-        return triangles.error();
+    if (!triangles) return triangles.error();
     const auto solid_S = solid_mesh(*vertices, *triangles);
-    if (!solid_S)
-        return solid_S.error();
+    if (!solid_S) return solid_S.error();
     solid = posed(*solid_S, meshes.shape.pose(row));
     return {};
 }

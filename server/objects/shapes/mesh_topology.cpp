@@ -25,8 +25,7 @@ std::vector<Side> sorted_sides(std::span<const std::uint32_t> triangles)
     {
         const std::uint32_t corner[] = {triangles[i], triangles[i + 1], triangles[i + 2]};
         // Two corners at one vertex: the triangle is a line whose two sides cancel.
-        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
-            continue;
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
         for (int k = 0; k < 3; ++k)
         {
             const std::uint32_t from = corner[k], to = corner[(k + 1) % 3];
@@ -34,42 +33,33 @@ std::vector<Side> sorted_sides(std::span<const std::uint32_t> triangles)
         }
     }
     std::sort(sides.begin(), sides.end(),
-              [](const Side& a, const Side& b)
-              { return std::tie(a.low, a.high, a.forward) < std::tie(b.low, b.high, b.forward); });
+              [](const Side& a, const Side& b) { return std::tie(a.low, a.high, a.forward) < std::tie(b.low, b.high, b.forward); });
     return sides;
 }
 
-std::string name_of_edge(const Side& side)
-{
-    return std::to_string(side.low) + "-" + std::to_string(side.high);
-}
+std::string name_of_edge(const Side& side) { return std::to_string(side.low) + "-" + std::to_string(side.high); }
 
 /// `uses`: all sides along one edge.
 Result<void> check_edge(std::span<const Side> uses)
 {
-    if (uses.size() == 2 && uses[0].forward != uses[1].forward)
-        return {};
+    if (uses.size() == 2 && uses[0].forward != uses[1].forward) return {};
     const std::string edge = name_of_edge(uses.front());
-    if (uses.size() == 1)
-        return reason("mesh is open at edge " + edge + "; every edge must have two triangles");
+    if (uses.size() == 1) return reason("mesh is open at edge " + edge + "; every edge must have two triangles");
     if (uses.size() > 2)
         return reason("mesh is not a manifold: edge " + edge + " has " + std::to_string(uses.size()) +
                       " triangles; every edge must have two");
-    return reason("mesh is wound inconsistently: the two triangles at edge " + edge +
-                  " run along it in the same direction");
+    return reason("mesh is wound inconsistently: the two triangles at edge " + edge + " run along it in the same direction");
 }
 
 Result<void> check_edges(std::span<const std::uint32_t> triangles)
 {
     const std::vector<Side> sides = sorted_sides(triangles);
-    if (sides.empty())
-        return reason("mesh has no volume; it must enclose a solid");
+    if (sides.empty()) return reason("mesh has no volume; it must enclose a solid");
     for (std::size_t begin = 0; begin < sides.size();)
     {
         std::size_t end = begin + 1;
         while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
-        if (auto edge = check_edge(std::span(sides).subspan(begin, end - begin)); !edge)
-            return edge;
+        if (auto edge = check_edge(std::span(sides).subspan(begin, end - begin)); !edge) return edge;
         begin = end;
     }
     return {};
@@ -97,8 +87,7 @@ std::vector<std::uint32_t> welded(std::span<const Vec3> vertices, std::span<cons
 
 Result<void> check_closed(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles)
 {
-    if (check_edges(triangles))
-        return {};
+    if (check_edges(triangles)) return {};
     return check_edges(welded(vertices, triangles));
 }
 

@@ -24,8 +24,7 @@ Result<void> prepare_placed(const StepContext& context, Row row, const PlacedRow
 Result<void> measure_placed(Row row, const PlacedRows& placed, const Shapes& shapes, MassProperties& solid)
 {
     const std::uint32_t of = placed.of[row].index;
-    if (!shapes.unmeasurable[of].empty())
-        return reason(shapes.unmeasurable[of]);
+    if (!shapes.unmeasurable[of].empty()) return reason(shapes.unmeasurable[of]);
     solid = posed(shapes.solid[of], placed.shape.pose(row));
     return {};
 }

@@ -30,13 +30,12 @@ PLAB_PLUGIN("shapes", registrar)
     using namespace plab::shapes;
     add_shape<prepare_sphere, measure_sphere, SphereRows>(registrar, "Shape/Sphere", "a ball",
                                                           "volume, centre and inertia, in closed form");
-    add_shape<prepare_box, measure_box, BoxRows>(registrar, "Shape/Box", "a cuboid",
-                                                 "volume, centre and inertia, in closed form");
-    add_shape<prepare_plane, measure_plane, PlaneRows>(
-        registrar, "Shape/Plane", "a half space below z = 0 of its frame", "refused: a plane has no volume");
-    add_shape<prepare_mesh, measure_mesh, MeshRows>(
-        registrar, "Shape/Mesh", "triangles; drawn and integrated as given, collides as its convex hull or not at all",
-        "volume, centre and inertia, exact for closed triangle meshes");
+    add_shape<prepare_box, measure_box, BoxRows>(registrar, "Shape/Box", "a cuboid", "volume, centre and inertia, in closed form");
+    add_shape<prepare_plane, measure_plane, PlaneRows>(registrar, "Shape/Plane", "a half space below z = 0 of its frame",
+                                                       "refused: a plane has no volume");
+    add_shape<prepare_mesh, measure_mesh, MeshRows>(registrar, "Shape/Mesh",
+                                                    "triangles; drawn and integrated as given, collides as its convex hull or not at all",
+                                                    "volume, centre and inertia, exact for closed triangle meshes");
     add_shape<prepare_placed, measure_placed, PlacedRows>(registrar, "Shape/Placed", "another shape at another pose",
                                                           "those of the referred shape, moved");
 }

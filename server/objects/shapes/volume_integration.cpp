@@ -62,10 +62,7 @@ Mat3 inertia_of(const Mat3& second)
     return Mat3::diagonal(trace, trace, trace) - second;
 }
 
-Mat3 symmetric_part(const Mat3& a)
-{
-    return (a + transposed(a)) * 0.5;
-}
+Mat3 symmetric_part(const Mat3& a) { return (a + transposed(a)) * 0.5; }
 
 }  // namespace
 
@@ -88,8 +85,7 @@ MassProperties solid_box(const Vec3& half_extents)
 
 Result<MassProperties> solid_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles)
 {
-    if (auto closed = check_closed(vertices, triangles); !closed)
-        return closed.error();
+    if (auto closed = check_closed(vertices, triangles); !closed) return closed.error();
 
     // From the mesh's own mean point, then from its centre of mass: far from the origin, or with its vertices crowded
     // at one end, the differences that remain are small and keep their digits.
@@ -97,8 +93,7 @@ Result<MassProperties> solid_mesh(std::span<const Vec3> vertices, std::span<cons
     const Moments rough = moments_about(mean, vertices, triangles);
     if (std::fabs(rough.volume) <= kFlat * rough.area * extent_of(vertices, mean))
         return reason("mesh has no volume; it must enclose a solid");
-    if (rough.volume < 0)
-        return reason("mesh is inside out; triangles must be counter-clockwise seen from outside");
+    if (rough.volume < 0) return reason("mesh is inside out; triangles must be counter-clockwise seen from outside");
 
     const Vec3 center = mean + rough.first / rough.volume;
     const Moments fine = moments_about(center, vertices, triangles);

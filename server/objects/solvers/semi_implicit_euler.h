@@ -14,7 +14,6 @@ struct SemiImplicitEulerRows
 };
 
 /// One step over context.dt, from coordinates 0.
-void advance_semi_implicit_euler(const StepContext& context, Row row, const SemiImplicitEulerRows& rows,
-                                 DynamicSystem& system);
+void advance_semi_implicit_euler(const StepContext& context, Row row, const SemiImplicitEulerRows& rows, DynamicSystem& system);
 
 }  // namespace plab::solvers

@@ -9,8 +9,7 @@ int main(int argc, char** argv)
 {
     if (argc != 3)
     {
-        std::fprintf(stderr,
-                     "usage: plab-manifest LIBRARY OUT\nWrites to OUT which component types the plugin LIBRARY has.\n");
+        std::fprintf(stderr, "usage: plab-manifest LIBRARY OUT\nWrites to OUT which component types the plugin LIBRARY has.\n");
         return 2;
     }
     auto plugin = plab::plugins::open_plugin(argv[1]);

@@ -48,17 +48,11 @@ private:
 };
 
 template <class T>
-    requires std::is_trivially_copyable_v<T>
-void write(ByteWriter& out, const T& v)
-{
-    out.raw(&v, sizeof v);
-}
+requires std::is_trivially_copyable_v<T>
+void write(ByteWriter& out, const T& v) { out.raw(&v, sizeof v); }
 template <class T>
-    requires std::is_trivially_copyable_v<T>
-void read(ByteReader& in, T& v)
-{
-    in.raw(&v, sizeof v);
-}
+requires std::is_trivially_copyable_v<T>
+void read(ByteReader& in, T& v) { in.raw(&v, sizeof v); }
 
 inline void write(ByteWriter& out, const std::string& v)
 {
@@ -73,14 +67,14 @@ inline void read(ByteReader& in, std::string& v)
     in.raw(v.data(), n);
 }
 template <class T>
-    requires std::is_trivially_copyable_v<T>
+requires std::is_trivially_copyable_v<T>
 void write(ByteWriter& out, const std::vector<T>& v)
 {
     write(out, v.size());
     out.raw(v.data(), v.size() * sizeof(T));
 }
 template <class T>
-    requires std::is_trivially_copyable_v<T>
+requires std::is_trivially_copyable_v<T>
 void read(ByteReader& in, std::vector<T>& v)
 {
     std::size_t n = 0;

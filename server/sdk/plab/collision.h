@@ -20,14 +20,14 @@ struct Contact
     Vec3 normal;                ///< W, unit, from a to b
     double depth = 0;           ///< m, > 0 when overlapping
     // Filled by the host:
-    std::uint64_t id = 0;              ///< stable from begin to end of the contact
-    double friction = 0;               ///< Coulomb coefficient
-    double restitution = 0;            ///< Newton's coefficient
-    double normal_acceleration = 0;    ///< m/s^2 of separation that the forces alone would give; < 0 presses together
-    bool resting = false;              ///< persists; not an impact
+    std::uint64_t id = 0;            ///< stable from begin to end of the contact
+    double friction = 0;             ///< Coulomb coefficient
+    double restitution = 0;          ///< Newton's coefficient
+    double normal_acceleration = 0;  ///< m/s^2 of separation that the forces alone would give; < 0 presses together
+    bool resting = false;            ///< persists; not an impact
     // Filled by the response:
-    Vec3 impulse;                      ///< N s on b, W
-    double slip = 0;                   ///< m/s, tangential speed after the response
+    Vec3 impulse;     ///< N s on b, W
+    double slip = 0;  ///< m/s, tangential speed after the response
 };
 
 /// A pair that touches since before: detection moves b by `shift` before looking, and takes |shift| off the depth, so
@@ -56,16 +56,21 @@ public:
 struct Trial
 {
     // in
-    double begin = 0;      ///< s, known to be clear
-    double end = 0;        ///< s, known to overlap
-    double depth = 0;      ///< m, deepest new overlap at `end`
-    double closing = 0;    ///< m/s, closing speed there
-    double step = 0;       ///< s, h
-    int iteration = 0;     ///< trials so far
+    double begin = 0;    ///< s, known to be clear
+    double end = 0;      ///< s, known to overlap
+    double depth = 0;    ///< m, deepest new overlap at `end`
+    double closing = 0;  ///< m/s, closing speed there
+    double step = 0;     ///< s, h
+    int iteration = 0;   ///< trials so far
     // out
-    enum class Decision : std::uint8_t { Try, Accept, GiveUp };
+    enum class Decision : std::uint8_t
+    {
+        Try,
+        Accept,
+        GiveUp
+    };
     Decision decision = Decision::Accept;
-    double next = 0;       ///< s, in (begin, end); for Try
+    double next = 0;  ///< s, in (begin, end); for Try
 };
 
 enum class ImpactMode : std::uint8_t
@@ -78,11 +83,11 @@ enum class ImpactMode : std::uint8_t
 struct Impact
 {
     ImpactMode mode = ImpactMode::Impact;
-    double dt = 0;                ///< s, Rest only: the step over which gaps may close
+    double dt = 0;  ///< s, Rest only: the step over which gaps may close
     std::span<Contact> contacts;
-    int iterations = 0;           ///< out
-    double residual = 0;          ///< out: m/s, largest violation left in normal speed
-    bool converged = true;        ///< out
+    int iterations = 0;     ///< out
+    double residual = 0;    ///< out: m/s, largest violation left in normal speed
+    bool converged = true;  ///< out
 };
 
 }  // namespace plab

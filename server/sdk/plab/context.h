@@ -24,14 +24,14 @@ enum class Severity : std::uint8_t
 /// Something that happened in a step, in order of occurrence.
 struct Event
 {
-    Tick tick = 0;             ///< step in which it happened
-    double time = 0;           ///< s, exact within the step
-    std::string kind;          ///< "contact.begin", "script.error", ... : a dotted word
+    Tick tick = 0;     ///< step in which it happened
+    double time = 0;   ///< s, exact within the step
+    std::string kind;  ///< "contact.begin", "script.error", ... : a dotted word
     Severity severity = Severity::Info;
     std::uint32_t component = kNoIndex;  ///< directory index of whom it is about
-    Ref a, b;                  ///< participants, where there are any
-    std::string message;       ///< for people; may be empty
-    std::vector<double> values;  ///< e.g. a contact's point and normal, a script's figures
+    Ref a, b;                            ///< participants, where there are any
+    std::string message;                 ///< for people; may be empty
+    std::vector<double> values;          ///< e.g. a contact's point and normal, a script's figures
 };
 
 class EventSink
@@ -52,8 +52,8 @@ struct ParameterChange
 /// Time and scope of one call. `time` is the solver stage's own.
 struct StepContext
 {
-    double time = 0;       ///< s
-    double dt = 0;         ///< s, length of the step (or of the part that is advanced)
+    double time = 0;  ///< s
+    double dt = 0;    ///< s, length of the step (or of the part that is advanced)
     Tick tick = 0;
     std::uint64_t seed = 0;
     EventSink* events = nullptr;

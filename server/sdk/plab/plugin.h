@@ -15,9 +15,9 @@ inline constexpr std::uint32_t kSdkVersion = 1;
 constexpr std::uint64_t layout_stamp()
 {
     std::uint64_t h = 0xcbf29ce484222325ull;
-    for (const std::size_t n : {sizeof(StepContext), sizeof(PhaseCall), sizeof(TypeInfo), sizeof(CommandInfo), sizeof(Field),
-                                sizeof(Role), sizeof(Bodies), sizeof(Shafts), sizeof(Shapes), sizeof(Geometry), sizeof(Wrenches),
-                                sizeof(Contact), sizeof(Trial), sizeof(Impact), sizeof(Event), sizeof(Value), sizeof(Result<void>)})
+    for (const std::size_t n : {sizeof(StepContext), sizeof(PhaseCall), sizeof(TypeInfo), sizeof(CommandInfo), sizeof(Field), sizeof(Role),
+                                sizeof(Bodies), sizeof(Shafts), sizeof(Shapes), sizeof(Geometry), sizeof(Wrenches), sizeof(Contact),
+                                sizeof(Trial), sizeof(Impact), sizeof(Event), sizeof(Value), sizeof(Result<void>)})
         h = (h ^ n) * 0x100000001b3ull;
     return h;
 }
@@ -25,10 +25,10 @@ constexpr std::uint64_t layout_stamp()
 struct PluginStamp
 {
     std::uint32_t sdk_version;
-    std::uint32_t size;      ///< of this structure
+    std::uint32_t size;  ///< of this structure
     std::uint64_t layout;
     const char* name;
-    const char* compiler;    ///< for messages only
+    const char* compiler;  ///< for messages only
 };
 
 #define PLAB_EXPORT __attribute__((visibility("default")))
@@ -39,7 +39,7 @@ inline constexpr const char* kRegisterSymbol = "plab_plugin_register";
 }  // namespace plab
 
 /// PLAB_PLUGIN("fields", registrar) { registrar.component<...>(...)...; }
-#define PLAB_PLUGIN(plugin_name, registrar)                                                                     \
-    extern "C" PLAB_EXPORT const plab::PluginStamp plab_plugin_stamp{plab::kSdkVersion, sizeof(plab::PluginStamp), \
-                                                                     plab::layout_stamp(), plugin_name, __VERSION__}; \
+#define PLAB_PLUGIN(plugin_name, registrar)                                                                                              \
+    extern "C" PLAB_EXPORT const plab::PluginStamp plab_plugin_stamp{plab::kSdkVersion, sizeof(plab::PluginStamp), plab::layout_stamp(), \
+                                                                     plugin_name, __VERSION__};                                          \
     extern "C" PLAB_EXPORT void plab_plugin_register(plab::Registrar& registrar)

@@ -58,16 +58,16 @@ struct PhaseCall
     Shafts* shafts = nullptr;
     Shapes* shapes = nullptr;
     Materials* materials = nullptr;
-    Wrenches* wrenches = nullptr;             // Force
-    ShaftMotion* shaft_motion = nullptr;      // Couple
-    RatioGraph* ratios = nullptr;             // Connect
+    Wrenches* wrenches = nullptr;               // Force
+    ShaftMotion* shaft_motion = nullptr;        // Couple
+    RatioGraph* ratios = nullptr;               // Connect
     const ShaftReactions* reactions = nullptr;  // Finish
-    DynamicSystem* system = nullptr;          // Advance
-    ContactSink* contacts = nullptr;          // Detect
-    Trial* trial = nullptr;                   // Locate
-    Impact* impact = nullptr;                 // Respond
-    MassProperties* solid = nullptr;          // Measure
-    StoredEnergy* stored = nullptr;           // Potential
+    DynamicSystem* system = nullptr;            // Advance
+    ContactSink* contacts = nullptr;            // Detect
+    Trial* trial = nullptr;                     // Locate
+    Impact* impact = nullptr;                   // Respond
+    MassProperties* solid = nullptr;            // Measure
+    StoredEnergy* stored = nullptr;             // Potential
 };
 
 using Thunk = Result<void> (*)(const PhaseCall& call, void* table);
@@ -112,15 +112,12 @@ namespace detail
 template <class A, class Table>
 struct Argument;
 
-#define PLAB_ARGUMENT(Type, member, label)                                                       \
-    template <class Table>                                                                        \
-    struct Argument<Type, Table>                                                                  \
-    {                                                                                             \
-        static Type get(const PhaseCall& c, Table&, Row) { return *c.member; }                    \
-        static void note(std::vector<Access>& out)                                                \
-        {                                                                                         \
-            out.push_back({label, !std::is_const_v<std::remove_reference_t<Type>>});              \
-        }                                                                                         \
+#define PLAB_ARGUMENT(Type, member, label)                                                                                      \
+    template <class Table>                                                                                                      \
+    struct Argument<Type, Table>                                                                                                \
+    {                                                                                                                           \
+        static Type get(const PhaseCall& c, Table&, Row) { return *c.member; }                                                  \
+        static void note(std::vector<Access>& out) { out.push_back({label, !std::is_const_v<std::remove_reference_t<Type>>}); } \
     }
 PLAB_ARGUMENT(const StepContext&, context, "StepContext");
 PLAB_ARGUMENT(Bodies&, bodies, "Bodies");

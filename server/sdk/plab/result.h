@@ -47,19 +47,31 @@ template <class T>
 class [[nodiscard]] Result
 {
 public:
-    Result(T value) : state_(std::move(value)) {}                             // NOLINT: implicit by design
-    Result(Error error) : state_(Errors{std::move(error)}) {}                 // NOLINT
+    Result(T value) : state_(std::move(value)) {}                                           // NOLINT: implicit by design
+    Result(Error error) : state_(Errors{std::move(error)}) {}                               // NOLINT
     Result(Errors errors) : state_(std::move(errors)) { assert(!this->errors().empty()); }  // NOLINT
 
     bool ok() const { return state_.index() == 0; }
     explicit operator bool() const { return ok(); }
-    const T& value() const { assert(ok()); return std::get<0>(state_); }
-    T& value() { assert(ok()); return std::get<0>(state_); }
+    const T& value() const
+    {
+        assert(ok());
+        return std::get<0>(state_);
+    }
+    T& value()
+    {
+        assert(ok());
+        return std::get<0>(state_);
+    }
     const T& operator*() const { return value(); }
     T& operator*() { return value(); }
     const T* operator->() const { return &value(); }
     T* operator->() { return &value(); }
-    T take() { assert(ok()); return std::move(std::get<0>(state_)); }
+    T take()
+    {
+        assert(ok());
+        return std::move(std::get<0>(state_));
+    }
     const Errors& errors() const { return std::get<1>(state_); }
     const Error& error() const { return errors().front(); }
 
@@ -73,8 +85,8 @@ class [[nodiscard]] Result<void>
 {
 public:
     Result() = default;
-    Result(Error error) : errors_{std::move(error)} {}              // NOLINT
-    Result(Errors errors) : errors_(std::move(errors)) {}           // NOLINT
+    Result(Error error) : errors_{std::move(error)} {}     // NOLINT
+    Result(Errors errors) : errors_(std::move(errors)) {}  // NOLINT
 
     bool ok() const { return errors_.empty(); }
     explicit operator bool() const { return ok(); }

@@ -48,11 +48,11 @@ struct Field
     FieldKind kind = FieldKind::Param;
     FieldType type = FieldType::None;
     Unit unit;
-    Value fallback;             ///< used where the blueprint gives none; no value: the field is required
+    Value fallback;  ///< used where the blueprint gives none; no value: the field is required
     bool required = false;
     bool may_be_infinite = false;
-    bool hosted = false;        ///< lives in the host's table of the facet; the column only carries the initial value
-    bool is_error = false;      ///< an output that accounting reports as this interaction's error
+    bool hosted = false;    ///< lives in the host's table of the facet; the column only carries the initial value
+    bool is_error = false;  ///< an output that accounting reports as this interaction's error
     std::vector<Rule> rules;
     std::string doc;
     ColumnBase* column = nullptr;
@@ -63,12 +63,12 @@ struct Role
     std::string name;
     std::string doc;
     std::vector<Facet> facets;
-    std::string family;         ///< for Facet::Component: the type prefix that fits, e.g. "Response/"
-    std::string default_type;   ///< the short form makes a sub-component of this type where none is named
+    std::string family;        ///< for Facet::Component: the type prefix that fits, e.g. "Response/"
+    std::string default_type;  ///< the short form makes a sub-component of this type where none is named
     std::size_t min = 1, max = 1;
-    bool writes = false;        ///< acts on the participant; else only reads it
-    bool exclusive = false;     ///< no second component may act on the participant through such a role
-    bool independent = false;   ///< acts on each participant by itself: connects them to nothing
+    bool writes = false;       ///< acts on the participant; else only reads it
+    bool exclusive = false;    ///< no second component may act on the participant through such a role
+    bool independent = false;  ///< acts on each participant by itself: connects them to nothing
     Column<Ref>* one = nullptr;
     Column<RefList>* many = nullptr;
 };
@@ -79,7 +79,10 @@ class FieldBuilder
 {
 public:
     explicit FieldBuilder(Field& field) : field_(&field) {}
-    FieldBuilder& or_else(T value) { return field_->fallback = Value(std::in_place_type<T>, std::move(value)), field_->required = false, *this; }
+    FieldBuilder& or_else(T value)
+    {
+        return field_->fallback = Value(std::in_place_type<T>, std::move(value)), field_->required = false, *this;
+    }
     FieldBuilder& initially(T value) { return or_else(std::move(value)); }
     FieldBuilder& positive() { return rule({Rule::Kind::MoreThan, 0, {}}); }
     FieldBuilder& not_negative() { return rule({Rule::Kind::AtLeast, 0, {}}); }

@@ -14,7 +14,7 @@ namespace plab
 struct Ratio
 {
     double value = 1;
-    bool exact = false;          ///< numerator / denominator is the ratio itself
+    bool exact = false;  ///< numerator / denominator is the ratio itself
     std::int64_t numerator = 1;
     std::int64_t denominator = 1;
 };

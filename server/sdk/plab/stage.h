@@ -20,20 +20,20 @@ enum class Stage : std::uint8_t
 /// When the host calls a command. The order is the order of the step (server/simulation/step_tree.h holds the tree).
 enum class Phase : std::uint8_t
 {
-    Measure,  ///< Init: mass properties of a shape
-    Prepare,  ///< Init, and after a parameter changed: turn parameters into host rows, check rules across fields
-    Connect,  ///< Init, and after any structural change: contribute to structures built from all components
-    Drive,    ///< PreStep: once per step; may change own declared state
-    Force,    ///< Step: add wrenches; a pure function of time and state, at every solver stage
-    Couple,   ///< Step: relate speeds of shafts, at every solver stage and after impulses
-    Advance,  ///< Step: a solver advances its group
-    Detect,   ///< PostStep: find contacts
-    Locate,   ///< PostStep: choose trial times within a step that holds an event
-    Respond,  ///< PostStep: apply impulses to touching bodies
-    Finish,   ///< PostStep: outputs and history of a finished step
+    Measure,    ///< Init: mass properties of a shape
+    Prepare,    ///< Init, and after a parameter changed: turn parameters into host rows, check rules across fields
+    Connect,    ///< Init, and after any structural change: contribute to structures built from all components
+    Drive,      ///< PreStep: once per step; may change own declared state
+    Force,      ///< Step: add wrenches; a pure function of time and state, at every solver stage
+    Couple,     ///< Step: relate speeds of shafts, at every solver stage and after impulses
+    Advance,    ///< Step: a solver advances its group
+    Detect,     ///< PostStep: find contacts
+    Locate,     ///< PostStep: choose trial times within a step that holds an event
+    Respond,    ///< PostStep: apply impulses to touching bodies
+    Finish,     ///< PostStep: outputs and history of a finished step
     Potential,  ///< PostStep: energy stored by a conservative force; asked for when somebody reads energies
-    Draw,     ///< PostStep: show; never changes state
-    Restore,  ///< Rewind: participant's saved state comes back (done by the host; listed so that scenes can select it)
+    Draw,       ///< PostStep: show; never changes state
+    Restore,    ///< Rewind: participant's saved state comes back (done by the host; listed so that scenes can select it)
 };
 inline constexpr int kPhaseCount = static_cast<int>(Phase::Restore) + 1;
 
@@ -43,13 +43,18 @@ constexpr Stage stage_of(Phase phase)
     {
         case Phase::Measure:
         case Phase::Prepare:
-        case Phase::Connect: return Stage::Init;
-        case Phase::Drive: return Stage::PreStep;
+        case Phase::Connect:
+            return Stage::Init;
+        case Phase::Drive:
+            return Stage::PreStep;
         case Phase::Force:
         case Phase::Couple:
-        case Phase::Advance: return Stage::Step;
-        case Phase::Restore: return Stage::Rewind;
-        default: return Stage::PostStep;
+        case Phase::Advance:
+            return Stage::Step;
+        case Phase::Restore:
+            return Stage::Rewind;
+        default:
+            return Stage::PostStep;
     }
 }
 
@@ -61,8 +66,8 @@ constexpr std::string_view name_of(Stage stage)
 
 constexpr std::string_view name_of(Phase phase)
 {
-    constexpr std::string_view names[] = {"measure", "prepare", "connect", "drive",  "force",   "couple", "advance",
-                                          "detect",  "locate",  "respond", "finish", "potential", "draw", "restore"};
+    constexpr std::string_view names[] = {"measure", "prepare", "connect", "drive",  "force",     "couple", "advance",
+                                          "detect",  "locate",  "respond", "finish", "potential", "draw",   "restore"};
     return names[static_cast<int>(phase)];
 }
 

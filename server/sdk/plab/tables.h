@@ -26,29 +26,26 @@ enum class Motion : std::uint8_t
 struct Bodies
 {
     std::vector<Motion> motion;
-    std::vector<Vec3> position;          ///< p_WC, m
-    std::vector<Quat> orientation;       ///< q_WB
-    std::vector<Vec3> velocity;          ///< v_WC, m/s
-    std::vector<Vec3> angular_velocity;  ///< w_WB in W, rad/s
-    std::vector<Vec3> angular_momentum;  ///< about C, in W, N m s; dynamic bodies only
-    std::vector<double> mass;            ///< kg
-    std::vector<double> inverse_mass;    ///< 1/kg; 0 unless dynamic
-    std::vector<std::uint8_t> needle;    ///< 1: principal inertias so far apart that the angular velocity is the state
-    std::vector<Mat3> inertia_B;         ///< about C, in B, kg m^2
-    std::vector<Mat3> inverse_inertia_B; ///< 0 unless dynamic
-    std::vector<Vec3> center_B;          ///< p_BC, m
-    std::vector<std::uint32_t> material; ///< index into Materials
-    std::vector<RefList> shapes;         ///< Facet::Shape
+    std::vector<Vec3> position;           ///< p_WC, m
+    std::vector<Quat> orientation;        ///< q_WB
+    std::vector<Vec3> velocity;           ///< v_WC, m/s
+    std::vector<Vec3> angular_velocity;   ///< w_WB in W, rad/s
+    std::vector<Vec3> angular_momentum;   ///< about C, in W, N m s; dynamic bodies only
+    std::vector<double> mass;             ///< kg
+    std::vector<double> inverse_mass;     ///< 1/kg; 0 unless dynamic
+    std::vector<std::uint8_t> needle;     ///< 1: principal inertias so far apart that the angular velocity is the state
+    std::vector<Mat3> inertia_B;          ///< about C, in B, kg m^2
+    std::vector<Mat3> inverse_inertia_B;  ///< 0 unless dynamic
+    std::vector<Vec3> center_B;           ///< p_BC, m
+    std::vector<std::uint32_t> material;  ///< index into Materials
+    std::vector<RefList> shapes;          ///< Facet::Shape
 
     std::size_t size() const { return motion.size(); }
     bool dynamic(std::uint32_t i) const { return motion[i] == Motion::Dynamic; }
     /// X_WB, the frame as authored.
     Pose pose(std::uint32_t i) const { return {position[i] - rotate(orientation[i], center_B[i]), orientation[i]}; }
     /// Velocity of the point of body i that is at p_W.
-    Vec3 velocity_at(std::uint32_t i, const Vec3& p_W) const
-    {
-        return velocity[i] + cross(angular_velocity[i], p_W - position[i]);
-    }
+    Vec3 velocity_at(std::uint32_t i, const Vec3& p_W) const { return velocity[i] + cross(angular_velocity[i], p_W - position[i]); }
     /// Inverse inertia about C in W.
     Mat3 inverse_inertia_W(std::uint32_t i) const
     {
@@ -102,10 +99,10 @@ struct Shafts
     std::vector<Pose> axle;               ///< X_WA: origin on the axle, z along it, at angle 0; m
     std::vector<RefList> shapes;          ///< for drawing
     // Written by the host's constraint graph: angle = anchor + ratio * (angle of root - root_anchor).
-    std::vector<std::uint32_t> root;      ///< the shaft that carries the motion; itself where nothing joins it
-    std::vector<double> ratio;            ///< turns per turn of root; 1 where nothing joins it
-    std::vector<double> anchor;           ///< rad, own angle when it was joined
-    std::vector<double> root_anchor;      ///< rad, the root's angle then
+    std::vector<std::uint32_t> root;  ///< the shaft that carries the motion; itself where nothing joins it
+    std::vector<double> ratio;        ///< turns per turn of root; 1 where nothing joins it
+    std::vector<double> anchor;       ///< rad, own angle when it was joined
+    std::vector<double> root_anchor;  ///< rad, the root's angle then
 
     std::size_t size() const { return motion.size(); }
     bool dynamic(std::uint32_t i) const { return motion[i] == Motion::Dynamic; }
@@ -133,10 +130,10 @@ enum class GeometryKind : std::uint8_t
 struct Geometry
 {
     GeometryKind kind = GeometryKind::None;
-    Pose pose;                            ///< X_BS of the shape in its body
-    Vec3 size;                            ///< sphere: x = radius; box: half extents; plane: nothing (normal is z of S)
-    std::vector<Vec3> vertices;           ///< mesh, in S, m
-    std::vector<std::uint32_t> triangles; ///< mesh: index triples, counter-clockwise seen from outside
+    Pose pose;                             ///< X_BS of the shape in its body
+    Vec3 size;                             ///< sphere: x = radius; box: half extents; plane: nothing (normal is z of S)
+    std::vector<Vec3> vertices;            ///< mesh, in S, m
+    std::vector<std::uint32_t> triangles;  ///< mesh: index triples, counter-clockwise seen from outside
     bool hull_collides = false;
 };
 
@@ -144,8 +141,8 @@ struct Geometry
 struct Shapes
 {
     std::vector<Geometry> geometry;
-    std::vector<MassProperties> solid;       ///< by Shape/VolumeIntegration; valid where unmeasurable is empty
-    std::vector<std::string> unmeasurable;   ///< why there are no mass properties ("mesh is open at edge 3-7")
+    std::vector<MassProperties> solid;      ///< by Shape/VolumeIntegration; valid where unmeasurable is empty
+    std::vector<std::string> unmeasurable;  ///< why there are no mass properties ("mesh is open at edge 3-7")
     std::size_t size() const { return geometry.size(); }
 };
 

@@ -16,9 +16,21 @@ struct Vec3
 
     constexpr double operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
     constexpr double& operator[](int i) { return i == 0 ? x : (i == 1 ? y : z); }
-    constexpr Vec3& operator+=(const Vec3& b) { x += b.x, y += b.y, z += b.z; return *this; }
-    constexpr Vec3& operator-=(const Vec3& b) { x -= b.x, y -= b.y, z -= b.z; return *this; }
-    constexpr Vec3& operator*=(double s) { x *= s, y *= s, z *= s; return *this; }
+    constexpr Vec3& operator+=(const Vec3& b)
+    {
+        x += b.x, y += b.y, z += b.z;
+        return *this;
+    }
+    constexpr Vec3& operator-=(const Vec3& b)
+    {
+        x -= b.x, y -= b.y, z -= b.z;
+        return *this;
+    }
+    constexpr Vec3& operator*=(double s)
+    {
+        x *= s, y *= s, z *= s;
+        return *this;
+    }
     friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
 };
 
@@ -29,10 +41,7 @@ constexpr Vec3 operator*(Vec3 a, double s) { return a *= s; }
 constexpr Vec3 operator*(double s, Vec3 a) { return a *= s; }
 constexpr Vec3 operator/(const Vec3& a, double s) { return {a.x / s, a.y / s, a.z / s}; }
 constexpr double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-constexpr Vec3 cross(const Vec3& a, const Vec3& b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+constexpr Vec3 cross(const Vec3& a, const Vec3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 constexpr double length_squared(const Vec3& a) { return dot(a, a); }
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 /// The direction of a; the zero vector stays zero.
@@ -78,8 +87,7 @@ constexpr Mat3 operator*(const Mat3& a, const Mat3& b)
 {
     Mat3 r;
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            r.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j];
+        for (int j = 0; j < 3; ++j) r.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j];
     return r;
 }
 constexpr Mat3 operator+(const Mat3& a, const Mat3& b)
@@ -113,8 +121,7 @@ constexpr Mat3 outer(const Vec3& a, const Vec3& b)
 constexpr Mat3 cross_matrix(const Vec3& a) { return {{{0, -a.z, a.y}, {a.z, 0, -a.x}, {-a.y, a.x, 0}}}; }
 constexpr double determinant(const Mat3& a)
 {
-    return a.m[0][0] * (a.m[1][1] * a.m[2][2] - a.m[1][2] * a.m[2][1]) -
-           a.m[0][1] * (a.m[1][0] * a.m[2][2] - a.m[1][2] * a.m[2][0]) +
+    return a.m[0][0] * (a.m[1][1] * a.m[2][2] - a.m[1][2] * a.m[2][1]) - a.m[0][1] * (a.m[1][0] * a.m[2][2] - a.m[1][2] * a.m[2][0]) +
            a.m[0][2] * (a.m[1][0] * a.m[2][1] - a.m[1][1] * a.m[2][0]);
 }
 /// The inverse by cofactors. The caller makes sure that a is not singular.
@@ -150,10 +157,7 @@ inline Quat normalized(const Quat& q)
     const double n = norm(q);
     return {q.w / n, q.x / n, q.y / n, q.z / n};
 }
-inline bool is_finite(const Quat& q)
-{
-    return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
-}
+inline bool is_finite(const Quat& q) { return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z); }
 /// The rotation matrix of a unit quaternion.
 constexpr Mat3 rotation_matrix(const Quat& q)
 {

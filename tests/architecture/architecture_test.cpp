@@ -1,0 +1,151 @@
+// The tree against table.h, and each rule against files that break it.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "rules.h"
+#include "table.h"
+
+using namespace plab::architecture;
+
+namespace
+{
+
+const std::vector<File>& tree()
+{
+    static const std::vector<File> files = read_tree(PLAB_SOURCE_DIR);
+    return files;
+}
+
+template <class Check>
+int complain_about(Check&& check, bool sources_only)
+{
+    int checked = 0;
+    for (const File& file : tree())
+    {
+        if (sources_only && !is_source(file.path))
+            continue;
+        ++checked;
+        for (const std::string& complaint : check(file)) FAIL_CHECK(complaint);
+    }
+    return checked;
+}
+
+bool breaks(const char* path, const std::string& text)
+{
+    static const Paths known = paths_of(tree());
+    return !check_includes({path, text + "\n"}, known).empty();
+}
+
+}  // namespace
+
+TEST_CASE("every include runs downhill")
+{
+    const Paths known = paths_of(tree());
+    CHECK(complain_about([&](const File& file) { return check_includes(file, known); }, true) > 200);
+}
+
+TEST_CASE("the table names folders that exist")
+{
+    for (const Layer& layer : layers())
+    {
+        const std::string_view folder = layer.folder.substr(0, layer.folder.find("/*"));
+        CAPTURE(folder);
+        CHECK(std::ranges::any_of(tree(), [&](const File& file) { return file.path.starts_with(folder); }));
+    }
+}
+
+TEST_CASE("no file is long")
+{
+    for (const File& file : tree())
+        if (is_source(file.path))
+            for (const std::string& long_file : check_length(file, kLinesWanted)) MESSAGE(long_file);
+    CHECK(complain_about([](const File& file) { return check_length(file, kLinesAllowed); }, true) > 200);
+}
+
+TEST_CASE("nothing is left to be done")
+{
+    CHECK(complain_about(check_leftovers, false) > 300);
+}
+
+TEST_CASE("no file names a folder of one machine")
+{
+    CHECK(complain_about(check_machine_paths, false) > 300);
+}
+
+TEST_CASE("every folder that builds something says what it is for")
+{
+    CHECK(check_readmes(paths_of(tree())) == Complaints{});
+}
+
+TEST_CASE("what breaks the table is seen, layer by layer")
+{
+    CHECK(breaks("server/sdk/plab/a.h", "#include \"model/text.h\""));
+    CHECK(breaks("server/sdk/plab/a.h", "#include <ode/ode.h>"));
+    CHECK(breaks("server/sdk/plab/a.h", "#include <math.h>"));
+    CHECK(breaks("server/model/a.cpp", "#include \"world/world.h\""));
+    CHECK(breaks("server/model/a.cpp", "#include <expat.h>"));
+    CHECK(breaks("server/world/a.cpp", "#include \"simulation/stepper.h\""));
+    CHECK(breaks("server/blueprint/a.cpp", "#include \"world/world.h\""));
+    CHECK(breaks("server/blueprint/a.h", "#include <expat.h>"));
+    CHECK(breaks("server/plugins/a.cpp", "#include \"blueprint/tree.h\""));
+    CHECK(breaks("server/plugins/a.h", "#include <dlfcn.h>"));
+    CHECK(breaks("server/simulation/a.cpp", "#include \"plugins/library.h\""));
+    CHECK(breaks("server/simulation/a.cpp", "#include <spdlog/spdlog.h>"));
+    CHECK(breaks("server/daemon/a.cpp", "#include \"support/scene.h\""));
+    CHECK(breaks("server/daemon/a.cpp", "#include <dlfcn.h>"));
+    CHECK(breaks("server/objects/bodies/a.cpp", "#include \"model/text.h\""));
+    CHECK(breaks("server/objects/bodies/a.cpp", "#include \"objects/shapes/sphere.h\""));
+    CHECK(breaks("interactions/fields/a.cpp", "#include \"world/world.h\""));
+    CHECK(breaks("interactions/fields/a.cpp", "#include \"../response/impulse.h\""));
+    CHECK(breaks("interactions/response/a.cpp", "#include <ode/ode.h>"));
+    CHECK(breaks("interactions/detection/a.cpp", "#include <lua.hpp>"));
+    CHECK(breaks("interactions/scripts/lua/a.cpp", "#include <ode/ode.h>"));
+    CHECK(breaks("tests/a.cpp", "#include <spdlog/spdlog.h>"));
+    CHECK(breaks("server/new_layer/a.cpp", ""));
+    CHECK(breaks("server/model/a.cpp", "#include \"no_such_file.h\""));
+    CHECK(breaks("server/model/a.cpp", "  #  include HEADER"));
+}
+
+TEST_CASE("what keeps to the table is not")
+{
+    CHECK_FALSE(breaks("server/model/a.cpp", "#include \"plab/result.h\"\n#include <vector>\n// #include <ode/ode.h>"));
+    CHECK_FALSE(breaks("server/simulation/a.cpp", "#include \"world/world.h\"  // why"));
+    CHECK_FALSE(breaks("server/blueprint/a.cpp", "#include <expat.h>"));
+    CHECK_FALSE(breaks("server/objects/shapes/a.cpp", "#include \"sphere.h\""));
+    CHECK_FALSE(breaks("interactions/constraints/angular_velocity/a.cpp",
+                       "#include \"ratio.h\"\n#include \"angular_velocity/graph.h\""));
+    CHECK_FALSE(breaks("tests/unit/a.cpp", "#include \"world/world.h\"\n#include <doctest/doctest.h>"));
+}
+
+TEST_CASE("what breaks the other rules is seen, with its place")
+{
+    CHECK(check_length({"a.cpp", "1\n2\n3\n"}, 2) == Complaints{"a.cpp:1: 3 lines, at most 2"});
+    CHECK(check_length({"a.cpp", "1\n2\n3\n"}, 3).empty());
+    CHECK(check_leftovers({"a.cpp",
+                           "int a;\n// TO"
+                           "DO: more\n"}) == Complaints{"a.cpp:2: unfinished: TO"
+                                                        "DO"});
+    CHECK(check_leftovers({"a.cpp",
+                           "// FIX"
+                           "ME\n"})
+              .size() == 1);
+    CHECK(check_leftovers({"a.cpp",
+                           "// XX"
+                           "X\n"})
+              .size() == 1);
+    CHECK(check_machine_paths({"a.md",
+                               "see\n/ho"
+                               "me/me/notes\n"}) == Complaints{"a.md:2: names a folder of one machine: /ho"
+                                                               "me/"});
+    CHECK(check_machine_paths({"a.md",
+                               "cd /wo"
+                               "rk/main"})
+              .size() == 1);
+    CHECK(check_machine_paths({"a.md",
+                               "docs/ho"
+                               "me/index"})
+              .empty());
+    CHECK(check_readmes({"server/CMakeLists.txt", "server/README.md", "server/world/CMakeLists.txt"}) ==
+          Complaints{"server/world: has no README.md"});
+}

@@ -1,0 +1,72 @@
+/// The architecture as data: who may include whom. The only place in the tests that says so.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace plab::architecture
+{
+
+using Words = std::vector<std::string_view>;
+
+struct Layer
+{
+    std::string_view folder;  ///< "x/*" stands for each folder in x: its files may include their own folder, not their sisters
+    Words may_include;        ///< layers, beside its own folder and the C++ standard library
+    Words third_party;        ///< headers, or folders of headers with their '/'
+    bool headers_too = true;  ///< third party may stand in its headers as well
+};
+
+/// A file belongs to the first layer that holds it. Dependencies run downhill: whatever is not listed is forbidden.
+inline const std::vector<Layer>& layers()
+{
+    static const std::vector<Layer> table{
+        {"server/sdk", {}, {}},
+        {"server/model", {"server/sdk"}, {}},
+        {"server/world", {"server/sdk", "server/model"}, {}},
+        {"server/blueprint", {"server/sdk", "server/model"}, {"expat.h"}, false},
+        {"server/plugins", {"server/sdk", "server/model"}, {"dlfcn.h"}, false},
+        {"server/simulation", {"server/sdk", "server/model", "server/world"}, {}},
+        {"server/daemon",
+         {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation"},
+         {"spdlog/", "CLI/", "unistd.h"},
+         false},
+        {"server/objects/*", {"server/sdk"}, {}},
+        {"interactions/detection", {"server/sdk"}, {"ode/"}},
+        {"interactions/scripts", {"server/sdk"}, {"lua.hpp"}},
+        {"interactions/*", {"server/sdk"}, {}},
+        {"tests", {"server", "interactions"}, {"doctest/", "nlohmann/", "unistd.h", "sys/wait.h"}},
+    };
+    return table;
+}
+
+/// Folders that includes are relative to, beside the file's own folder and the root of its layer.
+inline const Words& include_roots()
+{
+    static const Words roots{"server/sdk", "server", "interactions", "tests", ""};
+    return roots;
+}
+
+/// C++20, without the C library's own names (<math.h>): those put functions into the global name space.
+inline const Words& standard_headers()
+{
+    // clang-format off
+    static const Words headers{
+        "algorithm", "any", "array", "atomic", "barrier", "bit", "bitset", "cassert", "cctype", "cerrno", "cfenv",
+        "cfloat", "charconv", "chrono", "cinttypes", "climits", "clocale", "cmath", "compare", "complex", "concepts",
+        "condition_variable", "csetjmp", "csignal", "cstdarg", "cstddef", "cstdint", "cstdio", "cstdlib", "cstring",
+        "ctime", "cwchar", "deque", "exception", "execution", "filesystem", "forward_list", "fstream", "functional",
+        "future", "initializer_list", "iomanip", "ios", "iosfwd", "iostream", "istream", "iterator", "latch",
+        "limits", "list", "locale", "map", "memory", "memory_resource", "mutex", "new", "numbers", "numeric",
+        "optional", "ostream", "queue", "random", "ranges", "ratio", "regex", "scoped_allocator", "semaphore", "set",
+        "shared_mutex", "source_location", "span", "sstream", "stack", "stdexcept", "stop_token", "streambuf",
+        "string", "string_view", "system_error", "thread", "tuple", "type_traits", "typeindex", "typeinfo",
+        "unordered_map", "unordered_set", "utility", "valarray", "variant", "vector", "version"};
+    // clang-format on
+    return headers;
+}
+
+inline constexpr int kLinesWanted = 400;   ///< more are listed
+inline constexpr int kLinesAllowed = 450;  ///< more fail
+
+}  // namespace plab::architecture
