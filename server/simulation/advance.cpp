@@ -42,6 +42,7 @@ void Stepper::advance_batches()
     for (std::size_t b = 0; b < batches_.size(); ++b)
     {
         if (!batch_fine_[b]) freeze(*batch_systems_[b]);
+        batch_systems_[b]->add_reactions(reactions_);
         if (batches_.size() == 1) continue;
         for (std::size_t i = 0; i < work_.size(); ++i) work_[i] += batch_work_[b][i];
         std::fill(batch_work_[b].begin(), batch_work_[b].end(), 0.0);
@@ -153,7 +154,7 @@ void Stepper::advance_smooth(std::span<const std::uint32_t> groups, std::span<co
     if (solvers_.size() == 1)
     {
         GroupSystem& system = system_for(groups, shadows);
-        if (!run_solver(system, solvers_.front(), from, to, book, trial) && !trial) freeze(system);
+        finish_advance(system, run_solver(system, solvers_.front(), from, to, book, trial), to, trial);
         return;
     }
     for (std::size_t i = 0; i < solvers_.size(); ++i)
@@ -162,8 +163,15 @@ void Stepper::advance_smooth(std::span<const std::uint32_t> groups, std::span<co
         for (const std::uint32_t g : groups)
             if (groups_.all[g].solver == solvers_[i]) same_solver_.push_back(g);
         GroupSystem& system = system_for(same_solver_, shadows);
-        if (!run_solver(system, solvers_[i], from, to, book, trial) && !trial) freeze(system);
+        finish_advance(system, run_solver(system, solvers_[i], from, to, book, trial), to, trial);
     }
+}
+
+void Stepper::finish_advance(GroupSystem& system, bool finite, double to, bool trial)
+{
+    if (trial) return;
+    if (!finite) freeze(system);
+    if (to == frame_.step) system.add_reactions(reactions_);
 }
 
 void Stepper::rewind(std::uint32_t g)
@@ -212,16 +220,14 @@ void Stepper::freeze(GroupSystem& system)
     };
     for (const std::uint32_t b : system.bodies())
     {
-        if (is_finite(host.bodies.position[b]) && is_finite(host.bodies.velocity[b]) && is_finite(host.bodies.orientation[b]) &&
-            is_finite(host.bodies.angular_velocity[b]))
-            continue;
+        if (is_finite(host.bodies, b)) continue;
         start_.restore_body(host, b);
         host.bodies.velocity[b] = host.bodies.angular_velocity[b] = host.bodies.angular_momentum[b] = {};
         report({Facet::Body, b});
     }
     for (const std::uint32_t s : system.shafts())
     {
-        if (std::isfinite(host.shafts.angle[s]) && std::isfinite(host.shafts.speed[s])) continue;
+        if (is_finite(host.shafts, s)) continue;
         start_.restore_shaft(host, s);
         host.shafts.speed[s] = 0;
         report({Facet::Shaft, s});

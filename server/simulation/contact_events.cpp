@@ -18,12 +18,11 @@ void Stepper::locate_events() { EventLocator(*this).run(found_); }
 
 void Stepper::update_pair(PairState& pair, std::size_t begin, std::size_t end)
 {
-    bool overlaps = false, separating = true;
+    bool overlaps = false;
     for (std::size_t i = begin; i < end; ++i)
     {
         const Contact& c = found_[i].contact;
         overlaps = overlaps || c.depth > 0;
-        separating = separating && normal_velocity(c) > 0;
         found_[i].contact.id = cache_.contact_of(pair, c.feature).id;
     }
     const auto seen = [&](const KnownContact& k)
@@ -36,8 +35,6 @@ void Stepper::update_pair(PairState& pair, std::size_t begin, std::size_t end)
     pair.count = static_cast<std::uint32_t>(past - pair.contacts.begin());
     pair.overlapping = overlaps;
     if (end > begin) pair.normal = found_[begin].contact.normal;
-    // A standing contact that forces pull apart is one no more; its gap decides when it ends.
-    if (pair.resting && separating && end > begin) pair.resting = false;
 }
 
 bool Stepper::is_of_pair(const FoundContact& f, const PairState& pair) const

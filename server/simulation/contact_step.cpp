@@ -193,6 +193,7 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
     }
     system.move_shafts(h, shafts);
     system.move_prescribed();
+    finish_advance(system, system.all_finite(), to, trial);
 }
 
 void Stepper::keep_impulses(const std::vector<FoundContact>& contacts)

@@ -140,9 +140,8 @@ void EventLocator::locate(Candidate& candidate)
     Trial trial;
     trial.begin = begin_of_scope(), trial.end = trial.step = s_->frame_.step;
     for (const FoundContact& f : candidate.contacts) trial.depth = std::max(trial.depth, f.contact.depth);
-    const PairState* pair = s_->cache_.find(s_->detectors_[candidate.detector].component, candidate.a, candidate.b, s_->world_);
-    const bool overlapping_before = pair && pair->overlapping;
-    if (!overlapping_before && !overlaps_at(candidate, trial.begin))
+    at_end_ = candidate.contacts;
+    if (!overlaps_at(candidate, trial.begin))
     {
         bracket(candidate, trial);
         candidate.time = trial.begin;
@@ -150,8 +149,15 @@ void EventLocator::locate(Candidate& candidate)
     }
     else
     {
-        candidate.time = trial.begin;  // nothing to bracket: it is answered where the piece begins
-        candidate.stuck = true;
+        // Overlapping where the piece begins: nothing to bracket. A pair that closes is answered there; one that parts is
+        // left alone until the end of the step.
+        const auto closes = [&](const FoundContact& f) { return s_->normal_velocity(f.contact) <= 0; };
+        candidate.stuck = std::any_of(candidate.contacts.begin(), candidate.contacts.end(), closes);
+        candidate.at_end = !candidate.stuck;
+        if (candidate.stuck)
+            candidate.time = trial.begin;
+        else
+            candidate.contacts = at_end_;
     }
     for (const std::uint32_t g : scope_) s_->restore_end(g);
 }
@@ -225,6 +231,14 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
     }
 }
 
+void EventLocator::keep_if_it_cannot_leave(Contact& c) const
+{
+    // It overlapped from the start: a rebound that does not clear the overlap would be answered again and again.
+    const double speed = s_->normal_velocity(c);
+    const double way = std::max(c.depth, kStandingMargin);
+    if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * way)) c.resting = true;
+}
+
 void EventLocator::answer(Candidate& candidate)
 {
     const double time = s_->frame_.start_time + candidate.time;
@@ -240,9 +254,8 @@ void EventLocator::answer(Candidate& candidate)
         for (std::size_t i = 0; i < own; ++i) s_->fill_material(impact_[i]), impact_[i].contact.impulse = {};
         rate_of_approach(impact_, candidate.time);
         s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
-        // Overlapping from the start and not parted by the response: it stands, whatever the response says.
-        for (std::size_t i = 0; i < own; ++i)
-            if (candidate.stuck && s_->normal_velocity(impact_[i].contact) <= 0) impact_[i].contact.resting = true;
+        if (candidate.stuck)
+            for (std::size_t i = 0; i < own; ++i) keep_if_it_cannot_leave(impact_[i].contact);
     }
     record(candidate, impact_, time);
     ++s_->report_.events;

@@ -44,6 +44,7 @@ private:
     bool process(Candidate& candidate);
     /// Rewinds the scope and advances it from where its pieces began to `time`.
     void advance_scope(double time, WorkBook book, bool trial);
+    void keep_if_it_cannot_leave(Contact& c) const;
     void answer(Candidate& candidate);
     void look_from_the_clear_side(Candidate& candidate);
     void rate_of_approach(std::vector<FoundContact>& contacts, double at);
@@ -56,7 +57,7 @@ private:
     std::vector<Candidate> candidates_;
     std::vector<std::uint32_t> scope_;  ///< groups that go back, ascending
     std::vector<std::uint8_t> in_scope_;
-    std::vector<FoundContact> seen_, impact_;
+    std::vector<FoundContact> seen_, impact_, at_end_;
 };
 
 }  // namespace plab::simulation

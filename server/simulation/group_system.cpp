@@ -253,6 +253,18 @@ void GroupSystem::evaluate(double t, double weight)
     rates_of_shafts(weight);
 }
 
+void GroupSystem::evaluate_here()
+{
+    evaluate(0, 0);
+    if (!book_.work) return;
+    std::span<double> before = workspace(0);
+    std::copy(speeds_.begin(), speeds_.end(), before.begin());
+    for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] += 0.5 * context_.dt * speed_rates_[i];
+    evaluate(0, 1);
+    std::copy(before.begin(), before.end(), speeds_.begin());
+    evaluate(0, 0);  // booked or not, the kick is made with the same bits
+}
+
 void GroupSystem::evaluate_kinematics()
 {
     scatter(0);
@@ -292,19 +304,24 @@ std::span<double> GroupSystem::workspace(int i)
 bool GroupSystem::finish()
 {
     scatter(context_.dt);
-    world::HostTables& host = frame_.world->host();
-    not_finite_ = {};
-    for (const std::uint32_t b : bodies_)
-    {
-        host.bodies.orientation[b] = normalized(host.bodies.orientation[b]);
-        const bool fine = is_finite(host.bodies.position[b]) && is_finite(host.bodies.velocity[b]) &&
-                          is_finite(host.bodies.orientation[b]) && is_finite(host.bodies.angular_velocity[b]);
-        if (!fine && !not_finite_.valid()) not_finite_ = {Facet::Body, b};
-    }
-    for (const std::uint32_t s : shafts_)
-        if (!(std::isfinite(host.shafts.angle[s]) && std::isfinite(host.shafts.speed[s])) && !not_finite_.valid())
-            not_finite_ = {Facet::Shaft, s};
-    return !not_finite_.valid();
+    Bodies& bodies = frame_.world->host().bodies;
+    for (const std::uint32_t b : bodies_) bodies.orientation[b] = normalized(bodies.orientation[b]);
+    return all_finite();
 }
+
+bool GroupSystem::all_finite() const
+{
+    const world::HostTables& host = frame_.world->host();
+    return std::all_of(bodies_.begin(), bodies_.end(), [&](std::uint32_t b) { return is_finite(host.bodies, b); }) &&
+           std::all_of(shafts_.begin(), shafts_.end(), [&](std::uint32_t s) { return is_finite(host.shafts, s); });
+}
+
+bool is_finite(const Bodies& bodies, std::uint32_t b)
+{
+    return plab::is_finite(bodies.position[b]) && plab::is_finite(bodies.velocity[b]) && plab::is_finite(bodies.orientation[b]) &&
+           plab::is_finite(bodies.angular_velocity[b]);
+}
+
+bool is_finite(const Shafts& shafts, std::uint32_t s) { return std::isfinite(shafts.angle[s]) && std::isfinite(shafts.speed[s]); }
 
 }  // namespace plab::simulation

@@ -35,6 +35,10 @@ struct WorkBook
     double sign = 1;                      ///< -1 takes back what a rewound piece had booked
 };
 
+/// Whether pose and velocities are numbers still.
+bool is_finite(const Bodies& bodies, std::uint32_t b);
+bool is_finite(const Shafts& shafts, std::uint32_t s);
+
 class GroupSystem final : public DynamicSystem
 {
 public:
@@ -47,8 +51,10 @@ public:
     void begin(double from, double to, WorkBook book, EventSink* events);
     /// Puts the solver's result into the tables. False if something is not finite any more.
     bool finish();
-    /// Only forces: adds them up at the present state and returns accelerations in the rates (for contact steps).
-    void evaluate_here() { evaluate(0, 1); }
+    bool all_finite() const;
+    /// Forces and rates at the present state, for contact steps. Their work over the kick that follows is booked with the
+    /// mean of the speeds before and after it, which for constant forces is what they do.
+    void evaluate_here();
 
     /// For contact steps, after evaluate_here: shafts by the mean of old and new speeds, prescribed members to the end.
     void move_shafts(double h, Shafts& shafts);
@@ -64,8 +70,6 @@ public:
     Vec3 torque(std::size_t member) const { return wrenches_.torque[bodies_[member]]; }
     /// Changes a member body's velocity and spin by what the forces of evaluate_here do in h.
     void kick(std::size_t member, double h);
-    /// The first member whose state is not finite, after finish() said so.
-    Ref not_finite() const { return not_finite_; }
     /// Torques of couplings, from the last evaluation.
     void add_reactions(ShaftTorques& torques) const { shaft_system_.add_reactions(torques); }
     /// Adds the time that forces took since the last call, ns by table.
@@ -121,7 +125,6 @@ private:
     std::vector<Vec3> start_position_;
     std::vector<Quat> start_orientation_;
     std::vector<double> start_angle_;
-    Ref not_finite_;
 };
 
 }  // namespace plab::simulation

@@ -26,6 +26,7 @@ void Stepper::step(Tick tick, double start_time, double dt)
     const std::uint64_t before = now_ns();
     events_.clear();
     report_ = {};
+    reactions_.clear();
     frame_ = {&world_, &schedule_, &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed};
     for (const StepNode& node : kStepTree)
         if ((this->*node.needed)()) (this->*node.run)();
@@ -83,9 +84,6 @@ void Stepper::couple_speeds()
 
 void Stepper::finish()
 {
-    reactions_.clear();
-    if (batches_ready_ && !world_.host().shafts.motion.empty())
-        for (std::size_t b = 0; b < batches_.size(); ++b) batch_systems_[b]->add_reactions(reactions_);
     StepContext context;
     context.time = frame_.start_time + frame_.step, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
     context.events = this;

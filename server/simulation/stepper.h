@@ -99,6 +99,7 @@ private:
     bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, bool trial);
     void split_by_contact(std::span<const std::uint32_t> groups);
     void collect_shadows(std::span<const std::uint32_t> groups);
+    void finish_advance(GroupSystem& system, bool finite, double to, bool trial);
     void rewind(std::uint32_t group);
     void save_segment(std::uint32_t group);
     void save_end(std::uint32_t group);

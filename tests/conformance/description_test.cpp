@@ -17,15 +17,12 @@ namespace
 bool is_snake_case(const std::string& name)
 {
     const auto fits = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
-    return !name.empty() && name.front() >= 'a' && name.front() <= 'z' && name.back() != '_' &&
-           name.find("__") == std::string::npos && std::all_of(name.begin(), name.end(), fits);
+    return !name.empty() && name.front() >= 'a' && name.front() <= 'z' && name.back() != '_' && name.find("__") == std::string::npos &&
+           std::all_of(name.begin(), name.end(), fits);
 }
 
 /// A doc is a remark in a list: no capital sentence mark at its end, no blanks around it.
-bool is_doc(const std::string& text)
-{
-    return !text.empty() && text.front() != ' ' && text.back() != ' ' && text.back() != '.';
-}
+bool is_doc(const std::string& text) { return !text.empty() && text.front() != ' ' && text.back() != ' ' && text.back() != '.'; }
 
 bool can_have_unit(FieldType type)
 {
@@ -35,8 +32,7 @@ bool can_have_unit(FieldType type)
 void check_unit(const Field& field)
 {
     CHECK((field.unit == unit::one) == field.unit.symbol.empty());
-    if (field.unit == unit::one)
-        return;
+    if (field.unit == unit::one) return;
     CHECK(can_have_unit(field.type));
     const auto parsed = model::parse_unit(field.unit.symbol);
     REQUIRE_MESSAGE(parsed.ok(), "nobody can write the unit '", field.unit.symbol, "'");
@@ -47,15 +43,13 @@ void check_unit(const Field& field)
 void check_default(const Field& field)
 {
     const bool settable = field.kind == FieldKind::Param || field.kind == FieldKind::State;
-    if (!settable || field.required)
-        return;
+    if (!settable || field.required) return;
     Value value = field.fallback;
     const auto fits = model::check_value(value, field);
-    CHECK_MESSAGE(fits.ok(), first_error(fits.errors()));
+    CHECK_MESSAGE(fits.ok(), reasons(fits));
     CHECK(value == field.fallback);
     const auto again = model::parse_value(model::format_value(field.fallback), field);
-    if (field.type == FieldType::Text || field.type == FieldType::EntryList)
-        return;
+    if (field.type == FieldType::Text || field.type == FieldType::EntryList) return;
     REQUIRE_MESSAGE(again.ok(), "the printed default does not read back: ", model::format_value(field.fallback));
     CHECK(*again == field.fallback);
 }
@@ -64,8 +58,7 @@ void check_role(const Role& role)
 {
     CHECK(is_snake_case(role.name));
     CHECK(is_doc(role.doc));
-    if (role.default_type.empty())
-        return;
+    if (role.default_type.empty()) return;
     const auto made = library().require(role.default_type);
     REQUIRE_MESSAGE(made.ok(), "the default type is unknown: ", role.default_type);
     CHECK(std::find(role.facets.begin(), role.facets.end(), (*made)->info.facet) != role.facets.end());
@@ -74,8 +67,7 @@ void check_role(const Role& role)
 void check_command(const CommandInfo& command)
 {
     const std::size_t slash = command.name.find('/');
-    CHECK_MESSAGE((slash != std::string::npos && slash > 0 && slash + 1 < command.name.size()),
-                  "a command is called Kind/Verb");
+    CHECK_MESSAGE((slash != std::string::npos && slash > 0 && slash + 1 < command.name.size()), "a command is called Kind/Verb");
     CHECK(is_doc(command.doc));
 }
 
@@ -101,7 +93,7 @@ TEST_CASE("every type says what it is, field by field, role by role, command by 
     {
         CAPTURE(name);
         const auto type = library().require(name);
-        REQUIRE_MESSAGE(type.ok(), first_error(type.errors()));
+        REQUIRE_MESSAGE(type.ok(), reasons(type));
         const TypeInfo& info = (*type)->info;
         CHECK(info.name == name);
         CHECK(is_doc(info.doc));
@@ -138,10 +130,8 @@ TEST_CASE("manifest and plugin name the same types, and the stamp fits")
     std::set<std::string> libraries, manifests;
     for (const auto& entry : fs::directory_iterator(PLAB_BINARY_DIR "/lib/plab"))
     {
-        if (entry.path().extension() == ".so")
-            libraries.insert(entry.path().stem().string());
-        if (entry.path().extension() == ".manifest")
-            manifests.insert(entry.path().stem().string());
+        if (entry.path().extension() == ".so") libraries.insert(entry.path().stem().string());
+        if (entry.path().extension() == ".manifest") manifests.insert(entry.path().stem().string());
     }
     CHECK(!libraries.empty());
     CHECK(libraries == manifests);
@@ -150,7 +140,7 @@ TEST_CASE("manifest and plugin name the same types, and the stamp fits")
         CAPTURE(name);
         const std::string path = std::string(PLAB_BINARY_DIR "/lib/plab/") + name;
         const auto opened = plugins::open_plugin(path + ".so");
-        REQUIRE_MESSAGE(opened.ok(), first_error(opened.errors()));
+        REQUIRE_MESSAGE(opened.ok(), reasons(opened));
         CHECK(opened->name == name);
         const auto info = library().load_plugin(path + ".so");
         const auto manifest = plugins::read_manifest(path + ".manifest");

@@ -17,10 +17,10 @@ public:
     {
         world_.scene().settings = scene.settings;
         const auto added = world_.add(scene);
-        REQUIRE_MESSAGE(added.ok(), first_error(added.errors()));
+        REQUIRE_MESSAGE(added.ok(), reasons(added));
         stepper_ = std::make_unique<simulation::Stepper>(world_, 1);
         const auto built = stepper_->rebuild();
-        REQUIRE_MESSAGE(built.ok(), first_error(built.errors()));
+        REQUIRE_MESSAGE(built.ok(), reasons(built));
     }
     struct Memento
     {

@@ -104,13 +104,12 @@ TEST_CASE("every command does nothing for no rows")
         table->describe(schema);
         for (const CommandInfo& command : (*type)->info.commands)
         {
-            if (!command.run)
-                continue;
+            if (!command.run) continue;
             CAPTURE(command.name);
             Host host;
             const std::vector<std::uint8_t> before = host.state();
             const auto done = command.run(host.call, table->rows());
-            CHECK_MESSAGE(done.ok(), first_error(done.errors()));
+            CHECK_MESSAGE(done.ok(), reasons(done));
             CHECK(host.state() == before);
             CHECK(host.recorder.calls == 0);
             CHECK(host.changes.empty());

@@ -28,10 +28,7 @@ void shuffle(std::vector<T>& items, std::uint64_t seed)
     }
 }
 
-model::Blueprint scene_of(const Subject& subject)
-{
-    return subject.repeatable() ? repeated(subject) : subject.blueprint;
-}
+model::Blueprint scene_of(const Subject& subject) { return subject.repeatable() ? repeated(subject) : subject.blueprint; }
 
 }  // namespace
 

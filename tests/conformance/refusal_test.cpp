@@ -104,14 +104,11 @@ std::vector<std::string> bad_texts(const Field& field)
     if (const int count = count_of(field.type))
     {
         for (const char* word : {"many", "nan", "-nan", "0,5", "0x10", "1e999"}) out.push_back(last_is(word, field.type));
-        if (!field.may_be_infinite)
-            out.insert(out.end(), {last_is("inf", field.type), last_is("-inf", field.type)});
+        if (!field.may_be_infinite) out.insert(out.end(), {last_is("inf", field.type), last_is("-inf", field.type)});
         const std::string unit = model::unit_fits(unit::kilogram.dimension, field.unit.dimension) ? " m" : " kg";
         out.push_back(last_is("1", field.type) + unit);
-        if (field.type != FieldType::RealList)
-            out.insert(out.end(), {std::string(), last_is("1", field.type) + " 1 1 1 1"});
-        if (count > 1)
-            out.push_back("1 2");
+        if (field.type != FieldType::RealList) out.insert(out.end(), {std::string(), last_is("1", field.type) + " 1 1 1 1"});
+        if (count > 1) out.push_back("1 2");
     }
     for (const Rule& rule : field.rules) add_breaking(out, field, rule);
     return out;
@@ -122,14 +119,11 @@ std::vector<Value> bad_values(const Field& field)
 {
     std::vector<Value> out;
     out.push_back({});
-    if (field.type != FieldType::Text)
-        out.push_back(std::string("many"));
-    if (field.type != FieldType::Boolean)
-        out.push_back(true);
+    if (field.type != FieldType::Text) out.push_back(std::string("many"));
+    if (field.type != FieldType::Boolean) out.push_back(true);
     for (const double x : {kNan, kInfinity, -kInfinity})
     {
-        if (std::isinf(x) && field.may_be_infinite)
-            continue;
+        if (std::isinf(x) && field.may_be_infinite) continue;
         out.push_back(x);
         out.push_back(Vec3{0, x, 1});
         out.push_back(Quat{1, 0, x, 0});
@@ -142,10 +136,7 @@ std::vector<Value> bad_values(const Field& field)
     return out;
 }
 
-bool settable(const Field& field)
-{
-    return field.kind == FieldKind::Param || field.kind == FieldKind::State;
-}
+bool settable(const Field& field) { return field.kind == FieldKind::Param || field.kind == FieldKind::State; }
 
 template <class Nodes>
 void erase_named(Nodes& nodes, const std::string& name)
@@ -167,11 +158,10 @@ model::Blueprint with_field(const Subject& subject, const std::string& name, con
 
 void check_names(const Errors& errors, const std::string& field)
 {
-    const bool named = std::any_of(errors.begin(), errors.end(),
-                                   [&](const Error& e) { return e.reason.find(field) != std::string::npos; });
+    const bool named = std::any_of(errors.begin(), errors.end(), [&](const Error& e) { return e.reason.find(field) != std::string::npos; });
     CHECK_MESSAGE(named, "the message does not name the field: ", first_error(errors));
-    const bool placed = std::any_of(errors.begin(), errors.end(),
-                                    [](const Error& e) { return e.element.find(kSubject) != std::string::npos; });
+    const bool placed =
+        std::any_of(errors.begin(), errors.end(), [](const Error& e) { return e.element.find(kSubject) != std::string::npos; });
     CHECK_MESSAGE(placed, "the message does not name the component: ", first_error(errors));
 }
 
@@ -185,8 +175,7 @@ void check_refused(simulation::Simulation& simulation, const std::string& field,
     CHECK(!reply.done);
     CHECK(simulation.state_hash() == before);
     CHECK(simulation.world().backup().cells == cells);
-    if (!reply.done)
-        check_names(reply.errors, field);
+    if (!reply.done) check_names(reply.errors, field);
 }
 
 const Schema& schema_of(const Subject& subject)
@@ -206,16 +195,14 @@ TEST_CASE("a blueprint with a bad value is refused, and the reason names compone
         CHECK(model::compile(subject.blueprint, library()).ok());
         for (const Field& field : schema_of(subject).fields())
         {
-            if (!settable(field))
-                continue;
+            if (!settable(field)) continue;
             CAPTURE(field.name);
             for (const std::string& text : bad_texts(field))
             {
                 CAPTURE(text);
                 const auto scene = model::compile(with_field(subject, field.name, text), library());
                 CHECK(!scene.ok());
-                if (!scene)
-                    check_names(scene.errors(), field.name);
+                if (!scene) check_names(scene.errors(), field.name);
             }
         }
     }
@@ -233,10 +220,8 @@ TEST_CASE("a field that must be given, and one that does not exist, are named")
         {
             CAPTURE(field.name);
             model::Blueprint scene = with_field(subject, field.name, "1");
-            if (field.required)
-                subject_node(scene).parameters.pop_back();
-            if (!field.required && settable(field))
-                continue;
+            if (field.required) subject_node(scene).parameters.pop_back();
+            if (!field.required && settable(field)) continue;
             const auto refused = model::compile(scene, library());
             REQUIRE(!refused.ok());
             check_names(refused.errors(), field.name);

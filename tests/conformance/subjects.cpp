@@ -31,8 +31,7 @@ fs::path scene_for(const std::string& type)
 {
     for (std::string name = dotted(type); !name.empty();)
     {
-        if (const fs::path path = fs::path(PLAB_CONFORMANCE_SCENES) / (name + ".xml"); fs::exists(path))
-            return path;
+        if (const fs::path path = fs::path(PLAB_CONFORMANCE_SCENES) / (name + ".xml"); fs::exists(path)) return path;
         const std::size_t dot = name.rfind('.');
         name = dot == std::string::npos ? std::string() : name.substr(0, dot);
     }
@@ -65,11 +64,9 @@ bool has_subject(const model::Blueprint& blueprint, const std::string& type)
 void add_subject(Catalogue& catalogue, const std::string& type)
 {
     const fs::path path = scene_for(type);
-    if (path.empty())
-        return catalogue.missing.push_back(how_to_add(type));
+    if (path.empty()) return catalogue.missing.push_back(how_to_add(type));
     auto blueprint = blueprint::read_blueprint(text_of(path, type), path.string());
-    if (!blueprint)
-        return catalogue.missing.push_back(type + ": " + first_error(blueprint.errors()));
+    if (!blueprint) return catalogue.missing.push_back(type + ": " + first_error(blueprint.errors()));
     if (!has_subject(*blueprint, type))
         return catalogue.missing.push_back(path.string() + " has no top-level component 'subject' of type $TYPE");
     catalogue.subjects.push_back({type, blueprint.take()});
@@ -94,15 +91,9 @@ bool Subject::repeatable() const
                         [](const model::TextNode& s) { return s.name == "title" && s.text == "alone"; });
 }
 
-const std::vector<Subject>& subjects()
-{
-    return catalogue().subjects;
-}
+const std::vector<Subject>& subjects() { return catalogue().subjects; }
 
-const std::vector<std::string>& subjects_missing()
-{
-    return catalogue().missing;
-}
+const std::vector<std::string>& subjects_missing() { return catalogue().missing; }
 
 model::ComponentNode& subject_node(model::Blueprint& blueprint)
 {
@@ -129,8 +120,7 @@ model::Blueprint repeated(const Subject& subject)
 model::SceneSpec compiled(const model::Blueprint& blueprint, model::TypeSource& types)
 {
     auto scene = model::compile(blueprint, types);
-    const std::string errors = scene ? std::string() : first_error(scene.errors());
-    REQUIRE_MESSAGE(scene.ok(), errors);
+    REQUIRE_MESSAGE(scene.ok(), reasons(scene));
     return scene.take();
 }
 
@@ -138,7 +128,7 @@ std::unique_ptr<simulation::Simulation> started(const model::SceneSpec& scene, i
 {
     auto out = std::make_unique<simulation::Simulation>(types, threads);
     const auto loaded = out->load(scene);
-    REQUIRE_MESSAGE(loaded.ok(), first_error(loaded.errors()));
+    REQUIRE_MESSAGE(loaded.ok(), reasons(loaded));
     return out;
 }
 
@@ -157,8 +147,7 @@ int first_difference(const std::vector<std::uint64_t>& a, const std::vector<std:
 {
     REQUIRE(a.size() == b.size());
     for (std::size_t i = 0; i < a.size(); ++i)
-        if (a[i] != b[i])
-            return static_cast<int>(i);
+        if (a[i] != b[i]) return static_cast<int>(i);
     return -1;
 }
 

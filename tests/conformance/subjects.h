@@ -32,11 +32,17 @@ model::ComponentNode& subject_node(model::Blueprint& blueprint);
 /// The same scene four times, 100 m apart.
 model::Blueprint repeated(const Subject& subject);
 
+/// Why something was refused; empty if it was not.
+template <class T>
+std::string reasons(const Result<T>& result)
+{
+    return result.ok() ? std::string() : first_error(result.errors());
+}
+
 /// The scene compiled; a scene that does not compile fails the test.
 model::SceneSpec compiled(const model::Blueprint& blueprint, model::TypeSource& types = library());
 /// The scene loaded; one that does not load fails the test.
-std::unique_ptr<simulation::Simulation> started(const model::SceneSpec& scene, int threads = 1,
-                                                model::TypeSource& types = library());
+std::unique_ptr<simulation::Simulation> started(const model::SceneSpec& scene, int threads = 1, model::TypeSource& types = library());
 /// Hash after each of `steps` steps.
 std::vector<std::uint64_t> hashes(simulation::Simulation& simulation, int steps);
 /// The first step at which two runs differ, or -1.

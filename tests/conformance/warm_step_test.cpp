@@ -15,21 +15,16 @@ namespace
 
 bool all_finite(const Value& value)
 {
-    if (const auto* x = std::get_if<double>(&value))
-        return std::isfinite(*x);
-    if (const auto* v = std::get_if<Vec3>(&value))
-        return is_finite(*v);
-    if (const auto* q = std::get_if<Quat>(&value))
-        return is_finite(*q);
-    if (const auto* m = std::get_if<Mat3>(&value))
-        return is_finite(*m * Vec3{1, 1, 1});
+    if (const auto* x = std::get_if<double>(&value)) return std::isfinite(*x);
+    if (const auto* v = std::get_if<Vec3>(&value)) return is_finite(*v);
+    if (const auto* q = std::get_if<Quat>(&value)) return is_finite(*q);
+    if (const auto* m = std::get_if<Mat3>(&value)) return is_finite(*m * Vec3{1, 1, 1});
     bool fine = true;
     if (const auto* list = std::get_if<Reals>(&value))
         for (const double x : *list) fine = fine && std::isfinite(x);
     if (const auto* entries = std::get_if<Entries>(&value))
         for (const Entry& e : *entries)
-            if (const auto* x = std::get_if<double>(&e.value))
-                fine = fine && std::isfinite(*x);
+            if (const auto* x = std::get_if<double>(&e.value)) fine = fine && std::isfinite(*x);
     return fine;
 }
 
@@ -37,8 +32,7 @@ void check_finite(const world::World& world)
 {
     for (const std::uint32_t i : world.in_id_order())
     {
-        if (!world.type_of(i))
-            continue;
+        if (!world.type_of(i)) continue;
         for (const Field& field : world.type_of(i)->schema.fields())
             if (field.kind != FieldKind::Scratch && !field.may_be_infinite)
                 CHECK_MESSAGE(all_finite(world.get(i, field.name)), world.id_of(i), ".", field.name, " is not finite");
@@ -51,13 +45,11 @@ void check_ran(const simulation::Simulation& simulation, const std::string& type
     const auto& tables = simulation.world().tables();
     for (std::size_t t = 0; t < tables.size(); ++t)
     {
-        if (tables[t]->type().info.name != type)
-            continue;
+        if (tables[t]->type().info.name != type) continue;
         for (const Phase phase : {Phase::Drive, Phase::Force, Phase::Detect, Phase::Respond, Phase::Finish})
         {
             const auto& commands = tables[t]->type().info.commands;
-            const bool has = std::any_of(commands.begin(), commands.end(),
-                                         [&](const CommandInfo& c) { return c.phase == phase && c.run; });
+            const bool has = std::any_of(commands.begin(), commands.end(), [&](const CommandInfo& c) { return c.phase == phase && c.run; });
             const std::uint64_t ns = simulation.stepper().cost().by_table[t][static_cast<std::size_t>(phase)];
             CHECK_MESSAGE((!has || ns > 0), "the scene never runs the phase ", std::string(name_of(phase)));
         }
@@ -91,8 +83,7 @@ TEST_CASE("a warm step in which nothing happens asks for no memory")
             const long before = plab_test_allocations;
             running->step();
             const long made = plab_test_allocations - before;
-            if (!running->events().empty())
-                continue;
+            if (!running->events().empty()) continue;
             ++quiet;
             CAPTURE(i);
             REQUIRE(made == 0);
@@ -112,8 +103,7 @@ TEST_CASE("every figure stays finite, and nobody complains")
         {
             running->step();
             check_events(*running);
-            if (i % 10 == 0)
-                check_finite(running->world());
+            if (i % 10 == 0) check_finite(running->world());
         }
         check_ran(*running, subject.type);
         const simulation::Totals totals = running->totals();
