@@ -21,7 +21,7 @@ void ImpulseRows::describe(Schema& s)
         .or_else(1e-9)
         .not_negative();
     s.param(tolerance, "tolerance", unit::metre_per_second, "closing speed that may be left").or_else(1e-12).positive();
-    s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(200).positive();
+    s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(500).positive();
     s.output(residual, "residual", unit::metre_per_second, "largest closing speed left in this step").reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps and single impacts in this step");
     s.scratch(workspace, "workspace", "working memory");

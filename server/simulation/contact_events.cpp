@@ -66,7 +66,7 @@ void Stepper::finish_contacts()
         const std::size_t begin = first_of_pair(pair, at);
         bool touches = false;
         for (at = begin; at < found_.size() && is_of_pair(found_[at], pair); ++at)
-            touches = touches || found_[at].contact.depth > (pair.resting ? -kStandingMargin : 0.0);
+            touches = touches || found_[at].contact.depth > (pair.resting ? -standing_margin(pair) : 0.0);
         update_pair(pair, begin, at);
         if (!touches)
         {

@@ -34,7 +34,7 @@ void Stepper::detect_all(std::vector<FoundContact>& out)
     {
         standing_.clear();
         for (const PairState& p : cache_.pairs())
-            if (p.resting && p.detector == detectors_[d].component) standing_.push_back({p.a, p.b, p.normal * -kStandingMargin});
+            if (p.resting && p.detector == detectors_[d].component) standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
         detect(detectors_[d], d, standing_, false, out);
     }
     sort_contacts(out, world_);
@@ -52,7 +52,7 @@ void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vect
         standing_.clear();
         for (const PairState& p : cache_.pairs())
             if (p.resting && p.detector == detectors_[d].component && (member(p.a) || member(p.b)))
-                standing_.push_back({p.a, p.b, p.normal * -kStandingMargin});
+                standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
         if (!standing_.empty()) detect(detectors_[d], d, standing_, true, out);
     }
     sort_contacts(out, world_);
@@ -62,6 +62,8 @@ void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vect
         PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_);
         const KnownContact& known = cache_.contact_of(*pair, f.contact.feature);
         f.contact.id = known.id, f.contact.impulse = known.impulse;
+        // Seen with b moved towards a: half of the way back is where the two surfaces meet.
+        f.contact.point += pair->normal * (0.5 * standing_margin(*pair));
         fill_material(f);
     }
 }
@@ -85,6 +87,12 @@ void Stepper::fill_material(FoundContact& f) const
         return column ? (*column)[row] : 0.0;
     };
     f.contact.friction = number("friction"), f.contact.restitution = number("restitution");
+}
+
+double Stepper::standing_margin(const PairState& pair) const
+{
+    const double radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
+    return std::max(kOverlapTolerance, std::isfinite(radius) ? kStandingShare * radius : 0.0);
 }
 
 double Stepper::normal_velocity(const Contact& c) const
@@ -204,27 +212,6 @@ void Stepper::keep_impulses(const std::vector<FoundContact>& contacts)
             cache_.contact_of(*pair, f.contact.feature).impulse = f.contact.impulse;
             pair->normal = f.contact.normal;
         }
-}
-
-void Stepper::correct_positions()
-{
-    // What time stepping leaves in overlap is moved apart along the normal, by inverse mass; speeds stay as they are.
-    Bodies& bodies = world_.host().bodies;
-    for (std::size_t i = 0; i < found_.size();)
-    {
-        std::size_t deepest = i, end = i;
-        for (; end < found_.size() && same_pair(found_[end], found_[i]); ++end)
-            if (found_[end].contact.depth > found_[deepest].contact.depth) deepest = end;
-        const Contact& c = found_[deepest].contact;
-        const PairState* pair = cache_.find(detectors_[found_[i].detector].component, c.a, c.b, world_);
-        const double wa = bodies.inverse_mass[c.a.index], wb = bodies.inverse_mass[c.b.index];
-        if (pair && pair->resting && c.depth > kStandingMargin && wa + wb > 0)
-        {
-            bodies.position[c.a.index] -= c.normal * (c.depth * wa / (wa + wb));
-            bodies.position[c.b.index] += c.normal * (c.depth * wb / (wa + wb));
-        }
-        i = end;
-    }
 }
 
 }  // namespace plab::simulation

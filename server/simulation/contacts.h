@@ -101,7 +101,10 @@ private:
 /// By detector, bodies in id order, feature: no library's order reaches the state.
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world);
 
-/// How far a standing pair is pushed together before looking: gaps below this do not end a contact.
-inline constexpr double kStandingMargin = 1e-9;  // m
+/// Overlap that is left alone, m.
+inline constexpr double kOverlapTolerance = 1e-9;
+/// A standing pair is looked at as if it were this share of its smaller body's radius closer: corners that are about to
+/// touch are contacts too, with their gap, and a gap below this does not end the contact.
+inline constexpr double kStandingShare = 1e-4;
 
 }  // namespace plab::simulation

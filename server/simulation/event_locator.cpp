@@ -231,11 +231,19 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
     }
 }
 
+void EventLocator::calm(std::vector<FoundContact>& contacts) const
+{
+    // Answered late, a resting body seems to arrive with the speed that it gathered in up to two steps: that is no bounce.
+    for (FoundContact& f : contacts)
+        if (f.contact.normal_acceleration < 0 && s_->normal_velocity(f.contact) >= 2 * f.contact.normal_acceleration * s_->frame_.step)
+            f.contact.restitution = 0;
+}
+
 void EventLocator::keep_if_it_cannot_leave(Contact& c) const
 {
     // It overlapped from the start: a rebound that does not clear the overlap would be answered again and again.
     const double speed = s_->normal_velocity(c);
-    const double way = std::max(c.depth, kStandingMargin);
+    const double way = std::max(c.depth, kOverlapTolerance);
     if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * way)) c.resting = true;
 }
 
@@ -253,6 +261,7 @@ void EventLocator::answer(Candidate& candidate)
             if (!(f.contact.a == candidate.a && f.contact.b == candidate.b)) f.contact.impulse = {}, impact_.push_back(f);
         for (std::size_t i = 0; i < own; ++i) s_->fill_material(impact_[i]), impact_[i].contact.impulse = {};
         rate_of_approach(impact_, candidate.time);
+        if (candidate.at_end) calm(impact_);
         s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
         if (candidate.stuck)
             for (std::size_t i = 0; i < own; ++i) keep_if_it_cannot_leave(impact_[i].contact);

@@ -44,6 +44,7 @@ private:
     bool process(Candidate& candidate);
     /// Rewinds the scope and advances it from where its pieces began to `time`.
     void advance_scope(double time, WorkBook book, bool trial);
+    void calm(std::vector<FoundContact>& contacts) const;
     void keep_if_it_cannot_leave(Contact& c) const;
     void answer(Candidate& candidate);
     void look_from_the_clear_side(Candidate& candidate);

@@ -86,6 +86,7 @@ private:
     void connect_materials(Errors& errors);
     void connect_graph(Errors& errors);
     Errors run_connect(const Block& block, PhaseCall call);
+    void measure_bodies();
     void plan_batches();
 
     // advance.cpp. A trial emits no events and freezes nobody.
@@ -122,10 +123,12 @@ private:
         return x.detector == y.detector && x.contact.a == y.contact.a && x.contact.b == y.contact.b;
     }
     void correct_positions();
+    void part(std::size_t begin, std::size_t end);
     bool is_of_pair(const FoundContact& f, const PairState& pair) const;
     std::size_t first_of_pair(const PairState& pair, std::size_t from) const;
     void update_pair(PairState& pair, std::size_t begin, std::size_t end);
     double normal_velocity(const Contact& c) const;
+    double standing_margin(const PairState& pair) const;
     double kinetic_energy(const std::vector<FoundContact>& contacts) const;
     Event contact_event(const char* kind, const PairState& pair, double time) const;
 
@@ -139,6 +142,7 @@ private:
     ShaftTorques reactions_;
     std::vector<Detector> detectors_;
     ContactCache cache_;
+    std::vector<double> radius_of_body_;  ///< m, about C; infinite for planes
     WorkerPool workers_;
 
     StepFrame frame_;

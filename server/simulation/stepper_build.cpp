@@ -1,5 +1,6 @@
 // What a stepper derives from a world's structure: schedule, groups, constraint graph, materials, batches.
 #include <algorithm>
+#include <limits>
 
 #include "simulation/stepper.h"
 
@@ -90,6 +91,7 @@ Result<void> Stepper::rebuild()
     groups_ = build_groups(world_, schedule_);
     detectors_ = find_detectors(world_, schedule_);
     cache_.refresh(world_, detectors_);
+    measure_bodies();
     island_all_.resize(groups_.all.size());
     for (std::uint32_t g = 0; g < island_all_.size(); ++g) island_all_[g] = g;
     speed_system_.configure(world_, schedule_, groups_, island_all_, graph_);
@@ -102,6 +104,26 @@ Result<void> Stepper::rebuild()
     batches_ready_ = false;
     start_.save(world_.host()), segment_.save(world_.host()), end_.save(world_.host());
     return {};
+}
+
+void Stepper::measure_bodies()
+{
+    const world::HostTables& host = world_.host();
+    const auto radius_of = [&](const Geometry& g) {
+        double r = 0;
+        if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
+        if (g.kind == GeometryKind::Sphere) r = g.size.x;
+        if (g.kind == GeometryKind::Box) r = length(g.size);
+        for (const Vec3& v : g.vertices) r = std::max(r, length(v));
+        return r;
+    };
+    radius_of_body_.assign(host.bodies.size(), 0.0);
+    for (std::size_t b = 0; b < radius_of_body_.size(); ++b)
+        for (const Ref shape : host.bodies.shapes[b])
+        {
+            const Geometry& g = host.shapes.geometry[shape.index];
+            radius_of_body_[b] = std::max(radius_of_body_[b], length(g.pose.p - host.bodies.center_B[b]) + radius_of(g));
+        }
 }
 
 void Stepper::plan_batches()

@@ -23,8 +23,7 @@ int complain_about(Check&& check, bool sources_only)
     int checked = 0;
     for (const File& file : tree())
     {
-        if (sources_only && !is_source(file.path))
-            continue;
+        if (sources_only && !is_source(file.path)) continue;
         ++checked;
         for (const std::string& complaint : check(file)) FAIL_CHECK(complaint);
     }
@@ -63,20 +62,11 @@ TEST_CASE("no file is long")
     CHECK(complain_about([](const File& file) { return check_length(file, kLinesAllowed); }, true) > 200);
 }
 
-TEST_CASE("nothing is left to be done")
-{
-    CHECK(complain_about(check_leftovers, false) > 300);
-}
+TEST_CASE("nothing is left to be done") { CHECK(complain_about(check_leftovers, false) > 300); }
 
-TEST_CASE("no file names a folder of one machine")
-{
-    CHECK(complain_about(check_machine_paths, false) > 300);
-}
+TEST_CASE("no file names a folder of one machine") { CHECK(complain_about(check_machine_paths, false) > 300); }
 
-TEST_CASE("every folder that builds something says what it is for")
-{
-    CHECK(check_readmes(paths_of(tree())) == Complaints{});
-}
+TEST_CASE("every folder that builds something says what it is for") { CHECK(check_readmes(paths_of(tree())) == Complaints{}); }
 
 TEST_CASE("what breaks the table is seen, layer by layer")
 {
@@ -113,8 +103,7 @@ TEST_CASE("what keeps to the table is not")
     CHECK_FALSE(breaks("server/simulation/a.cpp", "#include \"world/world.h\"  // why"));
     CHECK_FALSE(breaks("server/blueprint/a.cpp", "#include <expat.h>"));
     CHECK_FALSE(breaks("server/objects/shapes/a.cpp", "#include \"sphere.h\""));
-    CHECK_FALSE(breaks("interactions/constraints/angular_velocity/a.cpp",
-                       "#include \"ratio.h\"\n#include \"angular_velocity/graph.h\""));
+    CHECK_FALSE(breaks("interactions/constraints/angular_velocity/a.cpp", "#include \"ratio.h\"\n#include \"angular_velocity/graph.h\""));
     CHECK_FALSE(breaks("tests/unit/a.cpp", "#include \"world/world.h\"\n#include <doctest/doctest.h>"));
 }
 

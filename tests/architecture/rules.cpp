@@ -39,47 +39,39 @@ std::optional<Home> home_of(std::string_view path)
     {
         if (!layer.folder.ends_with("/*"))
         {
-            if (inside(path, layer.folder))
-                return Home{&layer, std::string(layer.folder)};
+            if (inside(path, layer.folder)) return Home{&layer, std::string(layer.folder)};
             continue;
         }
         const std::string_view parent = layer.folder.substr(0, layer.folder.size() - 2);
         const std::size_t slash = inside(path, parent) ? path.find('/', parent.size() + 1) : std::string_view::npos;
-        if (slash != std::string_view::npos)
-            return Home{&layer, std::string(path.substr(0, slash))};
+        if (slash != std::string_view::npos) return Home{&layer, std::string(path.substr(0, slash))};
     }
     return {};
 }
 
-std::optional<std::string> resolve(const std::string& from, const Home& home, const std::string& include,
-                                   const Paths& known)
+std::optional<std::string> resolve(const std::string& from, const Home& home, const std::string& include, const Paths& known)
 {
     std::vector<std::string> roots{folder_of(from), home.root};
     roots.insert(roots.end(), include_roots().begin(), include_roots().end());
     for (const std::string& root : roots)
     {
-        const std::string path =
-            fs::path(root.empty() ? include : root + "/" + include).lexically_normal().generic_string();
-        if (known.contains(path))
-            return path;
+        const std::string path = fs::path(root.empty() ? include : root + "/" + include).lexically_normal().generic_string();
+        if (known.contains(path)) return path;
     }
     return {};
 }
 
 bool is_third_party(const Layer& layer, std::string_view header)
 {
-    return std::ranges::any_of(layer.third_party, [&](std::string_view name)
-                               { return name.ends_with('/') ? header.starts_with(name) : header == name; });
+    return std::ranges::any_of(layer.third_party,
+                               [&](std::string_view name) { return name.ends_with('/') ? header.starts_with(name) : header == name; });
 }
 
 std::string judge_system(const File& file, const Home& home, const std::string& header)
 {
-    if (std::ranges::find(standard_headers(), header) != standard_headers().end())
-        return {};
-    if (!is_third_party(*home.layer, header))
-        return home.root + " may not include <" + header + ">";
-    if (!home.layer->headers_too && file.path.ends_with(".h"))
-        return "<" + header + "> stays in sources, a header may not show it";
+    if (std::ranges::find(standard_headers(), header) != standard_headers().end()) return {};
+    if (!is_third_party(*home.layer, header)) return home.root + " may not include <" + header + ">";
+    if (!home.layer->headers_too && file.path.ends_with(".h")) return "<" + header + "> stays in sources, a header may not show it";
     return {};
 }
 
@@ -87,16 +79,12 @@ std::string judge_own(const File& file, const Home& home, const std::string& inc
 {
     // Tests see plugins' own folders through the include paths of their CMakeLists.txt; whatever they find they may
     // include.
-    if (home.root == "tests")
-        return {};
+    if (home.root == "tests") return {};
     const auto path = resolve(file.path, home, include, known);
-    if (!path)
-        return "\"" + include + "\" is no file of this project";
-    if (inside(*path, home.root))
-        return {};
+    if (!path) return "\"" + include + "\" is no file of this project";
+    if (inside(*path, home.root)) return {};
     for (const std::string_view folder : home.layer->may_include)
-        if (inside(*path, folder))
-            return {};
+        if (inside(*path, folder)) return {};
     return home.root + " may not include \"" + include + "\" (" + *path + ")";
 }
 
@@ -110,8 +98,7 @@ Complaints each_line(const File& file, Judge&& judge)
         const std::size_t end = std::min(file.text.find('\n', begin), file.text.size());
         const std::string what = judge(file.text.substr(begin, end - begin));
         ++number;
-        if (!what.empty())
-            out.push_back(file.path + ":" + std::to_string(number) + ": " + what);
+        if (!what.empty()) out.push_back(file.path + ":" + std::to_string(number) + ": " + what);
         begin = end + 1;
     }
     return out;
@@ -137,13 +124,10 @@ std::vector<File> read_tree(const std::string& root)
     for (const auto& top : fs::directory_iterator(root))
     {
         const std::string name = top.path().filename().string();
-        if (top.is_regular_file() && is_text(top.path()))
-            files.push_back(read(top.path(), root));
-        if (!top.is_directory() || name == ".git" || name.starts_with("build"))
-            continue;
+        if (top.is_regular_file() && is_text(top.path())) files.push_back(read(top.path(), root));
+        if (!top.is_directory() || name == ".git" || name.starts_with("build")) continue;
         for (const auto& entry : fs::recursive_directory_iterator(top))
-            if (entry.is_regular_file() && is_text(entry.path()))
-                files.push_back(read(entry.path(), root));
+            if (entry.is_regular_file() && is_text(entry.path())) files.push_back(read(entry.path(), root));
     }
     std::ranges::sort(files, {}, &File::path);
     return files;
@@ -165,29 +149,24 @@ bool is_source(std::string_view path)
 Complaints check_includes(const File& file, const Paths& known)
 {
     const auto home = home_of(file.path);
-    if (!home)
-        return {file.path + ":1: stands in no layer of the table"};
+    if (!home) return {file.path + ":1: stands in no layer of the table"};
     static const std::regex directive(R"(^\s*#\s*include\s*(.*)$)");
     static const std::regex operand(R"(^([<"])([^>"]+)[>"].*$)");
     return each_line(file,
                      [&](const std::string& line) -> std::string
                      {
                          std::smatch match;
-                         if (!std::regex_match(line, match, directive))
-                             return {};
+                         if (!std::regex_match(line, match, directive)) return {};
                          const std::string rest = match[1];
-                         if (!std::regex_match(rest, match, operand))
-                             return "an include that names no file: " + rest;
-                         return match[1] == "<" ? judge_system(file, *home, match[2])
-                                                : judge_own(file, *home, match[2], known);
+                         if (!std::regex_match(rest, match, operand)) return "an include that names no file: " + rest;
+                         return match[1] == "<" ? judge_system(file, *home, match[2]) : judge_own(file, *home, match[2], known);
                      });
 }
 
 Complaints check_length(const File& file, int limit)
 {
     const auto lines = std::ranges::count(file.text, '\n');
-    if (lines <= limit)
-        return {};
+    if (lines <= limit) return {};
     return {file.path + ":1: " + std::to_string(lines) + " lines, at most " + std::to_string(limit)};
 }
 
@@ -213,13 +192,12 @@ Complaints check_machine_paths(const File& file)
         "(^|[^A-Za-z0-9_.}])(/wo"
         "rk/|/ho"
         "me/)");
-    return each_line(
-        file,
-        [&](const std::string& line) -> std::string
-        {
-            std::smatch match;
-            return std::regex_search(line, match, place) ? "names a folder of one machine: " + match[2].str() : "";
-        });
+    return each_line(file,
+                     [&](const std::string& line) -> std::string
+                     {
+                         std::smatch match;
+                         return std::regex_search(line, match, place) ? "names a folder of one machine: " + match[2].str() : "";
+                     });
 }
 
 Complaints check_readmes(const Paths& known)
@@ -227,11 +205,9 @@ Complaints check_readmes(const Paths& known)
     Complaints out;
     for (const std::string& path : known)
     {
-        if (!path.ends_with("/CMakeLists.txt") || !(inside(path, "server") || inside(path, "interactions")))
-            continue;
+        if (!path.ends_with("/CMakeLists.txt") || !(inside(path, "server") || inside(path, "interactions"))) continue;
         const std::string folder = folder_of(path);
-        if (!known.contains(folder + "/README.md"))
-            out.push_back(folder + ": has no README.md");
+        if (!known.contains(folder + "/README.md")) out.push_back(folder + ": has no README.md");
     }
     return out;
 }

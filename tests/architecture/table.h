@@ -70,4 +70,3 @@ inline constexpr int kLinesWanted = 400;   ///< more are listed
 inline constexpr int kLinesAllowed = 450;  ///< more fail
 
 }  // namespace plab::architecture
-
