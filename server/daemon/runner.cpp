@@ -201,7 +201,7 @@ int run(simulation::Simulation& s, const Options& options, const std::atomic<boo
     if (options.maps) print_mapped_libraries();
     if (s.pending_requests() > 0)
     {
-        spdlog::error("{} requests name steps that the run did not reach", s.pending_requests());
+        spdlog::error("{} requests found no step to take effect at: the run did not reach it", s.pending_requests());
         fine = false;
     }
     if (!options.out.empty()) fine = write_end_state(s, options.out) && fine;

@@ -135,10 +135,10 @@ std::string ComponentType::why_not_exchangeable(const ComponentType& other) cons
         if (a.facets != b->facets || a.family != b->family) return "role " + a.name + " takes other kinds of participants";
         if ((a.one == nullptr) != (b->one == nullptr)) return "role " + a.name + " is of one in the one and of many in the other";
     }
-    std::set<std::string> mine, theirs;
-    for (const Role& r : schema.roles()) mine.insert(r.name);
-    for (const Role& r : other.schema.roles()) theirs.insert(r.name);
-    if (mine == theirs) return {};
+    // An optional role that only one of them has is lost or left empty; a required one must have somebody in it.
+    const auto lacks_required = [](const Schema& from, const Schema& in)
+    { return std::any_of(from.roles().begin(), from.roles().end(), [&](const Role& r) { return r.min > 0 && !in.find_role(r.name); }); };
+    if (!lacks_required(schema, other.schema) && !lacks_required(other.schema, schema)) return {};
     return info.name + " has the roles " + role_list(schema) + ", " + other.info.name + " has " + role_list(other.schema);
 }
 

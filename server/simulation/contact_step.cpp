@@ -14,7 +14,7 @@ void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<co
 {
     world::Table& table = *world_.tables()[detector.table];
     StepContext context;
-    context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick;
+    context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick, context.events = this;
     context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
     ContactCollector sink(world_, out);
     sink.look_for(index, standing, only_standing);
@@ -23,7 +23,8 @@ void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<co
     call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
     call.contacts = &sink;
     const std::uint64_t before = now_ns();
-    (void)detector.command->run(call, table.rows());
+    const auto done = detector.command->run(call, table.rows());
+    if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
     cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
 }
 
@@ -152,7 +153,8 @@ void Stepper::advance_contacts(std::span<const std::uint32_t> groups, std::span<
 {
     islands_.reset(groups_.all.size());
     for (const PairState& p : cache_.pairs())
-        if (p.resting && groups_.of(p.a) != kNoIndex && groups_.of(p.b) != kNoIndex) islands_.join(groups_.of(p.a), groups_.of(p.b));
+        if (p.resting && world_.host().bodies.dynamic(p.a.index) && world_.host().bodies.dynamic(p.b.index))
+            islands_.join(groups_.of(p.a), groups_.of(p.b));
     // Islands in the order of their first group; members keep their order.
     contact_groups_.assign(groups.begin(), groups.end());
     done_.assign(groups_.all.size(), 0);

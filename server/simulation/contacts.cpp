@@ -60,6 +60,15 @@ void ContactCache::refresh(const world::World& world, const std::vector<Detector
         return !has_detector || !lives(p.a) || !lives(p.b);
     };
     std::erase_if(pairs_, gone);
+    for (PairState& p : pairs_)
+    {
+        // Where nobody responds any more nothing stands: a sensor holds no body up.
+        const bool answered =
+            std::any_of(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == p.detector && d.responds; });
+        if (answered) continue;
+        p.resting = false;
+        for (KnownContact& k : p.contacts) k.impulse = {};
+    }
     std::sort(pairs_.begin(), pairs_.end(), [&](const PairState& x, const PairState& y) { return key_of(world, x) < key_of(world, y); });
 }
 

@@ -61,17 +61,18 @@ void EventLocator::close_over_resting_pairs()
         for (const PairState& p : s_->cache_.pairs())
         {
             const std::uint32_t ga = s_->groups_.of(p.a), gb = s_->groups_.of(p.b);
-            if (!p.resting || ga == kNoIndex || gb == kNoIndex || in_scope_[ga] == in_scope_[gb]) continue;
+            const Bodies& bodies = s_->world_.host().bodies;
+            if (!p.resting || !bodies.dynamic(p.a.index) || !bodies.dynamic(p.b.index) || in_scope_[ga] == in_scope_[gb]) continue;
             in_scope_[ga] = in_scope_[gb] = 1;
             grown = true;
         }
     }
 }
 
-void EventLocator::scope_of(const Candidate& candidate)
+void EventLocator::scope_of(const Candidate& candidate, bool local)
 {
     const std::size_t groups = s_->groups_.all.size();
-    in_scope_.assign(groups, s_->detectors_[candidate.detector].local ? 0 : 1);
+    in_scope_.assign(groups, local ? 0 : 1);
     for (const Ref r : {candidate.a, candidate.b})
         if (const std::uint32_t g = s_->groups_.of(r); g != kNoIndex) in_scope_[g] = 1;
     close_over_resting_pairs();
@@ -136,7 +137,8 @@ void EventLocator::locate(Candidate& candidate)
     candidate.located = true;
     candidate.time = s_->frame_.step;
     if (candidate.at_end) return;
-    scope_of(candidate);
+    // Trials need the pair alone, whoever is rewound for its answer: the rest does not feel it.
+    scope_of(candidate, true);
     Trial trial;
     trial.begin = begin_of_scope(), trial.end = trial.step = s_->frame_.step;
     for (const FoundContact& f : candidate.contacts) trial.depth = std::max(trial.depth, f.contact.depth);
@@ -272,7 +274,9 @@ void EventLocator::answer(Candidate& candidate)
 
 bool EventLocator::process(Candidate& candidate)
 {
-    scope_of(candidate);
+    scope_of(candidate, true);
+    touched_ = in_scope_;
+    if (!s_->detectors_[candidate.detector].local && !candidate.at_end) scope_of(candidate, false);
     if (!s_->detectors_[candidate.detector].responds)
     {
         // A sensor disturbs nobody: the time is known, nothing goes back.
@@ -304,7 +308,7 @@ void EventLocator::look_again(std::vector<FoundContact>& found)
     const auto touched = [&](Ref r)
     {
         const std::uint32_t g = s_->groups_.of(r);
-        return g != kNoIndex && in_scope_[g];
+        return g != kNoIndex && touched_[g] != 0;
     };
     const auto stale = [&](Ref a, Ref b) { return touched(a) || touched(b); };
     std::erase_if(candidates_, [&](const Candidate& c) { return stale(c.a, c.b); });

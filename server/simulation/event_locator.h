@@ -38,7 +38,7 @@ private:
     void locate(Candidate& candidate);
     void bracket(Candidate& candidate, Trial& trial);
     bool overlaps_at(Candidate& candidate, double time);
-    void scope_of(const Candidate& candidate);
+    void scope_of(const Candidate& candidate, bool local);
     double begin_of_scope() const;
     /// Answers the event. True if someone was rewound for it, so that what was found is stale.
     bool process(Candidate& candidate);
@@ -58,6 +58,7 @@ private:
     std::vector<Candidate> candidates_;
     std::vector<std::uint32_t> scope_;  ///< groups that go back, ascending
     std::vector<std::uint8_t> in_scope_;
+    std::vector<std::uint8_t> touched_;  ///< groups that the last answer's impulses reached: what is known of them is stale
     std::vector<FoundContact> seen_, impact_, at_end_;
 };
 

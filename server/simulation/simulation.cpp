@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/field_change.h"
 #include "simulation/transaction.h"
 
 namespace plab::simulation
@@ -39,6 +40,7 @@ void Simulation::begin_run(Live live, const model::SceneSpec& scene)
     tick_ = base_tick_ = 0;
     base_time_ = 0;
     events_.clear();
+    changed_by_scripts_.clear();
     ++run_;
     kinetic_at_start_ = totals().kinetic;
 }
@@ -149,20 +151,15 @@ void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& 
     for (const ParameterChange& change : changes)
     {
         const std::uint32_t i = s.world_->find(change.component);
-        Result<void> done = i == kNoIndex ? Result<void>(reason("no component has the id '" + change.component + "'")) : Result<void>();
         const Value before = i == kNoIndex ? Value() : s.world_->get(i, change.name);
-        Value value = change.value;
-        if (const auto* number = std::get_if<double>(&value); number && std::holds_alternative<std::int64_t>(before))
-            value = static_cast<std::int64_t>(std::llround(*number));
-        if (done) done = s.world_->set(i, change.name, value);
-        if (done)
-            if (done = s.world_->prepare(i); !done) (void)s.world_->set(i, change.name, before), (void)s.world_->prepare(i);
+        auto done = i == kNoIndex ? Result<void>(reason("no component has the id '" + change.component + "'"))
+                                  : set_field(*s.world_, i, change.name, change.value, s.changed_by_scripts_);
         if (done)
         {
-            s.changed_by_scripts_.insert(i);
             structure = structure || s.world_->type_of(i)->takes_part(Phase::Connect) || s.world_->component(i).facet != Facet::Component;
             continue;
         }
+        if (type_of(before) != FieldType::None) (void)set_field(*s.world_, i, change.name, before, s.changed_by_scripts_);
         Event e;
         e.time = s.time(), e.kind = "script.refused", e.severity = Severity::Warning, e.component = i;
         e.message = "set " + change.component + "." + change.name + ": " + done.error().reason;
@@ -174,6 +171,7 @@ void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& 
 Totals Simulation::totals() const
 {
     Totals t;
+    t.work = stepper_->departed_work() + stepper_->requests_work();
     const world::HostTables& host = world_->host();
     for (const std::uint32_t i : world_->in_id_order())
     {

@@ -54,9 +54,12 @@ public:
     const std::vector<FoundContact>& touching() const { return found_; }
     std::vector<double>& work() { return work_; }  ///< J by component, since the run began
     const std::vector<double>& work() const { return work_; }
+    /// J, by components that were removed since.
+    double& departed_work() { return departed_work_; }
+    /// J, by requests: what a set, push or swap changed at once.
+    double& requests_work() { return requests_work_; }
     CostBook& cost() { return cost_; }
     const CostBook& cost() const { return cost_; }
-    std::vector<ParameterChange>& changes() { return changes_; }
     std::uint64_t state_hash() const;
     /// Where parameter changes of scripts go at the end of the drive phase.
     using ApplyChanges = void (*)(void* owner, std::vector<ParameterChange>& changes);
@@ -173,16 +176,16 @@ private:
     mutable std::vector<std::uint32_t> counted_;
     DisjointSets islands_;
     std::vector<StandingPair> standing_;
-    std::vector<FoundContact> found_, touching_, redetected_;
+    std::vector<FoundContact> found_, touching_;
     std::vector<Contact> impact_contacts_;
     std::vector<Vec3> old_velocity_, old_spin_;
-    std::vector<double> no_torque_;
 
     std::vector<Event> events_;
     std::vector<ParameterChange> changes_;
     ApplyChanges apply_changes_ = nullptr;
     void* changes_owner_ = nullptr;
     std::vector<double> work_;
+    double departed_work_ = 0, requests_work_ = 0;
     CostBook cost_;
     StepReport report_;
 };

@@ -109,7 +109,8 @@ Result<void> Stepper::rebuild()
 void Stepper::measure_bodies()
 {
     const world::HostTables& host = world_.host();
-    const auto radius_of = [&](const Geometry& g) {
+    const auto radius_of = [&](const Geometry& g)
+    {
         double r = 0;
         if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
         if (g.kind == GeometryKind::Sphere) r = g.size.x;

@@ -4,6 +4,7 @@
 
 #include "model/compile.h"
 #include "model/values.h"
+#include "simulation/field_change.h"
 
 namespace plab::simulation
 {
@@ -25,7 +26,8 @@ Transaction::Transaction(Simulation& simulation, const Request& request) : s_(&s
 
 Transaction::State Transaction::capture() const
 {
-    return {s_->world_->backup(), s_->stepper_->contacts(), s_->stepper_->work(), s_->stepper_->cost()};
+    Stepper& stepper = *s_->stepper_;
+    return {s_->world_->backup(), stepper.contacts(), stepper.work(), stepper.departed_work(), stepper.requests_work(), stepper.cost()};
 }
 
 void Transaction::restore(const State& state, bool structure_changed)
@@ -42,6 +44,8 @@ void Transaction::restore(const State& state, bool structure_changed)
     s_->stepper_->contacts() = state.contacts;
     s_->stepper_->work() = state.work;
     s_->stepper_->cost() = state.cost;
+    s_->stepper_->cost().by_table.resize(s_->world_->tables().size());
+    s_->stepper_->departed_work() = state.departed_work, s_->stepper_->requests_work() = state.requests_work;
 }
 
 Result<std::uint32_t> Transaction::find_typed(const std::string& id) const
@@ -89,6 +93,9 @@ Result<void> Transaction::apply(const Operation& operation)
             }
             else if constexpr (std::is_same_v<T, StepLengthOperation>)
             {
+                const double dt = op.dt.seconds;
+                if (!(dt >= 1e-9 && dt <= 3600) || op.dt.denominator < 0 || op.dt.numerator <= 0)
+                    return reason("a step length is from 1e-9 s to 3600 s");
                 s_->base_time_ = s_->time(), s_->base_tick_ = s_->tick_;
                 s_->dt_ = op.dt;
             }
@@ -131,9 +138,29 @@ Result<void> Transaction::apply_one(const RemoveOperation& op)
             if (std::find(going.begin(), going.end(), s_->world_->id_of(who)) == going.end())
                 errors.push_back({{}, id, "is still used by '" + s_->world_->id_of(who) + "'"});
     if (!errors.empty()) return errors;
-    for (const std::string& id : going) s_->world_->remove(s_->world_->find(id));
+    for (const std::string& id : going)
+    {
+        double& work = s_->stepper_->work()[s_->world_->find(id)];
+        s_->stepper_->departed_work() += work;  // whoever gets its place starts with none
+        work = 0;
+        s_->world_->remove(s_->world_->find(id));
+    }
     s_->world_->refresh_open_roles();
     return {};
+}
+
+void Transaction::fit_roles(model::ComponentSpec& spec, const Schema& schema, SwapReport& report) const
+{
+    for (const model::RoleSpec& role : spec.roles)
+        if (!schema.find_role(role.name)) report.fields.push_back({role.name, Fate::Lost});
+    std::erase_if(spec.roles, [&](const model::RoleSpec& r) { return !schema.find_role(r.name); });
+    for (const Role& role : schema.roles())
+    {
+        const bool given = std::any_of(spec.roles.begin(), spec.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
+        // Whoever names no solver has the scene's, also after a swap from a type that needed none.
+        if (!given && role.family == "Solver/" && s_->world_->find(s_->world_->scene().settings.solver) != kNoIndex)
+            spec.roles.push_back({role.name, {s_->world_->scene().settings.solver}, false, {}});
+    }
 }
 
 Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component, const SwapOperation& op, SwapReport& report)
@@ -196,33 +223,18 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
         if (std::find(names.begin(), names.end(), v.name) == names.end())
             errors.push_back({{}, element, op.type + " has no parameter '" + v.name + "'" + model::did_you_mean(v.name, names)});
     if (!errors.empty()) return errors;
+    fit_roles(spec, type.schema, report);
     // A scene that selects commands keeps selecting the same ones where the new type has them.
     if (spec.explicit_commands) std::erase_if(spec.commands, [&](const std::string& c) { return type.find_command(c) < 0; });
     return spec;
-}
-
-void Transaction::keep_motion(std::uint32_t component, const Bodies& before)
-{
-    // New mass properties may move the centre of mass or change what moves at all; pose and velocity of the frame that
-    // the author sees stay. Where nothing of that changed, no bit is touched.
-    const world::Component& c = s_->world_->component(component);
-    if (c.facet != Facet::Body) return;
-    const std::uint32_t b = c.host_index;
-    world::HostTables& host = s_->world_->host();
-    const Bodies& now = host.bodies;
-    if (now.motion[b] == before.motion[b] && now.center_B[b] == before.center_B[b] && now.inertia_B[b] == before.inertia_B[b]) return;
-    world::HostTables old = host;
-    old.bodies = before;
-    for (const char* name : {"orientation", "position", "angular_velocity", "linear_velocity"})
-        world::set_hosted(host, Facet::Body, b, name, world::get_hosted(old, Facet::Body, b, name));
 }
 
 Result<void> Transaction::exchange(std::uint32_t component, const model::ComponentSpec& spec)
 {
     const Bodies before = s_->world_->host().bodies;
     if (auto done = s_->world_->exchange(component, spec); !done) return done;
-    keep_motion(component, before);
-    return {};
+    keep_motion(*s_->world_, component, before);
+    return prepare_dependents(*s_->world_, component, prepared_);
 }
 
 Result<void> Transaction::apply_one(const SwapOperation& op)
@@ -257,29 +269,12 @@ Result<void> Transaction::apply_one(const SetOperation& op)
     }
     auto value = new_value(*component, *field, op);
     if (!value) return Error{{}, element, op.name + ": " + value.error().reason};
-    const Bodies before = world.host().bodies;
-    if (auto done = world.set(*component, field->name, *value); !done) return Error{{}, element, done.error().reason};
-    world.component(*component).quarantined = false;  // a mended component gets another chance; the trial step judges it
-    if (field->kind == FieldKind::State) return {};
-    prepared_.insert(*component);
-    if (auto done = world.prepare(*component); !done) return done;
-    keep_motion(*component, before);
-    return prepare_dependents(*component);
-}
-
-Result<void> Transaction::prepare_dependents(std::uint32_t component)
-{
-    // A shape's size is the mass of the bodies that wear it.
-    if (s_->world_->component(component).facet != Facet::Shape) return {};
-    for (const std::uint32_t who : s_->world_->referrers(component))
-    {
-        const Bodies before = s_->world_->host().bodies;
-        prepared_.insert(who);
-        if (auto done = s_->world_->prepare(who); !done) return done;
-        keep_motion(who, before);
-        if (auto done = prepare_dependents(who); !done) return done;
-    }
-    return {};
+    auto done = set_field(world, *component, field->name, *value, prepared_);
+    if (done) return {};
+    Errors errors = done.errors();
+    for (Error& e : errors)
+        if (e.element.empty()) e.element = element;
+    return errors;
 }
 
 Result<Value> Transaction::new_value(std::uint32_t component, const Field& field, const SetOperation& op) const

@@ -25,6 +25,7 @@ private:
         world::Backup world;
         ContactCache contacts;
         std::vector<double> work;
+        double departed_work, requests_work;
         CostBook cost;
     };
     State capture() const;
@@ -39,11 +40,15 @@ private:
 
     Result<std::uint32_t> find_typed(const std::string& id) const;
     Result<model::ComponentSpec> spec_for_swap(std::uint32_t component, const SwapOperation& op, SwapReport& report);
+    void fit_roles(model::ComponentSpec& spec, const Schema& schema, SwapReport& report) const;
     Result<void> exchange(std::uint32_t component, const model::ComponentSpec& spec);
     Result<Value> new_value(std::uint32_t component, const Field& field, const SetOperation& op) const;
-    void keep_motion(std::uint32_t component, const Bodies& before);
-    Result<void> prepare_dependents(std::uint32_t component);
 
+    using Clock = std::tuple<bool, std::int64_t, double, model::StepLength, Tick, double>;
+    Clock read_clock() const;
+    void write_clock(const Clock& clock);
+    void apply_all();
+    void run_on_clock();
     void run_on_scene(bool swaps);
     /// One step with the old components, taken back: what a swap is measured against.
     void compare_with_old(const State& before);

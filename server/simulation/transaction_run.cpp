@@ -81,13 +81,14 @@ Reply Transaction::run()
         scene = scene || concerns_the_scene(op), anew = anew || starts_anew(op);
         swaps = swaps || std::holds_alternative<SwapOperation>(op);
     }
-    if (anew && request_->operations.size() > 1)
+    if (request_->operations.empty())
+        reply_.errors = {reason("a request without operations")};
+    else if (anew && request_->operations.size() > 1)
         reply_.errors = {reason("reset and load stand alone in a request")};
     else if (scene)
         run_on_scene(swaps);
     else
-        for (const Operation& op : request_->operations)
-            if (auto done = apply(op); !done) reply_.errors.insert(reply_.errors.end(), done.errors().begin(), done.errors().end());
+        run_on_clock();
     reply_.done = reply_.errors.empty();
     if (reply_.done && structural_) ++s_->revision_;
     if (!reply_.done) reply_.swaps.clear();
@@ -96,17 +97,42 @@ Reply Transaction::run()
     return std::move(reply_);
 }
 
-void Transaction::run_on_scene(bool swaps)
+Transaction::Clock Transaction::read_clock() const
 {
-    const State before = capture();
-    const auto clock = std::tuple(s_->paused_, s_->steps_left_, s_->rate_, s_->dt_, s_->base_tick_, s_->base_time_);
-    if (swaps) compare_with_old(before);
+    return {s_->paused_, s_->steps_left_, s_->rate_, s_->dt_, s_->base_tick_, s_->base_time_};
+}
+
+void Transaction::write_clock(const Clock& clock)
+{
+    std::tie(s_->paused_, s_->steps_left_, s_->rate_, s_->dt_, s_->base_tick_, s_->base_time_) = clock;
+}
+
+void Transaction::apply_all()
+{
     for (const Operation& op : request_->operations)
         if (auto done = apply(op); !done)
         {
             reply_.errors = done.errors();
-            break;
+            return;
         }
+}
+
+void Transaction::run_on_clock()
+{
+    const Clock clock = read_clock();
+    const bool anew = starts_anew(request_->operations.front());
+    apply_all();
+    if (!reply_.errors.empty() && !anew) write_clock(clock);
+}
+
+void Transaction::run_on_scene(bool swaps)
+{
+    const State before = capture();
+    const Clock clock = read_clock();
+    const double kinetic = s_->totals().kinetic;
+    if (swaps) compare_with_old(before);
+    apply_all();
+    if (reply_.errors.empty()) s_->stepper_->requests_work() += s_->totals().kinetic - kinetic;
     if (reply_.errors.empty())
         if (auto done = try_new(); !done) reply_.errors = done.errors();
     if (reply_.errors.empty())
@@ -115,7 +141,7 @@ void Transaction::run_on_scene(bool swaps)
         return;
     }
     restore(before, true);
-    std::tie(s_->paused_, s_->steps_left_, s_->rate_, s_->dt_, s_->base_tick_, s_->base_time_) = clock;
+    write_clock(clock);
 }
 
 }  // namespace plab::simulation

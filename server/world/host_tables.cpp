@@ -143,6 +143,13 @@ void HostTables::remove(Facet facet, std::uint32_t index)
     }
 }
 
+void HostTables::disown(Facet facet, std::uint32_t index)
+{
+    if (facet == Facet::Body) component_of_body[index] = kNoIndex;
+    if (facet == Facet::Shaft) component_of_shaft[index] = kNoIndex;
+    if (facet == Facet::Shape) component_of_shape[index] = kNoIndex;
+}
+
 std::uint32_t HostTables::component_of(Ref ref) const
 {
     switch (ref.facet)

@@ -23,6 +23,8 @@ struct HostTables
     /// A new row for a component with this facet; kNoIndex where the facet has no table.
     std::uint32_t add(Facet facet, std::uint32_t component);
     void remove(Facet facet, std::uint32_t index);
+    /// The row belongs to nobody from now on, though it is freed only by remove(): a rollback may want it back.
+    void disown(Facet facet, std::uint32_t index);
     std::uint32_t component_of(Ref ref) const;
 };
 

@@ -203,6 +203,7 @@ void World::remove(std::uint32_t component)
     {
         parked_.push_back({c.table, c.row, c.host_index, c.facet});
         tables_[c.table]->assign(c.row, kNoIndex, kNoIndex);
+        host_.disown(c.facet, c.host_index);
         if (c.facet == Facet::Body) host_.bodies.motion[c.host_index] = Motion::Static;
         if (c.facet == Facet::Shaft) host_.shafts.motion[c.host_index] = Motion::Static;
     }

@@ -64,6 +64,7 @@ Value World::get(std::uint32_t component, const std::string& name) const
 Result<void> World::set(std::uint32_t component, const std::string& name, const Value& value)
 {
     const Component& c = components_[component];
+    if (c.table == kNoIndex) return reason("is a group");
     const Table& table = *tables_[c.table];
     const Field* field = table.schema().find_field(name);
     if (!field) return reason("has no field '" + name + "'");
