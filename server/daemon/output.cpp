@@ -123,6 +123,7 @@ std::string end_state_json(const simulation::Simulation& s)
     out += ",\n  \"shaft_momentum\": " + number(totals.shaft_momentum);
     out += ",\n  \"ledger\": {\"kinetic\": " + number(totals.kinetic) + ", \"stored\": " + number(totals.stored) +
            ", \"work\": " + number(totals.work) + ", \"kinetic_at_start\": " + number(s.kinetic_at_start()) +
+           ", \"work_of_requests\": " + number(s.stepper().requests_work()) + ", \"work_of_removed\": " + number(s.stepper().departed_work()) +
            ", \"unexplained\": " + number(totals.kinetic - s.kinetic_at_start() - totals.work) + "}";
     out += ",\n  \"cost_ns_per_step\": " + number(per_step);
     out += ",\n  \"objects\": {" + objects + "\n  },\n  \"interactions\": {" + interactions + "\n  }\n}\n";

@@ -56,8 +56,10 @@ public:
     const std::vector<double>& work() const { return work_; }
     /// J, by components that were removed since.
     double& departed_work() { return departed_work_; }
+    double departed_work() const { return departed_work_; }
     /// J, by requests: what a set, push or swap changed at once.
     double& requests_work() { return requests_work_; }
+    double requests_work() const { return requests_work_; }
     CostBook& cost() { return cost_; }
     const CostBook& cost() const { return cost_; }
     std::uint64_t state_hash() const;

@@ -51,6 +51,34 @@ TEST_CASE("the paper's scene too, at every step, and two worlds interleaved equa
     CHECK(crowd.hash() == hash_after(1, 1));
 }
 
+TEST_CASE("pairwise couplings are swept train by train: threads do not show")
+{
+    std::string body;
+    for (int train = 0; train < 7; ++train)
+    {
+        const std::string t = std::to_string(train);
+        for (int i = 0; i < 4; ++i)
+            body += "<component id=\"s" + t + std::to_string(i) + "\" type=\"State/Shaft\" inertia=\"" +
+                    std::to_string(1 + 0.3 * train + i) + "\" angular_velocity=\"" + std::to_string(train - 2 * i) + "\"/>";
+        for (int i = 0; i < 3; ++i)
+            body += "<component id=\"g" + t + std::to_string(i) + "\" type=\"Constraint/AngularVelocity/Impulse\" driver=\"s" + t +
+                    std::to_string(i) + "\" driven=\"s" + t + std::to_string(i + 1) + "\" velocity_factor=\"" +
+                    std::to_string(-0.7 + 0.31 * i) + "\"/>";
+        body += "<component id=\"m" + t + "\" type=\"Script/Lua\" driven=\"s" + t +
+                "0\"><param name=\"code\">function force(t, state) "
+                "driven:add_torque(1 - 0.1 * driven.speed) end</param></component>";
+    }
+    std::vector<std::uint64_t> hashes;
+    for (int threads = 1; threads <= 4; ++threads)
+    {
+        Scene s(body, "dt=\"1/100\"", threads);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(1);
+        hashes.push_back(s.hash());
+    }
+    for (const std::uint64_t h : hashes) CHECK(h == hashes.front());
+}
+
 TEST_CASE("the order of a blueprint's components does not matter")
 {
     const std::string

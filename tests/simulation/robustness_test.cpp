@@ -17,7 +17,8 @@ const char* const kResting = R"(<component id="floor" type="Shape/Plane"/><compo
 
 std::string script(const std::string& set)
 {
-    return "<component id=\"x\" type=\"Script/Lua\"><param name=\"code\">function drive(step) if step.tick == 5 then " + set + " end end</param></component>";
+    return "<component id=\"x\" type=\"Script/Lua\"><param name=\"code\">function drive(step) if step.tick == 5 then " + set +
+           " end end</param></component>";
 }
 
 }  // namespace
@@ -44,11 +45,13 @@ TEST_CASE("a resting body can be removed, and its place taken by another")
 
 TEST_CASE("scripts' changes obey the rules of requests")
 {
-    for (const char* set : {"set(\"s\", \"radius\", -1)", "set(\"grp\", \"mass\", 2)", "set(\"nobody\", \"mass\", 2)", "set(\"a\", \"mas\", 2)",
-                            "set(\"contact.response\", \"restitution\", 5)"})
+    for (const char* set : {"set(\"s\", \"radius\", -1)", "set(\"grp\", \"mass\", 2)", "set(\"nobody\", \"mass\", 2)",
+                            "set(\"a\", \"mas\", 2)", "set(\"contact.response\", \"restitution\", 5)"})
     {
         CAPTURE(set);
-        Scene s(std::string(kResting) + "<component id=\"grp\"><component id=\"in\" type=\"State/Shaft\" inertia=\"1\"/></component>" + script(set), "dt=\"1/240\"");
+        Scene s(std::string(kResting) + "<component id=\"grp\"><component id=\"in\" type=\"State/Shaft\" inertia=\"1\"/></component>" +
+                    script(set),
+                "dt=\"1/240\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = s.keep_events = true;
         s.run(0.1);
@@ -56,9 +59,11 @@ TEST_CASE("scripts' changes obey the rules of requests")
         CHECK(std::fabs(s.vec("a", "position").z - 0.5) < 1e-9);
     }
     // What depends on a shape follows, and the frame that the author sees stays.
-    Scene s("<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.5\"/><component id=\"a\" type=\"State/RigidBody\" density=\"1000\" shape=\"s\"/>" +
-                script("set(\"s\", \"radius\", 1)"),
-            "dt=\"1/240\"");
+    Scene s(
+        "<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.5\"/><component id=\"a\" type=\"State/RigidBody\" density=\"1000\" "
+        "shape=\"s\"/>" +
+            script("set(\"s\", \"radius\", 1)"),
+        "dt=\"1/240\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(0.1);
     CHECK(s.simulation().world().host().bodies.mass[0] == doctest::Approx(1000 * 4.0 / 3 * 3.141592653589793).epsilon(1e-12));
@@ -78,8 +83,12 @@ TEST_CASE("requests to the clock are transactions too")
 
 TEST_CASE("work stays with who did it, and requests have an account of their own")
 {
-    Scene s("<component id=\"a\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"/><component id=\"g\" type=\"Field/Gravity\" between=\"a\"/>", "dt=\"1/240\"");
-    const auto unexplained = [&] {
+    Scene s(
+        "<component id=\"a\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"/><component id=\"g\" type=\"Field/Gravity\" "
+        "between=\"a\"/>",
+        "dt=\"1/240\"");
+    const auto unexplained = [&]
+    {
         const auto t = s.simulation().totals();
         return std::fabs(t.kinetic - s.simulation().kinetic_at_start() - t.work);
     };
@@ -115,13 +124,15 @@ TEST_CASE("fifty balls land at one time in bounded work, whoever rewinds")
     for (const char* resolution : {"Bisection", "LocalBisection"})
     {
         CAPTURE(resolution);
-        Scene s(std::string("<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
-                            "<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><repeat id=\"all\" count=\"10 5\" step=\"0.5 0.5 0\">"
-                            "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\" position=\"0 0 0.6\"/></repeat>"
-                            "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/><component id=\"contact\" type=\"CDetection/ODE\" between=\"all ground\" "
-                            "resolution=\"Resolution/") +
-                    resolution + "\" response=\"Response/Impulse\" response.restitution=\"1\"/>",
-                "dt=\"1/60\"");
+        Scene s(
+            std::string("<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
+                        "<component id=\"s\" type=\"Shape/Sphere\" radius=\"0.1\"/><repeat id=\"all\" count=\"10 5\" step=\"0.5 0.5 0\">"
+                        "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"s\" position=\"0 0 0.6\"/></repeat>"
+                        "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/><component id=\"contact\" type=\"CDetection/ODE\" "
+                        "between=\"all ground\" "
+                        "resolution=\"Resolution/") +
+                resolution + "\" response=\"Response/Impulse\" response.restitution=\"1\"/>",
+            "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.keep_events = true;
         s.run(0.5);
