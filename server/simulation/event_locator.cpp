@@ -196,7 +196,8 @@ void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double 
         const auto i = static_cast<std::size_t>(found - members.begin());
         const Vec3 w = bodies.angular_velocity[body], r = p - bodies.position[body];
         const Vec3 spin_up = bodies.inverse_inertia_W(body) * (system.torque(i) - cross(w, bodies.angular_momentum[body]));
-        return system.acceleration(i) + cross(spin_up, r) + cross(w, cross(w, r));
+        // Without w x (w x r): a rolling ball's point turns away from the ground, its gap does not.
+        return system.acceleration(i) + cross(spin_up, r);
     };
     for (FoundContact& f : contacts)
         f.contact.normal_acceleration =

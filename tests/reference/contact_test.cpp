@@ -144,6 +144,23 @@ TEST_CASE("C5: a ball that loses speed in each bounce comes to rest at the sum o
     }
 }
 
+TEST_CASE("a ball that rolls when its bouncing ends comes to rest on the ground and rolls on")
+{
+    // The turning of its lowest point is no acceleration of its gap.
+    Scene s(std::string(kGround) + ball("a", "mass=\"0.5\" position=\"0 0 0.6\" linear_velocity=\"1.5 0 0\"") +
+                "<component id=\"g\" type=\"Field/Gravity\" between=\"a\"/>" + contact("a ground", "LocalBisection", "0.6", "0.35"),
+            "dt=\"1/240\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.keep_events = true;
+    s.run(3);
+    CHECK(s.count("contact.rest") == 1);
+    CHECK(s.count("contact.impact") < 100);
+    // Rolling shares the momentum: v = 5/7 v0.
+    CHECK(near(s.vec("a", "linear_velocity").x, 1.5 * 5 / 7, 1e-9));
+    CHECK(near(s.vec("a", "angular_velocity").y, 15.0 * 5 / 7, 1e-9));
+    CHECK(std::fabs(s.vec("a", "position").z - 0.1) < 1e-12);
+}
+
 // Along z, where the wall's normal is exact: spheres off one line would part exponentially, as they should.
 TEST_CASE("C6: Galperin's balls count the digits of pi")
 {
