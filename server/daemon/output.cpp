@@ -91,6 +91,22 @@ std::string interaction_json(const simulation::Simulation& s, std::uint32_t i)
     return out + (world.component(i).quarantined ? ", \"quarantined\": true}" : "}");
 }
 
+/// Pairs that touch: who, since which step, under which contact ids.
+std::string contacts_json(const simulation::Simulation& s)
+{
+    std::string out;
+    for (const simulation::PairState& pair : s.stepper().contacts().pairs())
+    {
+        std::string ids;
+        for (std::uint32_t i = 0; i < pair.count; ++i) ids += (i == 0 ? "" : ", ") + std::to_string(pair.contacts[i].id);
+        out += (out.empty() ? "" : ",") + std::string("\n    {\"detector\": ") + quoted(s.world().id_of(pair.detector)) +
+               ", \"a\": " + quoted(s.world().id_of(pair.a)) + ", \"b\": " + quoted(s.world().id_of(pair.b)) +
+               ", \"since\": " + std::to_string(pair.since) + ", \"resting\": " + (pair.resting ? "true" : "false") + ", \"ids\": [" + ids +
+               "]}";
+    }
+    return out;
+}
+
 std::string hash_text(std::uint64_t h)
 {
     char text[20];
@@ -123,8 +139,10 @@ std::string end_state_json(const simulation::Simulation& s)
     out += ",\n  \"shaft_momentum\": " + number(totals.shaft_momentum);
     out += ",\n  \"ledger\": {\"kinetic\": " + number(totals.kinetic) + ", \"stored\": " + number(totals.stored) +
            ", \"work\": " + number(totals.work) + ", \"kinetic_at_start\": " + number(s.kinetic_at_start()) +
-           ", \"work_of_requests\": " + number(s.stepper().requests_work()) + ", \"work_of_removed\": " + number(s.stepper().departed_work()) +
+           ", \"work_of_requests\": " + number(s.stepper().requests_work()) +
+           ", \"work_of_removed\": " + number(s.stepper().departed_work()) +
            ", \"unexplained\": " + number(totals.kinetic - s.kinetic_at_start() - totals.work) + "}";
+    out += ",\n  \"contacts\": [" + contacts_json(s) + "\n  ]";
     out += ",\n  \"cost_ns_per_step\": " + number(per_step);
     out += ",\n  \"objects\": {" + objects + "\n  },\n  \"interactions\": {" + interactions + "\n  }\n}\n";
     return out;

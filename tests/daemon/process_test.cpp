@@ -68,10 +68,29 @@ TEST_CASE("the end state is JSON with the documented keys")
     CHECK(std::abs(json["ledger"]["unexplained"].get<double>()) < 1e-9);
 }
 
+TEST_CASE("standing contacts are in the end state, under ids that stay")
+{
+    const std::string scene = temporary("resting.xml");
+    std::ofstream(scene) << "<plab version=\"1\"><component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" "
+                            "type=\"State/Static\" shape=\"floor\"/>"
+                            "<component id=\"s\" type=\"Shape/Box\" half_extents=\"0.5 0.5 0.5\"/><component id=\"box\" "
+                            "type=\"State/RigidBody\" mass=\"1\" shape=\"s\" "
+                            "position=\"0 0 0.6\"/><component id=\"g\" type=\"Field/Gravity\" between=\"box\"/><component id=\"contact\" "
+                            "type=\"CDetection/ODE\" "
+                            "between=\"box ground\"/></plab>";
+    const auto one = nlohmann::json::parse(plabd(scene + " --until 1 --out -").text),
+               two = nlohmann::json::parse(plabd(scene + " --until 2 --out -").text);
+    REQUIRE(one["contacts"].size() == 1);
+    CHECK(one["contacts"][0]["resting"] == true);
+    CHECK(one["contacts"][0]["ids"].size() == 4);
+    CHECK(one["contacts"] == two["contacts"]);
+}
+
 TEST_CASE("a trace has a row for each interval and does not disturb")
 {
     const std::string file = temporary("trace.csv");
-    const Outcome with = plabd(kScene + " --until 1 --trace " + file + " --every 0.1 --out -"), without = plabd(kScene + " --until 1 --out -");
+    const Outcome with = plabd(kScene + " --until 1 --trace " + file + " --every 0.1 --out -"),
+                  without = plabd(kScene + " --until 1 --out -");
     REQUIRE(with.code == 0);
     std::istringstream rows(read(file));
     std::string header, row;
@@ -107,7 +126,8 @@ TEST_CASE("wrong use is 2, bad scenes are 1, both with a message")
     CHECK(missing.code == 1);
     CHECK(has(missing.text, "no_such_file.xml"));
     const std::string bad = temporary("bad.xml");
-    std::ofstream(bad) << "<plab version=\"1\">\n  <component id=\"a\" type=\"State/Shaft\" inertia=\"-1\" colour=\"1 0 0\"/>\n  <component id=\"a\" type=\"State/Shft\"/>\n</plab>\n";
+    std::ofstream(bad) << "<plab version=\"1\">\n  <component id=\"a\" type=\"State/Shaft\" inertia=\"-1\" colour=\"1 0 0\"/>\n  "
+                          "<component id=\"a\" type=\"State/Shft\"/>\n</plab>\n";
     const Outcome check = plabd("--check " + bad);
     CHECK(check.code == 1);
     CHECK(has(check.text, "bad.xml:2:3:"));
@@ -124,7 +144,8 @@ TEST_CASE("help, version, check, expand, explain")
     CHECK(plabd("--check " + kScene).code == 0);
     const std::string file = temporary("long.xml");
     std::ofstream(file) << plabd("--expand " + kScene).text;
-    CHECK(nlohmann::json::parse(plabd(file + " --until 2 --out -").text)["hash"] == nlohmann::json::parse(plabd(kScene + " --until 2 --out -").text)["hash"]);
+    CHECK(nlohmann::json::parse(plabd(file + " --until 2 --out -").text)["hash"] ==
+          nlohmann::json::parse(plabd(kScene + " --until 2 --out -").text)["hash"]);
     const Outcome explain = plabd("--explain " + kScene);
     CHECK(has(explain.text, "one degree of freedom"));
     CHECK(has(explain.text, "Field/Gravity"));
