@@ -41,7 +41,7 @@ private:
     Result<std::uint32_t> find_typed(const std::string& id) const;
     Result<model::ComponentSpec> spec_for_swap(std::uint32_t component, const SwapOperation& op, SwapReport& report);
     void fit_roles(model::ComponentSpec& spec, const Schema& schema, SwapReport& report) const;
-    Result<void> exchange(std::uint32_t component, const model::ComponentSpec& spec);
+    Result<void> exchange(std::uint32_t component, const model::ComponentSpec& spec, const SwapReport& report);
     Result<Value> new_value(std::uint32_t component, const Field& field, const SetOperation& op) const;
 
     using Clock = std::tuple<bool, std::int64_t, double, model::StepLength, Tick, double>;

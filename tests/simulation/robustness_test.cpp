@@ -113,10 +113,12 @@ TEST_CASE("a body is frozen and let go by a swap")
     REQUIRE_MESSAGE(frozen.done, first_error(frozen.errors));
     s.run(1);
     CHECK(s.vec("b", "position") == at);
-    const Reply free = s.ask(SwapOperation{"b", "State/RigidBody", {{"mass", std::string("2")}}});
+    const Reply free =
+        s.ask(SwapOperation{"b", "State/RigidBody", {{"mass", std::string("2")}, {"linear_velocity", std::string("1 0 0")}}});
     REQUIRE_MESSAGE(free.done, first_error(free.errors));
     s.run(1.5);
     CHECK(s.vec("b", "position").z == doctest::Approx(at.z - 0.5 * 9.81 * 0.25).epsilon(1e-9));
+    CHECK(s.vec("b", "linear_velocity").x == 1);
 }
 
 TEST_CASE("fifty balls land at one time in bounded work, whoever rewinds")
