@@ -5,8 +5,20 @@ namespace plab::detection
 
 bool start_ode()
 {
-    static const bool started = dInitODE2(0) != 0;
-    return started && dAllocateODEDataForThread(dAllocateFlagCollisionData) != 0;
+    // Closed when the plugin goes; all spaces are gone by then, with the worlds that held them.
+    struct Ode
+    {
+        bool started = dInitODE2(0) != 0;
+        Ode() = default;
+        Ode(const Ode&) = delete;
+        Ode& operator=(const Ode&) = delete;
+        ~Ode()
+        {
+            if (started) dCloseODE();
+        }
+    };
+    static const Ode ode;
+    return ode.started && dAllocateODEDataForThread(dAllocateFlagCollisionData) != 0;
 }
 
 Collider::Collider(const Geometry& geometry) : source_(geometry)

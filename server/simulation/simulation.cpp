@@ -189,7 +189,8 @@ Totals Simulation::totals() const
             t.kinetic += host.shafts.kinetic_energy(c.host_index);
             t.shaft_momentum += host.shafts.inertia[c.host_index] * host.shafts.speed[c.host_index];
         }
-        t.work += stepper_->work()[i];
+        // Whoever came within a transaction has no account before the stepper is rebuilt, and has done nothing.
+        if (i < stepper_->work().size()) t.work += stepper_->work()[i];
     }
     StoredEnergy stored;
     PhaseCall call;

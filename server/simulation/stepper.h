@@ -54,6 +54,13 @@ public:
     const std::vector<FoundContact>& touching() const { return found_; }
     std::vector<double>& work() { return work_; }  ///< J by component, since the run began
     const std::vector<double>& work() const { return work_; }
+    /// A component is about to be removed: its work stays in the ledger, whoever gets its place starts with none.
+    void retire(std::uint32_t component)
+    {
+        if (component >= work_.size()) return;
+        departed_work_ += work_[component];
+        work_[component] = 0;
+    }
     /// J, by components that were removed since.
     double& departed_work() { return departed_work_; }
     double departed_work() const { return departed_work_; }

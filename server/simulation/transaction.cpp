@@ -140,9 +140,7 @@ Result<void> Transaction::apply_one(const RemoveOperation& op)
     if (!errors.empty()) return errors;
     for (const std::string& id : going)
     {
-        double& work = s_->stepper_->work()[s_->world_->find(id)];
-        s_->stepper_->departed_work() += work;  // whoever gets its place starts with none
-        work = 0;
+        s_->stepper_->retire(s_->world_->find(id));
         s_->world_->remove(s_->world_->find(id));
     }
     s_->world_->refresh_open_roles();
