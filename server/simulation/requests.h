@@ -128,6 +128,15 @@ struct SwapReport
     StepOutcome with_old, with_new;
 };
 
+/// What requests did to the structure and to parameters, for those who keep a copy of the catalogue.
+struct Changes
+{
+    bool everything = false;           ///< a new run
+    std::vector<std::string> touched;  ///< ids that came, went or changed; may repeat
+
+    bool any() const { return everything || !touched.empty(); }
+};
+
 struct Reply
 {
     std::uint64_t request = 0;

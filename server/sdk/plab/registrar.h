@@ -13,6 +13,7 @@
 #include "plab/collision.h"
 #include "plab/context.h"
 #include "plab/dynamics.h"
+#include "plab/picture.h"
 #include "plab/result.h"
 #include "plab/schema.h"
 #include "plab/shafts.h"
@@ -68,6 +69,8 @@ struct PhaseCall
     Impact* impact = nullptr;                   // Respond
     MassProperties* solid = nullptr;            // Measure
     StoredEnergy* stored = nullptr;             // Potential
+    const Sight* sight = nullptr;               // Draw
+    ImageSink* images = nullptr;                // Draw
 };
 
 using Thunk = Result<void> (*)(const PhaseCall& call, void* table);
@@ -137,6 +140,8 @@ PLAB_ARGUMENT(Trial&, trial, "Trial");
 PLAB_ARGUMENT(Impact&, impact, "Impact");
 PLAB_ARGUMENT(MassProperties&, solid, "MassProperties");
 PLAB_ARGUMENT(StoredEnergy&, stored, "StoredEnergy");
+PLAB_ARGUMENT(const Sight&, sight, "Sight");
+PLAB_ARGUMENT(ImageSink&, images, "Images");
 #undef PLAB_ARGUMENT
 
 template <class Table>

@@ -1,0 +1,145 @@
+#include "link/caller.h"
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+namespace plab::link
+{
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+std::vector<FieldFate> fates_of(const plab_v1_SwapReport& swap)
+{
+    std::vector<FieldFate> out;
+    for (std::uint32_t i = 0; i < swap.fields._length; ++i) out.push_back({swap.fields._buffer[i].name, swap.fields._buffer[i].fate});
+    return out;
+}
+
+StepOutcome outcome_of(const plab_v1_StepOutcome& o) { return {o.energy, {o.momentum.x, o.momentum.y, o.momentum.z}, o.error, o.cost_ns}; }
+
+Reply reply_of(const plab_v1_Reply& r)
+{
+    Reply out;
+    out.outcome = r.outcome, out.repeated = r.repeated;
+    for (std::uint32_t i = 0; i < r.reasons._length; ++i) out.reasons.emplace_back(r.reasons._buffer[i]);
+    out.run = r.run, out.revision = r.revision, out.step = r.step, out.time = r.time;
+    out.pause_ns = r.pause_ns, out.waited_ns = r.waited_ns;
+    for (std::uint32_t i = 0; i < r.swaps._length; ++i)
+    {
+        const plab_v1_SwapReport& s = r.swaps._buffer[i];
+        out.swaps.push_back(
+            {s.component, s.from_type, s.to_type, fates_of(s), s.energy_before, outcome_of(s.with_old), outcome_of(s.with_new)});
+    }
+    return out;
+}
+
+/// DDS only reads what it is given, though its types have no const.
+char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
+
+}  // namespace
+
+struct Caller::State
+{
+    const Session* session = nullptr;
+    plab_v1_ClientId id{};
+    std::uint64_t last = 0;
+    wire::Reader<plab_v1_Reply> replies;  // its filter reads `id`: State never moves
+    wire::Writer<plab_v1_Request> requests;
+
+    static bool is_mine(const void* sample, void* self)
+    {
+        return std::memcmp(static_cast<const plab_v1_Reply*>(sample)->client, static_cast<State*>(self)->id, sizeof(plab_v1_ClientId)) == 0;
+    }
+};
+
+void Caller::StateDeleter::operator()(State* state) const { delete state; }
+
+Result<Caller> Caller::make(const Session& session, Seconds timeout)
+{
+    Caller caller;
+    caller.state_.reset(new State);
+    State& state = *caller.state_;
+    state.session = &session;
+    std::random_device random;
+    std::generate(std::begin(state.id), std::end(state.id), [&] { return static_cast<std::uint8_t>(random()); });
+    auto replies = session.reader<plab_v1_Reply>(&State::is_mine, &state);
+    if (!replies) return replies.errors();
+    auto requests = session.writer<plab_v1_Request>();
+    if (!requests) return requests.errors();
+    state.replies = replies.take(), state.requests = requests.take();
+    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    while (state.replies.writers() == 0 || state.requests.readers() == 0)
+    {
+        if (Clock::now() >= end) return reason("server '" + session.server() + "' did not answer");
+        dds_sleepfor(DDS_MSECS(1));
+    }
+    return caller;
+}
+
+Result<std::uint64_t> Caller::send(const Request& request)
+{
+    const std::uint64_t number = state_->last + 1;
+    if (auto sent = send_again(request, number); !sent) return sent.errors();
+    state_->last = number;
+    return number;
+}
+
+Result<void> Caller::send_again(const Request& request, std::uint64_t number)
+{
+    std::vector<std::vector<plab_v1_NamedText>> values;
+    std::vector<plab_v1_Operation> operations;
+    for (const Operation& op : request.operations)
+    {
+        std::vector<plab_v1_NamedText>& named = values.emplace_back();
+        for (const auto& [name, value] : op.values) named.push_back({text(name), text(value)});
+        const auto count = static_cast<std::uint32_t>(named.size());
+        operations.push_back({text(op.verb), text(op.target), text(op.argument), text(op.blueprint), {count, count, named.data(), false}});
+    }
+    plab_v1_Request sample{};
+    std::memcpy(sample.client, state_->id, sizeof sample.client);
+    sample.number = number, sample.at = request.at.value_or(-1);
+    sample.revision = request.revision ? static_cast<std::int64_t>(*request.revision) : -1;
+    const auto count = static_cast<std::uint32_t>(operations.size());
+    sample.operations = {count, count, operations.data(), false};
+    if (const dds_return_t code = state_->requests.write(sample); code != DDS_RETCODE_OK)
+        return wire::failed("cannot send the request", code);
+    return {};
+}
+
+void Caller::take(const std::function<void(std::uint64_t, Reply)>& handle)
+{
+    (void)state_->replies.take(
+        [&](const plab_v1_Reply& reply, const dds_sample_info_t& info)
+        {
+            if (info.valid_data) handle(reply.number, reply_of(reply));
+        });
+}
+
+Result<Reply> Caller::call(const Request& request, Seconds timeout)
+{
+    constexpr Seconds kAgain(1.0);
+    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    auto number = send(request);
+    if (!number) return number.errors();
+    std::optional<Reply> answer;
+    while (!answer)
+    {
+        const Seconds left = Seconds(end - Clock::now());
+        if (left <= Seconds(0)) return reason("no reply from server '" + state_->session->server() + "' within the time-out");
+        const bool came = state_->session->wait(state_->replies, std::min(left, kAgain));
+        take(
+            [&](std::uint64_t of, Reply reply)
+            {
+                if (of == *number) answer = std::move(reply);
+            });
+        // A request for a later step is answered when that step is there: repeating it does no harm, it has its number.
+        if (!came)
+            if (auto sent = send_again(request, *number); !sent) return sent.errors();
+    }
+    return *answer;
+}
+
+}  // namespace plab::link

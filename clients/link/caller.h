@@ -1,0 +1,81 @@
+/// Requests and their replies. A request is sent again until its reply is there: the server carries it out once.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "link/session.h"
+
+namespace plab::link
+{
+
+struct Operation
+{
+    std::string verb;  ///< see server/docs/requests.md
+    std::string target = {}, argument = {}, blueprint = {};
+    std::vector<std::pair<std::string, std::string>> values = {};
+};
+
+struct Request
+{
+    std::vector<Operation> operations;
+    std::optional<std::int64_t> at;  ///< step
+    std::optional<std::uint64_t> revision;
+};
+
+struct FieldFate
+{
+    std::string name, fate;
+};
+struct StepOutcome
+{
+    double energy = 0;
+    double momentum[3] = {0, 0, 0};
+    double error = 0, cost_ns = 0;
+};
+struct SwapReport
+{
+    std::string component, from, to;
+    std::vector<FieldFate> fields;
+    double energy_before = 0;
+    StepOutcome with_old, with_new;
+};
+struct Reply
+{
+    std::string outcome;  ///< "done", "refused", "late"
+    bool repeated = false;
+    std::vector<std::string> reasons;
+    std::uint64_t run = 0, revision = 0;
+    std::int64_t step = 0;
+    double time = 0, pause_ns = 0, waited_ns = 0;
+    std::vector<SwapReport> swaps;
+
+    bool done() const { return outcome == "done"; }
+};
+
+/// Not thread-safe.
+class Caller
+{
+public:
+    /// Waits until the server's ends are matched both ways: a reply cannot be missed.
+    static Result<Caller> make(const Session& session, Seconds timeout);
+    /// Waits for the reply until `timeout`; an error means that there was none (whether it was carried out is unknown).
+    Result<Reply> call(const Request& request, Seconds timeout);
+
+    /// For those who wait themselves: sends, and gives the request's number.
+    Result<std::uint64_t> send(const Request& request);
+    /// Sends the same request, with the same number, once more.
+    Result<void> send_again(const Request& request, std::uint64_t number);
+    /// Replies that have come, each with the number of its request.
+    void take(const std::function<void(std::uint64_t number, Reply)>& handle);
+
+private:
+    struct State;  ///< the client's id, which the reply reader's filter points to
+    struct StateDeleter
+    {
+        void operator()(State* state) const;
+    };
+    std::unique_ptr<State, StateDeleter> state_;
+};
+
+}  // namespace plab::link

@@ -1,0 +1,89 @@
+/// A client's place on the bus: participant, partition of one server, typed readers.
+///
+///   auto session = link::Session::join(options);
+///   auto frames = session->reader<plab_v1_Frame>();
+///   while (session->wait(*frames, 1s)) frames->take([](const plab_v1_Frame& f, const dds_sample_info_t& info) { ... });
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "idl/domain.h"
+
+namespace plab::link
+{
+
+using Seconds = std::chrono::duration<double>;
+
+struct Options
+{
+    std::string server;  ///< name; empty: the only one that is there
+    wire::DomainOptions domain;
+};
+
+/// PLAB_SERVER, PLAB_DOMAIN and PLAB_INTERFACE, where they are set.
+Result<Options> options_from_environment();
+
+/// What is known of a server without asking it.
+struct ServerInfo
+{
+    std::string name, version, host, scene_file;
+    std::int32_t process = 0;
+    std::uint64_t run = 0, revision = 0;
+    std::int64_t step = 0;
+    double time = 0, dt = 0, rate_asked = 0, rate_reached = 0, slipped = 0;
+    bool paused = false;
+    std::int64_t started_ns = 0;
+};
+
+class Session
+{
+public:
+    /// Joins the domain, without regard to servers.
+    static Result<Session> join(const Options& options);
+    /// Joins, and looks for the server (by name, or the only one) until `timeout`. The reason says which ones there are.
+    static Result<Session> find(const Options& options, Seconds timeout);
+
+    /// Servers that have shown themselves until `timeout`, by name; returns early once `enough` have.
+    std::vector<ServerInfo> servers(Seconds timeout, std::size_t enough = static_cast<std::size_t>(-1)) const;
+
+    template <class T>
+    Result<wire::Reader<T>> reader(dds_topic_filter_arg_fn filter = nullptr, void* argument = nullptr) const
+    {
+        return wire::Reader<T>::make(participant_, subscriber_, filter, argument);
+    }
+    template <class T>
+    Result<wire::Writer<T>> writer() const
+    {
+        return wire::Writer<T>::make(participant_, publisher_);
+    }
+    /// Until the reader has samples (true) or the time is over (false).
+    template <class T>
+    bool wait(const wire::Reader<T>& reader, Seconds timeout) const
+    {
+        return wait_for(reader.entity(), DDS_DATA_AVAILABLE_STATUS, timeout);
+    }
+    /// Until the server's writer is there and has delivered what it keeps for late joiners.
+    template <class T>
+    bool wait_for_history(const wire::Reader<T>& reader, Seconds timeout) const
+    {
+        return wait_for(reader.entity(), DDS_SUBSCRIPTION_MATCHED_STATUS, timeout) &&
+               dds_reader_wait_for_historical_data(reader.entity().get(), duration(timeout)) == DDS_RETCODE_OK;
+    }
+
+    const std::string& server() const { return server_; }
+    const wire::Entity& participant() const { return participant_; }
+
+    static dds_duration_t duration(Seconds s) { return static_cast<dds_duration_t>(s.count() * 1e9); }
+
+private:
+    bool wait_for(const wire::Entity& entity, std::uint32_t status, Seconds timeout) const;
+    Result<void> enter(const std::string& server);
+
+    std::string server_;
+    wire::Entity participant_;
+    wire::Entity publisher_, subscriber_;
+};
+
+}  // namespace plab::link

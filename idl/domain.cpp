@@ -1,0 +1,81 @@
+#include "idl/domain.h"
+
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+
+namespace plab::wire
+{
+namespace
+{
+
+// Domains 0 to 232 have ports below 65536.
+constexpr std::uint32_t kLastDomain = 232;
+
+bool is_interface_name(const std::string& name)
+{
+    return !name.empty() && name.size() < 64 && name.find_first_of("\"'<>&/ \t\n") == std::string::npos;
+}
+
+Error not_joined(const DomainOptions& options, dds_return_t code)
+{
+    std::string why = "cannot join DDS domain " + std::to_string(options.id);
+    if (std::getenv("CYCLONEDDS_URI") != nullptr)
+        why += " with the configuration in CYCLONEDDS_URI";
+    else
+        why += " on interface " + (options.network_interface.empty() ? std::string("lo") : options.network_interface);
+    return reason(why + ": " + dds_strretcode(code) + " (Cyclone DDS says more on standard error)");
+}
+
+}  // namespace
+
+std::string configuration_of(const DomainOptions& options)
+{
+    // Big datagrams double the throughput on loopback; on a real network Cyclone's own sizes are right.
+    std::string general, discovery;
+    if (options.network_interface.empty())
+    {
+        general =
+            "<Interfaces><NetworkInterface name=\"lo\" multicast=\"false\"/></Interfaces><AllowMulticast>false</AllowMulticast>"
+            "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>65000B</FragmentSize>";
+        discovery = "<Peers><Peer address=\"127.0.0.1\"/></Peers>";
+    }
+    else
+        general = "<Interfaces><NetworkInterface name=\"" + options.network_interface + "\"/></Interfaces>";
+    return "<CycloneDDS><Domain><General>" + general +
+           "</General><Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>120</MaxAutoParticipantIndex>" +
+           discovery + "</Discovery></Domain></CycloneDDS>";
+}
+
+Result<Entity> join(const DomainOptions& options)
+{
+    if (options.id > kLastDomain) return reason("a DDS domain is from 0 to 232, not " + std::to_string(options.id));
+    if (!options.network_interface.empty() && !is_interface_name(options.network_interface))
+        return reason("'" + options.network_interface + "' is no name of a network interface");
+    const char* const own = std::getenv("CYCLONEDDS_URI");
+    if (own == nullptr || *own == 0)
+    {
+        const dds_entity_t domain = dds_create_domain(options.id, configuration_of(options).c_str());
+        // A process that joins twice finds its domain there already.
+        if (domain < 0 && domain != DDS_RETCODE_PRECONDITION_NOT_MET) return not_joined(options, domain);
+    }
+    const dds_entity_t participant = dds_create_participant(options.id, nullptr, nullptr);
+    if (participant < 0) return not_joined(options, participant);
+    return Entity(participant);
+}
+
+Result<DomainOptions> domain_from_environment()
+{
+    DomainOptions options;
+    if (const char* text = std::getenv("PLAB_DOMAIN"); text != nullptr && *text != 0)
+    {
+        const char* const end = text + std::strlen(text);
+        const auto [stop, error] = std::from_chars(text, end, options.id);
+        if (error != std::errc() || stop != end || options.id > kLastDomain)
+            return reason(std::string("PLAB_DOMAIN is a number from 0 to 232, not '") + text + "'");
+    }
+    if (const char* text = std::getenv("PLAB_INTERFACE"); text != nullptr) options.network_interface = text;
+    return options;
+}
+
+}  // namespace plab::wire

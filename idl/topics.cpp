@@ -1,0 +1,101 @@
+#include "idl/topics.h"
+
+#include <algorithm>
+#include <array>
+
+namespace plab::wire
+{
+namespace
+{
+
+constexpr std::array<Topic, 13> kTopics{{
+    {"plab/server", &plab_v1_Server_desc, Delivery::Catalogue, "the server's state, at least once a second"},
+    {"plab/scene", &plab_v1_Scene_desc, Delivery::Catalogue, "what is loaded, and its cameras"},
+    {"plab/objects", &plab_v1_Object_desc, Delivery::Catalogue, "bodies and shafts"},
+    {"plab/shapes", &plab_v1_Shape_desc, Delivery::Catalogue, "geometry of bodies"},
+    {"plab/interactions", &plab_v1_Interaction_desc, Delivery::Catalogue, "all other components, with their algorithm"},
+    {"plab/types", &plab_v1_Type_desc, Delivery::Catalogue, "what can be added or swapped in"},
+    {"plab/states", &plab_v1_Frame_desc, Delivery::Newest, "positions and velocities, one sample per frame"},
+    {"plab/collisions", &plab_v1_Collisions_desc, Delivery::Log, "contacts that begin, bounce, rest and end"},
+    {"plab/events", &plab_v1_Events_desc, Delivery::Log, "events of interactions, failures, applied requests"},
+    {"plab/metrics", &plab_v1_Metrics_desc, Delivery::Catalogue, "cost, error and work of each interaction, energy"},
+    {"plab/requests", &plab_v1_Request_desc, Delivery::Request, "what clients ask for"},
+    {"plab/replies", &plab_v1_Reply_desc, Delivery::Reply, "answers, each for one client"},
+    {"plab/images", &plab_v1_Image_desc, Delivery::Newest, "pictures of cameras in the scene"},
+}};
+
+}  // namespace
+
+std::span<const Topic> topics() { return kTopics; }
+
+#define PLAB_TOPIC(Type, index)                             \
+    template <>                                             \
+    const Topic& topic_of<Type>()                           \
+    {                                                       \
+        static_assert(kTopics[index].type == &Type##_desc); \
+        return kTopics[index];                              \
+    }
+PLAB_TOPIC(plab_v1_Server, 0)
+PLAB_TOPIC(plab_v1_Scene, 1)
+PLAB_TOPIC(plab_v1_Object, 2)
+PLAB_TOPIC(plab_v1_Shape, 3)
+PLAB_TOPIC(plab_v1_Interaction, 4)
+PLAB_TOPIC(plab_v1_Type, 5)
+PLAB_TOPIC(plab_v1_Frame, 6)
+PLAB_TOPIC(plab_v1_Collisions, 7)
+PLAB_TOPIC(plab_v1_Events, 8)
+PLAB_TOPIC(plab_v1_Metrics, 9)
+PLAB_TOPIC(plab_v1_Request, 10)
+PLAB_TOPIC(plab_v1_Reply, 11)
+PLAB_TOPIC(plab_v1_Image, 12)
+#undef PLAB_TOPIC
+
+Qos qos_of(Delivery delivery)
+{
+    constexpr dds_duration_t kBlocking = DDS_SECS(1);
+    Qos qos(dds_create_qos());
+    dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, delivery == Delivery::Request ? kBlocking : 0);
+    dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+    // The default since XTypes is to guess; every reader that is not XTypes-aware wants XCDR1.
+    const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
+    dds_qset_data_representation(qos.get(), 1, &xcdr1);
+    switch (delivery)
+    {
+        case Delivery::Catalogue:
+            dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+            dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
+                                        DDS_LENGTH_UNLIMITED);
+            dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+            dds_qset_writer_data_lifecycle(qos.get(), true);
+            break;
+        case Delivery::Newest:
+            dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 4);
+            break;
+        case Delivery::Log:
+            dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 4096);
+            break;
+        case Delivery::Request:
+            dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+            break;
+        case Delivery::Reply:
+            dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 256);
+            break;
+    }
+    return qos;
+}
+
+Qos partition_qos(const std::string& partition)
+{
+    Qos qos(dds_create_qos());
+    dds_qset_partition1(qos.get(), partition.c_str());
+    return qos;
+}
+
+bool is_server_name(const std::string& name)
+{
+    const auto allowed = [](char c)
+    { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-'; };
+    return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), allowed);
+}
+
+}  // namespace plab::wire

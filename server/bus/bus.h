@@ -1,0 +1,37 @@
+/// The bus as the daemon sees it. The daemon loads build/lib/plab/bus.so when it is wanted; without it no DDS is mapped.
+#pragma once
+
+#include <memory>
+
+#include "publish/observer.h"
+
+namespace plab::bus
+{
+
+struct BusOptions
+{
+    std::string name = "plab";      ///< of the server: the partition of its topics
+    std::string version;            ///< of pLab
+    std::uint32_t domain = 0;       ///< DDS domain
+    std::string network_interface;  ///< empty: this host only
+    /// Wakes the step loop when a request has arrived. Called on a thread of the bus; must not wait.
+    void (*wake)(void*) = nullptr;
+    void* wake_argument = nullptr;
+};
+
+class Bus : public publish::Observer
+{
+public:
+    /// The oldest request that nobody has taken yet. Each request is handed out once, however often its client sent it.
+    virtual bool take(publish::RequestText& request) = 0;
+    /// To the client that asked, and to nobody else. Never dropped.
+    virtual void answer(publish::Answer&& answer) = 0;
+    /// Empty while all is well; else why this server must end (another one has its name).
+    virtual std::string lost() const = 0;
+};
+
+/// What bus.so exports under kEntryName. On failure (no such interface, the name is taken, ...) nothing, and the reason.
+using Open = std::unique_ptr<Bus> (*)(const BusOptions& options, Error& error);
+inline constexpr const char* kEntryName = "plab_bus_open";
+
+}  // namespace plab::bus

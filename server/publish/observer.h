@@ -1,0 +1,40 @@
+/// Who watches a run: the bus, a recorder. The step thread calls these between steps; none of them waits, and the only
+/// memory that they hold is that of bounded rings.
+#pragma once
+
+#include "publish/records.h"
+
+namespace plab::publish
+{
+
+enum class Stream : std::uint8_t
+{
+    States,
+    Collisions,
+    Events,
+    Metrics,
+    Images,
+};
+
+class Observer
+{
+public:
+    virtual ~Observer() = default;
+
+    /// Whether anybody wants this stream now. Where nobody does, nothing is collected or copied.
+    virtual bool wants(Stream stream) const = 0;
+
+    /// A frame to fill, its vectors with the memory of an earlier one; end_frame() hands it over. The oldest unsent one
+    /// is given up when all are full.
+    virtual Frame& begin_frame() = 0;
+    virtual void end_frame() = 0;
+    virtual void collisions(Batch<CollisionRecord>&& batch) = 0;
+    virtual void events(Batch<EventRecord>&& batch) = 0;
+    virtual void metrics(Metrics&& metrics) = 0;
+    virtual void image(Image&& image) = 0;
+    virtual void status(const Status& status) = 0;
+    /// False if there was no room: the next change must be everything.
+    virtual bool catalogue(CatalogueChange&& change) = 0;
+};
+
+}  // namespace plab::publish

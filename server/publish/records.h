@@ -1,0 +1,210 @@
+/// What leaves a running scene, as plain data: the step thread fills it, other threads send or write it.
+///
+/// The bus gives the same fields the types of idl/plab.idl, where units and meanings stand.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/type_summary.h"
+#include "plab/context.h"
+#include "plab/vector.h"
+#include "simulation/requests.h"
+
+namespace plab::publish
+{
+
+struct BodyState
+{
+    std::uint32_t handle = 0;
+    Vec3 position;
+    Quat orientation;
+    Vec3 linear_velocity;
+    Vec3 angular_velocity;
+};
+
+struct ShaftState
+{
+    std::uint32_t handle = 0;
+    double angle = 0;
+    double speed = 0;
+};
+
+struct Frame
+{
+    std::uint64_t run = 0, revision = 0;
+    std::uint64_t number = 0;  ///< counts frames taken
+    Tick step = 0;
+    double time = 0;
+    std::int64_t stamp_ns = 0;
+    std::vector<BodyState> bodies;
+    std::vector<ShaftState> shafts;
+};
+
+struct Parameter
+{
+    std::string name, text, unit, kind;
+};
+
+struct ObjectEntry
+{
+    std::string component, name, type;
+    std::uint32_t handle = 0;
+    std::uint64_t run = 0;
+    bool is_shaft = false;
+    Motion motion = Motion::Static;
+    double mass = 0;
+    Pose pose;  ///< X_WB, or X_WA of a shaft's axle
+    Vec3 color{-1, -1, -1};
+    std::vector<std::string> shapes;
+    bool quarantined = false;
+    std::vector<Parameter> parameters;
+};
+
+struct ShapeEntry
+{
+    std::string component, type;
+    Geometry geometry;
+};
+
+struct InteractionEntry
+{
+    std::string component, name, type, family;
+    std::uint64_t run = 0;
+    Tick since = 0;
+    struct Participants
+    {
+        std::string role;
+        std::vector<std::string> members;
+    };
+    std::vector<Participants> roles;
+    bool quarantined = false;
+    std::vector<Parameter> parameters;
+};
+
+struct SceneEntry
+{
+    std::uint64_t run = 0;
+    std::string file, title;
+    double dt = 0;
+    std::uint64_t seed = 0;
+    std::uint32_t objects = 0, interactions = 0;
+    std::vector<model::Camera> cameras;
+};
+
+/// What changed in the catalogue.
+struct CatalogueChange
+{
+    bool everything = false;  ///< what is not named here is gone
+    SceneEntry scene;
+    std::vector<ObjectEntry> objects;
+    std::vector<ShapeEntry> shapes;
+    std::vector<InteractionEntry> interactions;
+    std::vector<model::TypeSummary> types;  ///< empty: as before
+    std::vector<std::string> gone;          ///< ids of components of any kind
+};
+
+struct CollisionRecord
+{
+    const char* kind = "";  ///< "begin", "impact", "rest", "end"
+    double time = 0;
+    std::string detector, a, b;
+    Vec3 position, normal, impulse;
+    double depth = 0;
+};
+
+struct EventRecord
+{
+    std::string kind;
+    Severity severity = Severity::Info;
+    double time = 0;
+    std::string component, a, b, message;
+    std::vector<double> values;
+};
+
+/// What one step brought.
+template <class T>
+struct Batch
+{
+    std::uint64_t run = 0;
+    std::uint64_t first = 0;  ///< sequence number of the first entry
+    Tick step = 0;
+    std::vector<T> entries;
+};
+
+struct InteractionMetrics
+{
+    std::string component, requested, resolved;
+    double cost_ns = 0, error = 0, work = 0;
+    bool quarantined = false;
+    std::vector<Parameter> outputs;
+};
+
+struct Metrics
+{
+    std::uint64_t run = 0, revision = 0;
+    Tick step = 0;
+    double time = 0;
+    double step_ns = 0, real_time_factor = 0;
+    double kinetic = 0, stored = 0, work = 0, of_requests = 0, unexplained = 0;
+    Vec3 momentum, angular_momentum;
+    double residual = 0, deepest = 0;
+    std::uint32_t contacts = 0;
+    std::vector<InteractionMetrics> interactions;
+};
+
+/// The server's own state.
+struct Status
+{
+    std::string scene_file;
+    std::uint64_t run = 0, revision = 0;
+    Tick step = 0;
+    double time = 0, dt = 0;
+    bool paused = false;
+    double rate_asked = 0, rate_reached = 0, slipped = 0;
+    bool slipping = false;
+    double states_per_second = 0;  ///< 0: each step
+    std::uint32_t threads = 1;
+    std::uint64_t last_event = 0, last_collision = 0;
+    std::uint64_t requests_done = 0, requests_refused = 0;
+};
+
+struct Image
+{
+    std::string camera;
+    std::uint64_t run = 0;
+    Tick step = 0;
+    double time = 0;
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;  ///< rows from the top
+};
+
+/// A request as it came, in text; server/control makes operations of it.
+struct OperationText
+{
+    std::string verb, target, argument, blueprint;
+    std::vector<std::pair<std::string, std::string>> values;
+};
+using ClientId = std::array<std::uint8_t, 16>;
+struct RequestText
+{
+    ClientId client{};
+    std::uint64_t number = 0;
+    std::int64_t at = -1, revision = -1;
+    std::int64_t arrived_ns = 0;  ///< monotonic
+    std::vector<OperationText> operations;
+};
+
+struct Answer
+{
+    ClientId client{};
+    std::uint64_t number = 0;
+    simulation::Reply reply;
+    std::uint64_t run = 0;
+    double time = 0;
+    double waited_ns = 0;
+};
+
+}  // namespace plab::publish

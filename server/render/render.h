@@ -1,0 +1,90 @@
+/// Pictures of plain geometry, off-screen, with OSMesa. Knows neither world nor wire: the viewer and the camera component
+/// both hand it a Drawing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plab/result.h"
+#include "plab/rotation.h"
+#include "plab/vector.h"
+
+namespace plab::render
+{
+
+struct Mesh
+{
+    std::vector<Vec3> vertices;            ///< m
+    std::vector<std::uint32_t> triangles;  ///< index triples, counter-clockwise seen from outside
+};
+
+enum class Form : std::uint8_t
+{
+    Sphere,    ///< size.x: radius
+    Box,       ///< size: half extents
+    Cylinder,  ///< size.x: radius, size.z: half length along z; for shafts without shapes
+    Plane,     ///< z = 0 of its pose, as far as one can see
+    Mesh,
+};
+
+struct Item
+{
+    Form form = Form::Sphere;
+    Pose pose;  ///< X_WS
+    Vec3 size{0.5, 0.5, 0.5};
+    Vec3 color{0.7, 0.7, 0.75};  ///< 0 to 1
+    std::uint32_t mesh = 0;      ///< Form::Mesh: index into Drawing::meshes
+};
+
+struct View
+{
+    Vec3 position{4, -6, 3};
+    Vec3 look_at;
+    Vec3 up{0, 0, 1};
+    double field_of_view = 0.7;  ///< rad, vertical
+};
+
+/// A line of text over the picture; from the top left, or from the bottom left where `bottom`.
+struct Caption
+{
+    std::string text;
+    bool bottom = false;
+};
+
+struct Drawing
+{
+    View view;
+    std::vector<Item> items;
+    std::vector<Mesh> meshes;
+    std::uint64_t meshes_revision = 0;  ///< to be changed when `meshes` does: they are kept on the GL side
+    bool ground = true;                 ///< grid in the plane z = 0
+    std::vector<Caption> captions;
+};
+
+/// 8 bits a channel, red green blue alpha, rows from the top.
+struct Picture
+{
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+class Renderer
+{
+public:
+    virtual ~Renderer() = default;
+    /// Draws into `out`, whose memory is used again. To be called on one thread at a time.
+    virtual Result<void> draw(const Drawing& drawing, Picture& out) = 0;
+};
+
+/// Sizes from 16 to 8192 pixels.
+Result<std::unique_ptr<Renderer>> make_renderer(std::uint32_t width, std::uint32_t height);
+
+/// Writes beside the file and renames, so that whoever looks sees a whole picture.
+Result<void> write_png(const std::string& path, const Picture& picture);
+
+/// A view that shows all items from a pleasant angle (azimuth and elevation in rad about their middle).
+View view_of_everything(const std::vector<Item>& items, double azimuth = -1.1, double elevation = 0.35);
+
+}  // namespace plab::render
