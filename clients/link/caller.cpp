@@ -57,7 +57,7 @@ struct Caller::State
 
 void Caller::StateDeleter::operator()(State* state) const { delete state; }
 
-Result<Caller> Caller::make(const Session& session, Seconds timeout)
+Result<Caller> Caller::make(const Session& session, Seconds timeout, const Stop& stop)
 {
     Caller caller;
     caller.state_.reset(new State);
@@ -73,7 +73,7 @@ Result<Caller> Caller::make(const Session& session, Seconds timeout)
     const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
     while (state.replies.writers() == 0 || state.requests.readers() == 0)
     {
-        if (Clock::now() >= end) return reason("server '" + session.server() + "' did not answer");
+        if (Clock::now() >= end || (stop && stop())) return reason("server '" + session.server() + "' did not answer");
         dds_sleepfor(DDS_MSECS(1));
     }
     return caller;
@@ -118,26 +118,29 @@ void Caller::take(const std::function<void(std::uint64_t, Reply)>& handle)
         });
 }
 
-Result<Reply> Caller::call(const Request& request, Seconds timeout)
+Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& stop)
 {
-    constexpr Seconds kAgain(1.0);
+    constexpr Seconds kAgain(1.0), kSlice(0.1);
     const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
     auto number = send(request);
     if (!number) return number.errors();
+    auto sent_at = Clock::now();
     std::optional<Reply> answer;
     while (!answer)
     {
         const Seconds left = Seconds(end - Clock::now());
         if (left <= Seconds(0)) return reason("no reply from server '" + state_->session->server() + "' within the time-out");
-        const bool came = state_->session->wait(state_->replies, std::min(left, kAgain));
+        if (stop && stop()) return reason("interrupted before the reply");
+        (void)state_->session->wait(state_->replies, std::min(left, kSlice));
         take(
             [&](std::uint64_t of, Reply reply)
             {
                 if (of == *number) answer = std::move(reply);
             });
+        if (answer || Clock::now() - sent_at < kAgain) continue;
         // A request for a later step is answered when that step is there: repeating it does no harm, it has its number.
-        if (!came)
-            if (auto sent = send_again(request, *number); !sent) return sent.errors();
+        if (auto sent = send_again(request, *number); !sent) return sent.errors();
+        sent_at = Clock::now();
     }
     return *answer;
 }

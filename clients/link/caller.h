@@ -58,9 +58,9 @@ class Caller
 {
 public:
     /// Waits until the server's ends are matched both ways: a reply cannot be missed.
-    static Result<Caller> make(const Session& session, Seconds timeout);
+    static Result<Caller> make(const Session& session, Seconds timeout, const Stop& stop = {});
     /// Waits for the reply until `timeout`; an error means that there was none (whether it was carried out is unknown).
-    Result<Reply> call(const Request& request, Seconds timeout);
+    Result<Reply> call(const Request& request, Seconds timeout, const Stop& stop = {});
 
     /// For those who wait themselves: sends, and gives the request's number.
     Result<std::uint64_t> send(const Request& request);

@@ -13,12 +13,6 @@ using Clock = std::chrono::steady_clock;
 
 Seconds left_until(Clock::time_point end) { return std::max(Seconds(0), Seconds(end - Clock::now())); }
 
-ServerInfo info_of(const plab_v1_Server& s)
-{
-    return {s.name, s.version, s.host,       s.scene_file,   s.process, s.run,    s.revision,  s.step,
-            s.time, s.dt,      s.rate_asked, s.rate_reached, s.slipped, s.paused, s.started_ns};
-}
-
 std::string names_of(const std::vector<ServerInfo>& servers)
 {
     std::string out;
@@ -27,6 +21,21 @@ std::string names_of(const std::vector<ServerInfo>& servers)
 }
 
 }  // namespace
+
+ServerInfo server_of(const plab_v1_Server& s)
+{
+    ServerInfo out;
+    out.name = s.name, out.version = s.version, out.host = s.host, out.scene_file = s.scene_file;
+    out.process = s.process, out.run = s.run, out.revision = s.revision, out.step = s.step;
+    out.time = s.time, out.dt = s.dt, out.rate_asked = s.rate_asked, out.rate_reached = s.rate_reached, out.slipped = s.slipped;
+    out.paused = s.paused, out.started_ns = s.started_ns, out.overload = s.overload;
+    out.states_per_second = s.states_per_second, out.threads = s.threads;
+    out.last_event = s.last_event, out.last_collision = s.last_collision;
+    out.requests_done = s.requests_done, out.requests_refused = s.requests_refused;
+    for (std::uint32_t i = 0; i < s.dropped._length; ++i)
+        out.dropped.emplace_back(s.dropped._buffer[i].topic, s.dropped._buffer[i].samples);
+    return out;
+}
 
 Result<Options> options_from_environment()
 {
@@ -65,22 +74,24 @@ Result<Session> Session::find(const Options& options, Seconds timeout)
 {
     auto session = join(options);
     if (!session) return session;
+    if (auto found = session->find_server(options, timeout); !found) return found.errors();
+    return session;
+}
+
+Result<void> Session::find_server(const Options& options, Seconds timeout, const Stop& stop)
+{
     const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
     std::vector<ServerInfo> seen;
     while (true)
     {
         // Without a name a second server must have the time to show itself: taking the first would be a guess.
         const Seconds look = std::min(left_until(end), Seconds(options.server.empty() ? 0.3 : 0.1));
-        seen = session->servers(look, options.server.empty() ? static_cast<std::size_t>(-1) : 1);
+        seen = servers(look, options.server.empty() ? static_cast<std::size_t>(-1) : 1);
         const auto is_meant = [&](const ServerInfo& s) { return s.name == options.server; };
-        if (!options.server.empty() && std::any_of(seen.begin(), seen.end(), is_meant)) return session;
-        if (options.server.empty() && seen.size() == 1)
-        {
-            if (auto entered = session->enter(seen.front().name); !entered) return entered.errors();
-            return session;
-        }
+        if (!options.server.empty() && std::any_of(seen.begin(), seen.end(), is_meant)) return {};
+        if (options.server.empty() && seen.size() == 1) return enter(seen.front().name);
         if (options.server.empty() && seen.size() > 1) return reason("several servers are there (" + names_of(seen) + "): name one");
-        if (Clock::now() >= end) break;
+        if (Clock::now() >= end || (stop && stop())) break;
     }
     const std::string where = " in domain " + std::to_string(options.domain.id);
     if (options.server.empty()) return reason("no server was found" + where);
@@ -106,7 +117,7 @@ std::vector<ServerInfo> Session::servers(Seconds timeout, std::size_t enough) co
             [&](const plab_v1_Server& s, const dds_sample_info_t& sample)
             {
                 if (sample.valid_data && sample.instance_state == DDS_IST_ALIVE)
-                    seen[s.name] = info_of(s);
+                    seen[s.name] = server_of(s);
                 else
                     seen.erase(s.name);
             });

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace plab::link
 {
 
 using Seconds = std::chrono::duration<double>;
+/// Asked several times a second by what waits: true ends the waiting.
+using Stop = std::function<bool()>;
 
 struct Options
 {
@@ -35,7 +38,15 @@ struct ServerInfo
     double time = 0, dt = 0, rate_asked = 0, rate_reached = 0, slipped = 0;
     bool paused = false;
     std::int64_t started_ns = 0;
+    std::string overload;  ///< "" or what is done about steps that take too long: "slip"
+    double states_per_second = 0;
+    std::uint32_t threads = 0;
+    std::uint64_t last_event = 0, last_collision = 0;  ///< sequence numbers
+    std::uint64_t requests_done = 0, requests_refused = 0;
+    std::vector<std::pair<std::string, std::uint64_t>> dropped = {};  ///< topic, samples that rings in the server gave up
 };
+
+ServerInfo server_of(const plab_v1_Server& sample);
 
 class Session
 {
@@ -44,6 +55,8 @@ public:
     static Result<Session> join(const Options& options);
     /// Joins, and looks for the server (by name, or the only one) until `timeout`. The reason says which ones there are.
     static Result<Session> find(const Options& options, Seconds timeout);
+    /// The second half of find(), for a session that has joined.
+    Result<void> find_server(const Options& options, Seconds timeout, const Stop& stop = {});
 
     /// Servers that have shown themselves until `timeout`, by name; returns early once `enough` have.
     std::vector<ServerInfo> servers(Seconds timeout, std::size_t enough = static_cast<std::size_t>(-1)) const;

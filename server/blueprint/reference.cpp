@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "blueprint/writer.h"
+#include "model/type_summary.h"
 #include "model/values.h"
 
 namespace plab::blueprint
@@ -31,42 +32,6 @@ std::string row(std::initializer_list<std::string> cells)
     return out + "\n";
 }
 
-std::string words_of(const Rule& rule)
-{
-    switch (rule.kind)
-    {
-        case Rule::Kind::AtLeast:
-            return "at least " + model::format_real(rule.bound);
-        case Rule::Kind::MoreThan:
-            return rule.bound == 0 ? "positive" : "more than " + model::format_real(rule.bound);
-        case Rule::Kind::AtMost:
-            return "at most " + model::format_real(rule.bound);
-        case Rule::Kind::NonZero:
-            return "not zero";
-        case Rule::Kind::UnitLength:
-            return "a direction";
-        case Rule::Kind::OneOf:
-            break;
-    }
-    std::string out = "one of";
-    for (const std::string& option : rule.options) out += (&option == &rule.options.front() ? " " : ", ") + option;
-    return out;
-}
-
-std::string rules_of(const Field& field)
-{
-    std::string out;
-    for (const Rule& rule : field.rules) out += (out.empty() ? "" : ", ") + words_of(rule);
-    if (field.may_be_infinite) out += std::string(out.empty() ? "" : ", ") + "may be infinite";
-    return out;
-}
-
-std::string_view name_of_kind(FieldKind kind)
-{
-    constexpr std::string_view names[] = {"param", "state", "output", "scratch"};
-    return names[static_cast<std::size_t>(kind)];
-}
-
 std::string default_of(const Field& field)
 {
     if (field.kind == FieldKind::Output) return "";
@@ -80,19 +45,13 @@ std::string fields_of(const Schema& schema)
     std::string rows;
     for (const Field& f : schema.fields())
         if (f.kind != FieldKind::Scratch)
-            rows += row({"`" + f.name + "`", std::string(name_of_kind(f.kind)), std::string(kTypeNames[static_cast<std::size_t>(f.type)]),
-                         std::string(f.unit.symbol), default_of(f), rules_of(f), f.doc});
+            rows += row({"`" + f.name + "`", std::string(model::name_of(f.kind)), std::string(kTypeNames[static_cast<std::size_t>(f.type)]),
+                         std::string(f.unit.symbol), default_of(f), model::rules_in_words(f), f.doc});
     if (rows.empty()) return {};
     return "\n| field | kind | type | unit | default | rule | meaning |\n|---|---|---|---|---|---|---|\n" + rows;
 }
 
-std::string takers_of(const Role& role)
-{
-    constexpr std::string_view names[] = {"component", "body", "shaft", "shape"};
-    std::string out;
-    for (const Facet f : role.facets) out += (out.empty() ? "" : " or ") + std::string(names[static_cast<std::size_t>(f)]);
-    return role.family.empty() ? out : out + " `" + role.family + "...`";
-}
+std::string takers_of(const Role& role) { return model::facets_in_words(role) + (role.family.empty() ? "" : " `" + role.family + "...`"); }
 
 std::string arity_of(const Role& role)
 {

@@ -10,5 +10,7 @@ function(plab_plugin name)
     COMMAND plab-manifest $<TARGET_FILE:plugin_${name}> ${PLAB_PLUGIN_DIR}/${name}.manifest VERBATIM)
   plab_use_pch(plugin_${name})
   add_dependencies(plugin_${name} plab-manifest)
+  # A manifest of another version is refused, so a new plab-manifest writes all of them again.
+  set_property(TARGET plugin_${name} APPEND PROPERTY LINK_DEPENDS $<TARGET_FILE:plab-manifest>)
   set_property(GLOBAL APPEND PROPERTY PLAB_PLUGINS plugin_${name})
 endfunction()

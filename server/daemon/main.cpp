@@ -19,7 +19,15 @@ namespace
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-extern "C" void on_signal(int) { stop = true; }
+// The loop sleeps: a signal must wake it. Writing to an eventfd is allowed in a handler.
+std::atomic<const plab::daemon::Wake*> sleeper{nullptr};
+static_assert(std::atomic<const plab::daemon::Wake*>::is_always_lock_free);
+
+extern "C" void on_signal(int)
+{
+    stop = true;
+    if (const plab::daemon::Wake* wake = sleeper) wake->wake();
+}
 
 int fail(const plab::Errors& errors)
 {
@@ -27,8 +35,31 @@ int fail(const plab::Errors& errors)
     return 1;
 }
 
+int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLibrary& library, const plab::daemon::Options& options,
+              std::chrono::steady_clock::time_point start)
+{
+    auto wake = plab::daemon::Wake::make();
+    if (!wake) return fail(wake.errors());
+    sleeper = &*wake;
+    int code = 0;
+    {
+        plab::daemon::Service service(simulation, library, options);
+        if (options.bus)
+        {
+            if (auto opened = service.open_bus(options, *wake); !opened) return fail(opened.errors());
+            const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+            spdlog::info("server '{}' in domain {}, {}; ready after {:.1f} ms", options.name, options.domain,
+                         options.network_interface.empty() ? "this host only" : "interface " + options.network_interface, took.count());
+        }
+        code = plab::daemon::run(simulation, service, options, *wake, stop);
+    }
+    sleeper = nullptr;
+    return code;
+}
+
 int carry_out(const plab::daemon::Options& options)
 {
+    const auto start = std::chrono::steady_clock::now();
     plab::plugins::PluginLibrary library;
     for (const plab::Error& e : library.problems()) spdlog::warn("{}", e.text());
     if (options.task == plab::daemon::Task::Reference)
@@ -54,7 +85,7 @@ int carry_out(const plab::daemon::Options& options)
             std::fputs(plab::daemon::explain(simulation, library).c_str(), stdout);
             return 0;
         default:
-            return plab::daemon::run(simulation, options, stop);
+            return run_scene(simulation, library, options, start);
     }
 }
 

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
+#include "control/operations.h"
+
 namespace plab::daemon
 {
 namespace
@@ -13,7 +15,9 @@ constexpr const char* kExamples = R"(Examples:
   plabd scenes/fan_and_balloons.xml --until 10 --trace run.csv --every 0.01
   plabd scenes/fan_and_balloons.xml --until 10 --swap "600:contact.response=Response/None"
   plabd scenes/fan_and_balloons.xml --until 10 --set "red.mass=0.02"
+  plabd scenes/fan_and_balloons.xml --until 10 --no-bus --rate max
   plabd --explain scenes/fan_and_balloons.xml
+While it runs: plabctl interactions; plabctl swap contact.response --to Response/None; plab-view --png now.png
 
 Exit codes: 0 done, 1 failed (message on standard error), 2 wrong use.)";
 
@@ -29,14 +33,30 @@ std::optional<Tick> take_step(std::string_view& text)
     return step;
 }
 
-std::optional<double> parse_rate(const std::string& text)
+void add_bus_options(CLI::App& app, Options& options, std::string& states, bool& no_bus)
 {
-    if (text == "real") return 1.0;
-    if (text == "max") return 0.0;
-    double factor = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
-    if (error != std::errc() || end != text.data() + text.size() || !(factor > 0)) return {};
-    return factor;
+    const std::string group = "The bus";
+    app.add_option("--name", options.name, "of this server on the bus; clients say --server NAME")->envname("PLAB_SERVER")->group(group);
+    app.add_option("--domain", options.domain, "DDS domain")->envname("PLAB_DOMAIN")->check(CLI::Range(0, 232))->group(group);
+    app.add_option("--interface", options.network_interface,
+                   "network interface to open the bus on; without it, this host only (a set CYCLONEDDS_URI wins over both)")
+        ->envname("PLAB_INTERFACE")
+        ->group(group);
+    app.add_option("--states", states, "largest number of frames per second of real time, or all: each step (default: 60)")->group(group);
+    app.add_flag("--no-bus", no_bus, "do not join the bus: no DDS library is loaded")->group(group);
+}
+
+/// The reason if something about the bus does not hold.
+std::string take_bus_options(const std::string& states, bool no_bus, Options& options)
+{
+    options.bus = !no_bus;
+    if (states.empty()) return {};
+    options.states_per_second = 0;
+    if (states == "all") return {};
+    const char* const end = states.data() + states.size();
+    const auto [stop, error] = std::from_chars(states.data(), end, options.states_per_second);
+    if (error == std::errc() && stop == end && options.states_per_second > 0 && options.states_per_second <= 1e6) return {};
+    return "--states is a number of frames per second up to 1e6, or all, not '" + states + "'";
 }
 
 }  // namespace
@@ -99,8 +119,10 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     app.add_flag("--expand", expand, "print the long form of the blueprint");
     app.add_flag("--explain", explain, "print what is loaded, resolved and left out, and why");
     app.add_flag("--reference", reference, "print the reference of all component types");
+    app.add_flag("--paused", options.paused, "wait before the first step until a client says resume or step");
     bool no_bus = false;
-    app.add_flag("--no-bus", no_bus, "do not join the bus (there is none in this version)");
+    std::string states;
+    add_bus_options(app, options, states, no_bus);
     try
     {
         app.parse(argc, argv);
@@ -117,10 +139,12 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     if (options.scene.empty() && options.task != Task::Reference) return ParseEnd{2, "plabd: needs a scene; see plabd --help\n"};
     if (!rate.empty())
     {
-        const auto factor = parse_rate(rate);
-        if (!factor) return ParseEnd{2, "plabd: --rate is real, max or a positive factor, not '" + rate + "'\n"};
+        const auto factor = control::parse_rate(rate);
+        if (!factor) return ParseEnd{2, "plabd: --rate: " + factor.error().reason + "\n"};
         options.rate = *factor;
     }
+    if (const std::string why = take_bus_options(states, no_bus, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
+    if (options.paused && !options.bus) return ParseEnd{2, "plabd: --paused needs the bus: nobody could say go on\n"};
     for (const auto& [texts, parse] : {std::pair(&swaps, &parse_swap), std::pair(&sets, &parse_set)})
         for (const std::string& text : *texts)
         {

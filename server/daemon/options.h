@@ -42,6 +42,13 @@ struct Options
     bool hashes = false;  ///< print the state hash of each step
     std::string log_level = "info";
     std::vector<ScheduledOperation> operations;
+
+    bool bus = true;
+    std::string name = "plab";      ///< of the server on the bus
+    std::uint32_t domain = 0;       ///< DDS domain
+    std::string network_interface;  ///< empty: this host only
+    double states_per_second = 60;  ///< of real time; 0: each step
+    bool paused = false;            ///< waits at step 0
 };
 
 /// Fills options, or tells what to print and the exit code (0 after --help and --version, 2 for a wrong use).

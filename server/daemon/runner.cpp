@@ -1,15 +1,14 @@
 #include "daemon/runner.h"
 
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cinttypes>
 #include <fstream>
 #include <set>
-#include <thread>
 
+#include "daemon/live_table.h"
 #include "daemon/output.h"
+#include "daemon/pacer.h"
 
 namespace plab::daemon
 {
@@ -18,128 +17,21 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
+/// A paused server shows that it is there this often.
+constexpr std::chrono::seconds kHeartbeat(1);
+/// Clock, rate and overload are looked at this often, not at each step.
+constexpr std::chrono::milliseconds kStatus(100);
+
 void report_events(const simulation::Simulation& s)
 {
     for (const Event& e : s.events())
     {
-        const std::string who = e.component == kNoIndex ? "" : s.world().id_of(e.component);
-        std::string text = e.kind + " " + who;
-        if (e.a.valid() && e.b.valid()) text += " (" + s.world().id_of(e.a) + ", " + s.world().id_of(e.b) + ")";
-        if (!e.message.empty()) text += ": " + e.message;
         const auto level = e.severity == Severity::Failure   ? spdlog::level::err
                            : e.severity == Severity::Warning ? spdlog::level::warn
                                                              : spdlog::level::debug;
-        if (spdlog::should_log(level)) spdlog::log(level, "t = {:.9f}  {}", e.time, text);
+        if (spdlog::should_log(level)) spdlog::log(level, "t = {:.9f}  {}", e.time, event_text(s, e));
     }
 }
-
-const char* word(simulation::Fate fate)
-{
-    switch (fate)
-    {
-        case simulation::Fate::Kept:
-            return "kept";
-        case simulation::Fate::Converted:
-            return "converted";
-        case simulation::Fate::Given:
-            return "given";
-        case simulation::Fate::Fresh:
-            return "fresh";
-        case simulation::Fate::Lost:
-            return "lost";
-    }
-    return "";
-}
-
-/// False if a request was refused: a run that was asked for something else must not pass for it.
-bool report_replies(simulation::Simulation& s)
-{
-    bool fine = true;
-    for (const simulation::Reply& r : s.take_replies())
-    {
-        for (const Error& e : r.errors) spdlog::error("request refused at step {}: {}", r.step, e.text());
-        fine = fine && r.done;
-        for (const simulation::SwapReport& swap : r.swaps)
-        {
-            std::string fields;
-            for (const simulation::FieldFate& f : swap.fields) fields += fmt::format(" {} {}", f.field, word(f.fate));
-            spdlog::info("step {}: {} {} -> {}; pause {:.1f} us;{}", r.step, swap.id, swap.from, swap.to, r.pause_ns * 1e-3, fields);
-            spdlog::info(
-                "  first step: energy {:.9g} J -> {:.9g} J (old: {:.9g} J), error {:.3g} (old: {:.3g}), cost {:.1f} us (old: {:.1f} us)",
-                swap.energy_before, swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error,
-                swap.with_new.cost_ns * 1e-3, swap.with_old.cost_ns * 1e-3);
-        }
-    }
-    return fine;
-}
-
-void post_operations(simulation::Simulation& s, const Options& options)
-{
-    std::uint64_t id = 0;
-    for (const ScheduledOperation& op : options.operations)
-    {
-        simulation::Request request;
-        request.id = ++id;
-        request.operations.push_back(op.operation);
-        request.at = op.at;
-        s.post(std::move(request));
-    }
-}
-
-/// Holds simulated time to real time. Too slow: it slips, and says so once a second, instead of chasing.
-class Pacer
-{
-public:
-    explicit Pacer(double rate) : rate_(rate), begin_(Clock::now()), told_(begin_) {}
-    void wait(double simulated)
-    {
-        if (rate_ <= 0) return;
-        const auto due =
-            begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>((simulated + slipped_) / rate_));
-        const auto now = Clock::now();
-        if (now < due)
-        {
-            std::this_thread::sleep_until(due);
-            return;
-        }
-        const double late = std::chrono::duration<double>(now - due).count();
-        if (late < 0.1) return;
-        slipped_ += late * rate_;
-        if (now - told_ < std::chrono::seconds(1)) return;
-        told_ = now;
-        spdlog::warn("too slow for the rate: {:.3f} s slipped so far", slipped_);
-    }
-
-private:
-    double rate_;
-    double slipped_ = 0;  // simulated s
-    Clock::time_point begin_, told_;
-};
-
-/// Redraws in place on a terminal, else a block each simulated second.
-class Table
-{
-public:
-    explicit Table(bool wanted) : wanted_(wanted), terminal_(isatty(STDOUT_FILENO) != 0) {}
-    void show(const simulation::Simulation& s, bool last = false)
-    {
-        if (!wanted_) return;
-        const auto now = Clock::now();
-        const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(100) : s.time() >= next_;
-        if (!due && !last) return;
-        shown_ = now;
-        while (next_ <= s.time()) next_ += 1.0;
-        const std::string text = table_text(s);
-        if (terminal_) std::fputs("\x1b[H\x1b[J", stdout);
-        std::fputs(text.c_str(), stdout);
-        std::fflush(stdout);
-    }
-
-private:
-    bool wanted_, terminal_;
-    Clock::time_point shown_{};
-    double next_ = 0;
-};
 
 bool write_end_state(const simulation::Simulation& s, const std::string& file)
 {
@@ -163,49 +55,157 @@ void print_mapped_libraries()
     for (const std::string& library : libraries) std::printf("%s\n", library.c_str());
 }
 
+/// One run of plabd: what the loop carries along.
+class Run
+{
+public:
+    Run(simulation::Simulation& simulation, Service& service, const Options& options, const Wake& wake, const std::atomic<bool>& stop)
+        : s_(simulation), service_(service), options_(options), wake_(wake), stop_(stop), table_(options.table)
+    {
+    }
+
+    int go();
+
+private:
+    Result<void> open_trace();
+    void begin();
+    bool over() const
+    {
+        return stop_ || service_.shutdown_wanted() || (options_.until >= 0 && s_.time() >= options_.until - 0.5 * s_.dt());
+    }
+    bool serve();
+    void step();
+    void tell_rate(Clock::time_point now);
+    bool finish();
+
+    simulation::Simulation& s_;
+    Service& service_;
+    const Options& options_;
+    const Wake& wake_;
+    const std::atomic<bool>& stop_;
+    std::unique_ptr<Trace> trace_;
+    LiveTable table_;
+    Pacer pacer_;
+    RateMeter meter_;
+    Clock::time_point told_{}, status_{};
+    bool shown_paused_ = false;
+    std::uint64_t shown_answers_ = 0;
+    double told_slip_ = 0;
+    bool fine_ = true;
+};
+
+Result<void> Run::open_trace()
+{
+    if (options_.trace.empty()) return {};
+    auto opened = Trace::open(options_.trace, s_, options_.every);
+    if (!opened) return opened.errors();
+    trace_ = opened.take();
+    trace_->sample(s_);
+    return {};
+}
+
+void Run::begin()
+{
+    simulation::Request clock;
+    // Without an end it is a server, and its clients live in real time; with one, it is a computation.
+    clock.operations.push_back(simulation::RateOperation{options_.rate >= 0 ? options_.rate : options_.until >= 0 ? 0.0 : 1.0});
+    if (options_.paused) clock.operations.push_back(simulation::PauseOperation{});
+    (void)s_.carry_out_now(clock);
+    for (const ScheduledOperation& op : options_.operations)
+    {
+        simulation::Request request;
+        request.operations.push_back(op.operation);
+        request.at = op.at;
+        service_.post(std::move(request));
+    }
+    service_.publish(false);
+}
+
+/// Requests that are due take effect; true if there were any.
+bool Run::serve()
+{
+    service_.take_requests();
+    if (!s_.apply_due()) return false;
+    fine_ = service_.answer() && fine_;
+    service_.publish(false);
+    return true;
+}
+
+void Run::step()
+{
+    if (!s_.step()) return;
+    if (options_.hashes) std::printf("%" PRId64 " %016" PRIx64 "\n", s_.tick(), s_.state_hash());
+    report_events(s_);
+    service_.publish(true);
+    if (trace_) trace_->sample(s_);
+    table_.note(s_);
+    table_.show(s_);
+}
+
+void Run::tell_rate(Clock::time_point now)
+{
+    const bool changed = s_.paused() != shown_paused_ || service_.answered() != shown_answers_;
+    if (!changed && now - status_ < kStatus) return;
+    status_ = now, shown_paused_ = s_.paused(), shown_answers_ = service_.answered();
+    meter_.sample(s_.time(), s_.run(), now);
+    service_.publish_status(meter_.factor(), pacer_.slipped(), pacer_.slipping(now));
+    if (pacer_.slipped() == told_slip_ || now - told_ < std::chrono::seconds(1)) return;
+    told_ = now, told_slip_ = pacer_.slipped();
+    spdlog::warn("too slow for the rate: {:.3f} s slipped so far", told_slip_);
+}
+
+bool Run::finish()
+{
+    table_.show(s_, true);
+    if (trace_) trace_->sample(s_, true);
+    if (options_.maps) print_mapped_libraries();
+    if (s_.pending_requests() > 0)
+    {
+        spdlog::error("{} requests found no step to take effect at: the run did not reach it", s_.pending_requests());
+        fine_ = false;
+    }
+    if (const std::string why = service_.lost(); !why.empty())
+    {
+        spdlog::error("{}", why);
+        fine_ = false;
+    }
+    if (!options_.out.empty()) fine_ = write_end_state(s_, options_.out) && fine_;
+    return fine_;
+}
+
+int Run::go()
+{
+    if (auto opened = open_trace(); !opened)
+    {
+        spdlog::error("{}", opened.error().reason);
+        return 1;
+    }
+    begin();
+    while (!over() && service_.lost().empty())
+    {
+        if (serve()) continue;
+        const auto now = Clock::now();
+        tell_rate(now);
+        if (s_.paused())
+        {
+            pacer_.stand_still();
+            table_.show(s_);
+            (void)wake_.wait_until(now + kHeartbeat);
+            continue;
+        }
+        // Requests are served while the next step is not due yet: they wait for no clock, only for a step that runs.
+        const auto due = pacer_.due(s_.time() + s_.dt(), s_.rate(), s_.run(), now);
+        if (due > now && wake_.wait_until(due)) continue;
+        step();
+    }
+    return finish() ? 0 : 1;
+}
+
 }  // namespace
 
-int run(simulation::Simulation& s, const Options& options, const std::atomic<bool>& stop)
+int run(simulation::Simulation& simulation, Service& service, const Options& options, const Wake& wake, const std::atomic<bool>& stop)
 {
-    post_operations(s, options);
-    std::unique_ptr<Trace> trace;
-    if (!options.trace.empty())
-    {
-        auto opened = Trace::open(options.trace, s, options.every);
-        if (!opened)
-        {
-            spdlog::error("{}", opened.error().reason);
-            return 1;
-        }
-        trace = opened.take();
-        trace->sample(s);
-    }
-    const double rate = options.rate >= 0 ? options.rate : (options.until >= 0 ? 0.0 : 1.0);
-    Pacer pacer(rate);
-    Table table(options.table);
-    bool fine = true;
-    // The end is a step, not a sum of steps: the last one is the nearest to --until.
-    const auto last = options.until >= 0 ? static_cast<Tick>(options.until / s.dt() + 0.5) : std::numeric_limits<Tick>::max();
-    while (!stop && s.tick() < last && (options.until < 0 || s.time() < options.until - 0.5 * s.dt()))
-    {
-        if (!s.step()) break;
-        if (options.hashes) std::printf("%" PRId64 " %016" PRIx64 "\n", s.tick(), s.state_hash());
-        report_events(s);
-        fine = report_replies(s) && fine;
-        if (trace) trace->sample(s);
-        table.show(s);
-        pacer.wait(s.time());
-    }
-    table.show(s, true);
-    if (trace) trace->sample(s, true);
-    if (options.maps) print_mapped_libraries();
-    if (s.pending_requests() > 0)
-    {
-        spdlog::error("{} requests found no step to take effect at: the run did not reach it", s.pending_requests());
-        fine = false;
-    }
-    if (!options.out.empty()) fine = write_end_state(s, options.out) && fine;
-    return fine ? 0 : 1;
+    return Run(simulation, service, options, wake, stop).go();
 }
 
 }  // namespace plab::daemon

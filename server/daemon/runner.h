@@ -1,15 +1,15 @@
-/// Runs a loaded simulation to its end: clock, requests of the command line, output.
+/// Runs a loaded simulation to its end: clock, requests, observers, output.
 #pragma once
 
 #include <atomic>
 
 #include "daemon/options.h"
-#include "simulation/simulation.h"
+#include "daemon/service.h"
 
 namespace plab::daemon
 {
 
-/// Returns the exit code. `stop` ends the run at the next step boundary.
-int run(simulation::Simulation& simulation, const Options& options, const std::atomic<bool>& stop);
+/// Returns the exit code. `stop` ends the run at the next step boundary; whoever sets it wakes `wake`.
+int run(simulation::Simulation& simulation, Service& service, const Options& options, const Wake& wake, const std::atomic<bool>& stop);
 
 }  // namespace plab::daemon

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/type_registry.h"
@@ -14,11 +15,13 @@ struct FieldSummary
 {
     std::string name, kind, value_type, unit, fallback, rule, doc;
     bool required = false;
+    friend bool operator==(const FieldSummary&, const FieldSummary&) = default;
 };
 struct RoleSummary
 {
     std::string name, accepts, doc;
     std::uint32_t least = 0, most = 0;  ///< most: 4294967295 for any number
+    friend bool operator==(const RoleSummary&, const RoleSummary&) = default;
 };
 struct TypeSummary
 {
@@ -28,9 +31,18 @@ struct TypeSummary
     std::string cost, limits, source;
     std::vector<RoleSummary> roles;
     std::vector<FieldSummary> fields;
+    friend bool operator==(const TypeSummary&, const TypeSummary&) = default;
 };
 
-/// `loaded` is true in what this returns.
+/// `loaded` is true in what this returns. Scratch fields are left out.
 TypeSummary summary_of(const ComponentType& type);
+
+// The words that it uses, for the reference manual and listings as well.
+std::string_view name_of(FieldKind kind);
+std::string_view name_of(FieldType type);
+/// "positive, at most 1"; empty if there are no rules.
+std::string rules_in_words(const Field& field);
+/// Who fits a role: "body or shaft".
+std::string facets_in_words(const Role& role);
 
 }  // namespace plab::model

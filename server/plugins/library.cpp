@@ -66,6 +66,22 @@ std::vector<std::string> PluginLibrary::names() const
     return out;
 }
 
+std::vector<model::TypeSummary> PluginLibrary::summaries() const
+{
+    std::vector<model::TypeSummary> out;
+    for (const std::string& name : names())
+    {
+        if (const model::ComponentType* type = registry_.find(name))
+        {
+            out.push_back(model::summary_of(*type));
+            continue;
+        }
+        const std::vector<model::TypeSummary>& told = homes_.at(name).front()->summaries;
+        out.push_back(*std::lower_bound(told.begin(), told.end(), name, [](const auto& t, const std::string& n) { return t.name < n; }));
+    }
+    return out;
+}
+
 Error PluginLibrary::unknown(const std::string& name) const
 {
     const std::vector<std::string> known = names();

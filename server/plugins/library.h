@@ -38,6 +38,8 @@ public:
 
     Result<const model::ComponentType*> require(const std::string& name) override;
     std::vector<std::string> names() const override;
+    /// All types that can be had, sorted by name, each as its plugin (if it is loaded) or its manifest tells it.
+    std::vector<model::TypeSummary> summaries() const;
 
     /// Loads a plugin by its file, whatever the manifests say.
     Result<PluginInfo> load_plugin(const std::string& path);

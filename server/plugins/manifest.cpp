@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <string_view>
+
+#include "plugins/manifest_text.h"
 
 namespace plab::plugins
 {
@@ -13,17 +14,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMostTypes = 10'000;
-constexpr std::size_t kLongestName = 200;
-
-bool is_type_name(std::string_view name)
-{
-    const auto fits = [](char c)
-    { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/'; };
-    return !name.empty() && name.size() <= kLongestName && name.front() != '/' && name.back() != '/' &&
-           std::all_of(name.begin(), name.end(), fits);
-}
 
 Error at_line(const std::string& path, std::size_t line, std::string why)
 {
@@ -39,29 +29,25 @@ Result<Manifest> read_manifest(const std::string& path)
     if (!in || !std::getline(in, line)) return Error{{path, 0, 0}, {}, "cannot be read"};
     if (line != kManifestHeader)
         return at_line(path, 1, "is no manifest of this version: the first line must be '" + std::string(kManifestHeader) + "'");
+    ManifestReader reader;
+    for (std::size_t n = 2; std::getline(in, line); ++n)
+        if (const auto added = reader.add(line); !added) return at_line(path, n, added.error().reason);
+    auto types = reader.finish();
+    if (!types) return Error{{path, 0, 0}, {}, types.error().reason};
     Manifest out;
     out.path = path, out.plugin = fs::path(path).replace_extension(".so").string();
-    for (std::size_t n = 2; std::getline(in, line); ++n)
-    {
-        if (line.empty()) continue;
-        if (!is_type_name(line)) return at_line(path, n, "is no type name; letters, digits, '_' and '/' are allowed");
-        if (out.types.size() >= kMostTypes) return at_line(path, n, "more than " + std::to_string(kMostTypes) + " types");
-        out.types.push_back(line);
-    }
-    std::sort(out.types.begin(), out.types.end());
-    if (const auto twice = std::adjacent_find(out.types.begin(), out.types.end()); twice != out.types.end())
-        return Error{{path, 0, 0}, {}, "names " + *twice + " twice"};
+    out.summaries = types.take();
+    for (const model::TypeSummary& type : out.summaries) out.types.push_back(type.name);
     return out;
 }
 
-Result<void> write_manifest(const std::string& path, std::vector<std::string> types)
+Result<void> write_manifest(const std::string& path, const std::string& plugin, std::vector<model::TypeSummary> types)
 {
-    std::sort(types.begin(), types.end());
+    std::sort(types.begin(), types.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
     const std::string draft = path + ".tmp";
     {
         std::ofstream out(draft, std::ios::trunc);
-        out << kManifestHeader << '\n';
-        for (const std::string& type : types) out << type << '\n';
+        out << kManifestHeader << '\n' << manifest_lines(plugin, types);
         out.close();
         if (!out)
         {

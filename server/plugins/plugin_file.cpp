@@ -72,6 +72,24 @@ Result<OpenPlugin> open_plugin(const std::string& path)
     return plugin;
 }
 
+Result<Module> open_module(const std::string& name, const std::string& entry, const std::vector<std::string>& folders)
+{
+    for (const std::string& folder : folders)
+    {
+        const std::filesystem::path path = std::filesystem::path(folder) / (name + ".so");
+        std::error_code ignored;
+        if (!std::filesystem::exists(path, ignored)) continue;
+        Module module;
+        module.library.reset(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE));
+        const char* const why = module.library ? nullptr : dlerror();
+        if (!module.library) return reason(path.string() + " cannot be loaded: " + (why ? why : "unknown reason"));
+        module.entry = dlsym(module.library.get(), entry.c_str());
+        if (!module.entry) return reason(path.string() + " has no symbol " + entry);
+        return module;
+    }
+    return reason("there is no " + name + ".so among the plugins");
+}
+
 std::string installed_plugin_directory()
 {
     std::error_code failed;

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "plab/plugin.h"
 
@@ -28,6 +29,16 @@ struct OpenPlugin
 /// Loads the plugin at `path`. It is refused, with a reason that names the file, unless it was built against this SDK:
 /// the stamp is read before anything else in it is touched.
 Result<OpenPlugin> open_plugin(const std::string& path);
+
+/// A library that is no plugin but a part of pLab that is loaded only when it is wanted (the bus, the recorder).
+struct Module
+{
+    LibraryHandle library;
+    void* entry = nullptr;  ///< the function under the name that was asked for
+};
+/// `name` without folder and ".so"; looked for in `folders`, the first one wins. It stays mapped until the process ends:
+/// its libraries may have threads and thread-local data of their own.
+Result<Module> open_module(const std::string& name, const std::string& entry, const std::vector<std::string>& folders);
 
 /// Why a plugin with this stamp cannot be used; empty if it can.
 std::string why_not_usable(const PluginStamp& stamp);

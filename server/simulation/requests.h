@@ -5,10 +5,12 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "model/blueprint.h"
 #include "model/scene.h"
 #include "plab/context.h"
 
@@ -28,6 +30,11 @@ struct NamedValue
 struct AddOperation
 {
     model::SceneSpec fragment;
+};
+/// Adds what a blueprint means when the request takes effect: it may refer to what is there then.
+struct AddBlueprintOperation
+{
+    model::Blueprint blueprint;
 };
 /// Removes a component, or an object with all that is in it. Refused while others refer to it.
 struct RemoveOperation
@@ -85,8 +92,9 @@ struct StepLengthOperation
     model::StepLength dt;
 };
 
-using Operation = std::variant<AddOperation, RemoveOperation, SwapOperation, SetOperation, PushOperation, PauseOperation, ResumeOperation,
-                               StepOperation, RateOperation, ResetOperation, LoadOperation, StepLengthOperation>;
+using Operation =
+    std::variant<AddOperation, AddBlueprintOperation, RemoveOperation, SwapOperation, SetOperation, PushOperation, PauseOperation,
+                 ResumeOperation, StepOperation, RateOperation, ResetOperation, LoadOperation, StepLengthOperation>;
 
 struct Request
 {
@@ -131,10 +139,11 @@ struct SwapReport
 /// What requests did to the structure and to parameters, for those who keep a copy of the catalogue.
 struct Changes
 {
-    bool everything = false;           ///< a new run
-    std::vector<std::string> touched;  ///< ids that came, went or changed; may repeat
+    bool everything = false;             ///< a new run
+    std::vector<std::string> touched;    ///< ids that came, went or changed; may repeat
+    std::set<std::uint32_t> by_scripts;  ///< components whose parameters scripts set; perhaps at each step
 
-    bool any() const { return everything || !touched.empty(); }
+    bool any() const { return everything || !touched.empty() || !by_scripts.empty(); }
 };
 
 struct Reply

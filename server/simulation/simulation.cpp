@@ -42,6 +42,8 @@ void Simulation::begin_run(Live live, const model::SceneSpec& scene)
     events_.clear();
     changed_by_scripts_.clear();
     ++run_;
+    changes_ = {};
+    changes_.everything = true;
     kinetic_at_start_ = totals().kinetic;
 }
 
@@ -50,7 +52,6 @@ Result<void> Simulation::load(const model::SceneSpec& scene)
     auto live = build(scene);
     if (!live) return live.errors();
     begin_run(live.take(), scene);
-    revision_ = 0;
     return {};
 }
 
@@ -87,18 +88,27 @@ Reply Simulation::carry_out(const Request& request)
     return Transaction(*this, request).run();
 }
 
-void Simulation::apply_requests()
+Changes Simulation::take_changes()
 {
+    Changes out;
+    std::swap(out, changes_);
+    return out;
+}
+
+bool Simulation::apply_due()
+{
+    if (requests_.empty()) return false;
     std::deque<Request> later;
     std::deque<Request> due;
     for (Request& r : requests_) (r.at && *r.at > tick_ ? later : due).push_back(std::move(r));
     requests_ = std::move(later);
     for (const Request& r : due) replies_.push_back(carry_out(r));
+    return !due.empty();
 }
 
 bool Simulation::step()
 {
-    if (!requests_.empty()) apply_requests();
+    (void)apply_due();
     if (paused()) return false;
     run_step(false);
     ++tick_;
@@ -110,6 +120,7 @@ void Simulation::run_step(bool trial)
 {
     changed_by_scripts_.clear();
     const double start = time_at(tick_);
+    stepper_->draw_for(trial ? nullptr : images_);
     stepper_->step(tick_, start, time_at(tick_ + 1) - start);
     if (trial) return;
     events_ = stepper_->events();
@@ -126,6 +137,7 @@ void Simulation::freeze_lost_objects()
         if (ref.facet == Facet::Body) host.bodies.motion[ref.index] = Motion::Static;
         if (ref.facet == Facet::Shaft) host.shafts.motion[ref.index] = Motion::Static;
         world_->component(host.component_of(ref)).quarantined = true;
+        changes_.touched.push_back(world_->id_of(ref));
     }
     (void)stepper_->rebuild();  // fewer moving parts cannot contradict one another
 }
@@ -139,6 +151,7 @@ void Simulation::quarantine_failed()
         world::Component& c = world_->component(e.component);
         const bool object = c.facet != Facet::Component;
         any = any || (!c.quarantined && !object);
+        if (!c.quarantined) changes_.touched.push_back(c.id);
         c.quarantined = true;
     }
     if (any) (void)stepper_->rebuild();
@@ -156,6 +169,7 @@ void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& 
                                   : set_field(*s.world_, i, change.name, change.value, s.changed_by_scripts_);
         if (done)
         {
+            s.changes_.by_scripts.insert(i);
             structure = structure || s.world_->type_of(i)->takes_part(Phase::Connect) || s.world_->component(i).facet != Facet::Component;
             continue;
         }

@@ -41,15 +41,23 @@ public:
     bool step();
     /// Requests that wait for their step.
     std::size_t pending_requests() const { return requests_.size(); }
+    /// Requests that are due take effect now, at the boundary between two steps, paused or not. True if there were any.
+    bool apply_due();
     /// Answers since the last call, in order.
     std::vector<Reply> take_replies();
+    /// What requests, scripts that ask for other parameters, and failures did to components since the last call.
+    Changes take_changes();
+    /// Where cameras in the scene send their pictures; null: nowhere, and they do not draw.
+    void draw_for(ImageSink* images) { images_ = images; }
 
     Tick tick() const { return tick_; }
     double time() const { return time_at(tick_); }
     double dt() const { return dt_.seconds; }
     bool paused() const { return paused_ && steps_left_ == 0; }
     double rate() const { return rate_; }
+    /// Counts loads and resets.
     std::uint64_t run() const { return run_; }
+    /// Counts structural requests (add, remove, swap, reset, load) that were carried out; never starts again.
     std::uint64_t revision() const { return revision_; }
 
     const world::World& world() const { return *world_; }
@@ -73,7 +81,6 @@ private:
     };
     Result<Live> build(const model::SceneSpec& scene);
     void begin_run(Live live, const model::SceneSpec& scene);
-    void apply_requests();
     Reply carry_out(const Request& request);
     void run_step(bool trial);
     void freeze_lost_objects();
@@ -99,6 +106,8 @@ private:
 
     std::deque<Request> requests_;
     std::vector<Reply> replies_;
+    Changes changes_;
+    ImageSink* images_ = nullptr;
     std::vector<Event> events_;
     std::set<std::uint32_t> changed_by_scripts_;
 };

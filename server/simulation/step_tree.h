@@ -4,7 +4,7 @@
 ///   PreStep     save_start, drive, couple_speeds
 ///   Step        advance_all: per solver stage clear, forces(t, state), couplings, rates
 ///   PostStep    locate_events: detect, find the first event, rewind who is touched, advance to it, respond, go on
-///               finish_contacts, finish
+///               finish_contacts, finish, draw
 ///   publish     whoever watches sees a const world
 #pragma once
 
@@ -34,6 +34,7 @@ inline constexpr StepNode kStepTree[] = {
      &Stepper::locate_events},
     {Stage::PostStep, "contacts", "contacts that begin, persist and end", &Stepper::anything_collides, &Stepper::finish_contacts},
     {Stage::PostStep, "finish", "outputs and history", &Stepper::anything_finishes, &Stepper::finish},
+    {Stage::PostStep, "draw", "cameras of the scene, where somebody takes their pictures", &Stepper::anything_draws, &Stepper::draw},
 };
 
 }  // namespace plab::simulation

@@ -82,6 +82,24 @@ void Stepper::couple_speeds()
     emit(std::move(e));
 }
 
+void Stepper::draw()
+{
+    const Sight sight = sight_.look(world_);
+    StepContext context;
+    context.time = frame_.start_time + frame_.step, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
+    context.events = this;
+    PhaseCall call;
+    call.context = &context;
+    call.sight = &sight, call.images = images_;
+    for (const Block& block : schedule_.of(Phase::Draw))
+    {
+        world::Table& table = *world_.tables()[block.table];
+        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+        call.rows = block.rows;
+        timed(block, [&] { (void)block.command->run(call, table.rows()); });
+    }
+}
+
 void Stepper::finish()
 {
     StepContext context;

@@ -6,6 +6,7 @@
 
 #include "simulation/contacts.h"
 #include "simulation/shaft_reactions.h"
+#include "simulation/sight.h"
 #include "simulation/worker_pool.h"
 
 namespace plab::simulation
@@ -74,6 +75,9 @@ public:
     using ApplyChanges = void (*)(void* owner, std::vector<ParameterChange>& changes);
     void on_changes(ApplyChanges apply, void* owner) { apply_changes_ = apply, changes_owner_ = owner; }
 
+    /// Where cameras in the scene send their pictures; null: nowhere, and they do not draw.
+    void draw_for(ImageSink* images) { images_ = images; }
+
     void emit(Event event) override;
 
     // The nodes of the step tree ---------------------------------------------------------------------------------------
@@ -84,12 +88,14 @@ public:
     void locate_events();
     void finish_contacts();
     void finish();
+    void draw();
 
     bool anything_moves() const { return !groups_.all.empty(); }
     bool anything_drives() const { return !schedule_.of(Phase::Drive).empty(); }
     bool anything_couples() const { return !schedule_.of(Phase::Couple).empty() || !graph_.trees().empty(); }
     bool anything_collides() const { return !detectors_.empty(); }
     bool anything_finishes() const { return !schedule_.of(Phase::Finish).empty(); }
+    bool anything_draws() const { return images_ && !schedule_.of(Phase::Draw).empty(); }
 
 private:
     friend class EventLocator;
@@ -197,6 +203,8 @@ private:
     double departed_work_ = 0, requests_work_ = 0;
     CostBook cost_;
     StepReport report_;
+    ImageSink* images_ = nullptr;
+    SightBuilder sight_;
 };
 
 }  // namespace plab::simulation

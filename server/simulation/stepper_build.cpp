@@ -102,6 +102,7 @@ Result<void> Stepper::rebuild()
     found_.clear();
     for (Cached& c : cached_systems_) c.groups.clear(), c.shadows.clear(), c.system.reset();
     batches_ready_ = false;
+    sight_.structure_changed();
     start_.save(world_.host()), segment_.save(world_.host()), end_.save(world_.host());
     return {};
 }

@@ -118,7 +118,15 @@ Result<void> Transaction::apply(const Operation& operation)
 Result<void> Transaction::apply_one(const AddOperation& op)
 {
     structural_ = true;
+    for (const model::ComponentSpec& c : op.fragment.components) touched_.push_back(c.id);
     return s_->world_->add(op.fragment);
+}
+
+Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
+{
+    auto fragment = model::compile(op.blueprint, s_->world_->types(), &s_->world_->scene());
+    if (!fragment) return fragment.errors();
+    return apply_one(AddOperation{fragment.take()});
 }
 
 Result<void> Transaction::apply_one(const RemoveOperation& op)
@@ -140,6 +148,7 @@ Result<void> Transaction::apply_one(const RemoveOperation& op)
     if (!errors.empty()) return errors;
     for (const std::string& id : going)
     {
+        touched_.push_back(id);
         s_->stepper_->retire(s_->world_->find(id));
         s_->world_->remove(s_->world_->find(id));
     }
@@ -166,7 +175,11 @@ Result<void> Transaction::apply_one(const SetOperation& op)
     auto value = new_value(*component, *field, op);
     if (!value) return Error{{}, element, op.name + ": " + value.error().reason};
     auto done = set_field(world, *component, field->name, *value, prepared_);
-    if (done) return {};
+    if (done)
+    {
+        touched_.push_back(world.id_of(*component));
+        return {};
+    }
     Errors errors = done.errors();
     for (Error& e : errors)
         if (e.element.empty()) e.element = element;

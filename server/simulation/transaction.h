@@ -33,6 +33,7 @@ private:
 
     Result<void> apply(const Operation& operation);
     Result<void> apply_one(const AddOperation& op);
+    Result<void> apply_one(const AddBlueprintOperation& op);
     Result<void> apply_one(const RemoveOperation& op);
     Result<void> apply_one(const SwapOperation& op);
     Result<void> apply_one(const SetOperation& op);
@@ -65,6 +66,7 @@ private:
     std::vector<double> old_errors_;
     double energy_before_ = 0;
     bool structural_ = false;
+    std::vector<std::string> touched_;  ///< ids that came, went or changed
 };
 
 /// The ids of `id` and of all that is inside it, innermost first.

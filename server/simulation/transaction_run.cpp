@@ -10,9 +10,9 @@ namespace
 /// Requests to the clock touch no component.
 bool concerns_the_scene(const Operation& op)
 {
-    return std::holds_alternative<AddOperation>(op) || std::holds_alternative<RemoveOperation>(op) ||
-           std::holds_alternative<SwapOperation>(op) || std::holds_alternative<SetOperation>(op) ||
-           std::holds_alternative<PushOperation>(op);
+    return std::holds_alternative<AddOperation>(op) || std::holds_alternative<AddBlueprintOperation>(op) ||
+           std::holds_alternative<RemoveOperation>(op) || std::holds_alternative<SwapOperation>(op) ||
+           std::holds_alternative<SetOperation>(op) || std::holds_alternative<PushOperation>(op);
 }
 
 bool starts_anew(const Operation& op) { return std::holds_alternative<ResetOperation>(op) || std::holds_alternative<LoadOperation>(op); }
@@ -90,7 +90,8 @@ Reply Transaction::run()
     else
         run_on_clock();
     reply_.done = reply_.errors.empty();
-    if (reply_.done && structural_) ++s_->revision_;
+    if (reply_.done && (structural_ || anew)) ++s_->revision_;
+    if (reply_.done) s_->changes_.touched.insert(s_->changes_.touched.end(), touched_.begin(), touched_.end());
     if (!reply_.done) reply_.swaps.clear();
     reply_.revision = s_->revision_;
     reply_.pause_ns = static_cast<double>(now_ns() - begin);

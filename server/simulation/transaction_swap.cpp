@@ -132,6 +132,7 @@ Result<void> Transaction::apply_one(const SwapOperation& op)
     auto spec = spec_for_swap(*component, op, report);
     if (!spec) return spec.errors();
     if (auto done = exchange(*component, *spec, report); !done) return done;
+    touched_.push_back(report.id);
     reply_.swaps.push_back(std::move(report));
     return {};
 }

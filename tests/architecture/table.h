@@ -27,15 +27,28 @@ inline const std::vector<Layer>& layers()
         {"server/blueprint", {"server/sdk", "server/model"}, {"expat.h"}, false},
         {"server/plugins", {"server/sdk", "server/model"}, {"dlfcn.h"}, false},
         {"server/simulation", {"server/sdk", "server/model", "server/world"}, {}},
-        {"server/daemon",
-         {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation"},
-         {"spdlog/", "CLI/", "unistd.h"},
+        {"server/publish", {"server/sdk", "server/model", "server/world", "server/simulation"}, {}},
+        {"server/control", {"server/sdk", "server/model", "server/world", "server/simulation", "server/blueprint", "server/publish"}, {}},
+        {"server/bus",
+         {"server/sdk", "server/model", "server/simulation", "server/publish", "idl"},
+         {"dds/", "sys/", "unistd.h", "semaphore.h", "pthread.h", "time.h"},
          false},
+        {"server/daemon",
+         {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation", "server/publish",
+          "server/control", "server/bus"},
+         {"spdlog/", "CLI/", "unistd.h", "poll.h", "sys/eventfd.h"},
+         false},
+        {"server/render", {"server/sdk"}, {"GL/", "png.h"}, false},
+        {"server/objects/cameras", {"server/sdk", "server/render"}, {}},
         {"server/objects/*", {"server/sdk"}, {}},
         {"interactions/detection", {"server/sdk"}, {"ode/"}},
         {"interactions/scripts", {"server/sdk"}, {"lua.hpp"}},
         {"interactions/*", {"server/sdk"}, {}},
-        {"tests", {"server", "interactions"}, {"doctest/", "nlohmann/", "unistd.h", "sys/wait.h"}},
+        {"idl", {"server/sdk"}, {"dds/"}},
+        {"clients/link", {"server/sdk", "idl"}, {"dds/", "nlohmann/"}},
+        {"clients/viewer", {"server/sdk", "server/render", "idl", "clients/link"}, {"CLI/", "unistd.h", "sys/", "fcntl.h", "signal.h"}},
+        {"clients/*", {"server/sdk", "idl", "clients/link"}, {"CLI/", "nlohmann/", "unistd.h", "sys/", "signal.h"}},
+        {"tests", {"server", "interactions", "clients", "idl"}, {"doctest/", "nlohmann/", "unistd.h", "sys/wait.h"}},
     };
     return table;
 }
@@ -43,7 +56,7 @@ inline const std::vector<Layer>& layers()
 /// Folders that includes are relative to, beside the file's own folder and the root of its layer.
 inline const Words& include_roots()
 {
-    static const Words roots{"server/sdk", "server", "interactions", "tests", ""};
+    static const Words roots{"server/sdk", "server", "interactions", "clients", "tests", ""};
     return roots;
 }
 

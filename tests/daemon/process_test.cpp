@@ -19,7 +19,7 @@ struct Outcome
 
 Outcome plabd(const std::string& arguments)
 {
-    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabd " + arguments + " 2>&1";
+    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabd " + arguments + " --no-bus 2>&1";
     std::FILE* pipe = popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     Outcome out;

@@ -34,7 +34,7 @@ hashes() # VARIANT, SCENE, FILE, OPTIONS...
 {
     local variant=$1 scene=$2 file=$3
     shift 3
-    if ! timeout 120 "$work/$variant/bin/plabd" "$scene" --until "$until" --rate max --hashes --log-level warning "$@" \
+    if ! timeout 120 "$work/$variant/bin/plabd" "$scene" --until "$until" --rate max --no-bus --hashes --log-level warning "$@" \
         >"$file" 2>"$file.log" || [[ -s $file.log ]]; then
         head -n 5 "$file.log"
         echo "golden: $(basename "$scene") by $variant ${*}: failed, or warned, or took more than 120 s"

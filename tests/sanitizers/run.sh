@@ -28,5 +28,5 @@ failed=0
 for test in "$@"; do
     "$folder/bin/$test" --no-intro=true || { echo "sanitizers: $test failed under $sanitizers"; failed=1; }
 done
-"$folder/bin/plabd" "$root/scenes/fan_and_balloons.xml" --until 1 --threads 2 --rate max || failed=1
+"$folder/bin/plabd" "$root/scenes/fan_and_balloons.xml" --until 1 --threads 2 --rate max --no-bus || failed=1
 exit "$failed"

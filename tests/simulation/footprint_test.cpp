@@ -20,7 +20,7 @@ std::string mapped_libraries(const std::string& scene)
 {
     const std::string file = std::string(PLAB_BINARY_DIR) + "/footprint_scene.xml";
     std::ofstream(file) << "<plab version=\"1\"><scene dt=\"1/100\"/>" << scene << "</plab>";
-    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabd " + file + " --until 0.1 --maps 2>&1";
+    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabd " + file + " --until 0.1 --no-bus --maps 2>&1";
     std::FILE* pipe = popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     std::string out;

@@ -1,0 +1,48 @@
+#include "control/context.h"
+
+#include "control/interrupt.h"
+
+namespace plab::control
+{
+
+bool Context::stopped() const { return is_interrupted(); }
+
+Exit Context::join()
+{
+    auto joined = link::Session::join(settings.link);
+    if (!joined) return fail(Exit::Failed, joined.errors());
+    session_ = joined.take();
+    return Exit::Done;
+}
+
+Exit Context::connect()
+{
+    if (const Exit e = join(); e != Exit::Done) return e;
+    if (auto found = session_->find_server(settings.link, timeout(), stop()); !found) return fail(Exit::NoServer, found.errors());
+    return Exit::Done;
+}
+
+Exit Context::fail(Exit code, const std::string& message) const
+{
+    if (stopped()) return Exit::Interrupted;
+    console.say(std::string("plabctl: ") + printable(message));
+    return code;
+}
+
+Exit Context::fail(Exit code, const Errors& errors) const
+{
+    Exit out = code;
+    for (const Error& e : errors) out = fail(code, e.text());
+    return out;
+}
+
+CLI::App& add_command(CLI::App& app, Context& context, const CommandText& text, Context::Action run)
+{
+    CLI::App* const command = app.add_subcommand(text.name, text.doc);
+    command->fallthrough();  // global options may stand behind the command
+    command->footer("Examples:\n" + text.examples);
+    command->callback([&context, run = std::move(run)] { context.action = run; });
+    return *command;
+}
+
+}  // namespace plab::control

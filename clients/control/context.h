@@ -1,0 +1,82 @@
+/// What every command of plabctl works with: settings, the session, the console, the exit code.
+///
+///   void add_pause_command(CLI::App& app, Context& context)
+///   {
+///       add_command(app, context, {"pause", "stop the clock", "plabctl pause"}, [](Context& c) { return run_pause(c); });
+///   }
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "control/console.h"
+#include "link/session.h"
+
+namespace plab::control
+{
+
+enum class Exit : int
+{
+    Done = 0,
+    Failed = 1,
+    Usage = 2,
+    NoServer = 3,  ///< or time-out
+    Refused = 4,
+    Interrupted = 130,
+};
+
+/// Global options.
+struct Settings
+{
+    link::Options link;                  ///< server, domain, interface
+    std::optional<double> timeout;       ///< s; see Context::timeout()
+    bool json = false;                   ///< one object; a line per sample of streams
+    std::string color = "auto";          ///< "auto", "always", "never"
+    std::optional<std::uint64_t> count;  ///< of a stream: end after so many samples
+    std::optional<double> duration;      ///< s, of a stream: end after that long
+};
+
+class Context
+{
+public:
+    using Action = std::function<Exit(Context&)>;
+    static constexpr double kTimeout = 5.0;  ///< s, where a command has no other
+
+    Settings settings;
+    Console console;
+    Action action;  ///< of the command that was named; main runs it when the command line is parsed
+
+    /// Joins and finds the server. Prints why not, and gives the exit code; Done: session() is there.
+    Exit connect();
+    /// Joins the domain only: for commands that look at no particular server.
+    Exit join();
+    const link::Session& session() const { return *session_; }
+
+    link::Seconds timeout(double otherwise = kTimeout) const { return link::Seconds(settings.timeout.value_or(otherwise)); }
+
+    /// Ctrl-C was pressed, or SIGTERM came: what waits or streams ends soon.
+    bool stopped() const;
+    link::Stop stop() const
+    {
+        return [this] { return stopped(); };
+    }
+    /// Says it on standard error, "plabctl: ..."; gives `code`, or Interrupted after Ctrl-C.
+    Exit fail(Exit code, const std::string& message) const;
+    Exit fail(Exit code, const Errors& errors) const;
+
+private:
+    std::optional<link::Session> session_;
+};
+
+struct CommandText
+{
+    std::string name, doc;
+    std::string examples;  ///< lines, printed first in its help
+};
+
+/// A sub-command whose action is `run`.
+CLI::App& add_command(CLI::App& app, Context& context, const CommandText& text, Context::Action run);
+
+}  // namespace plab::control

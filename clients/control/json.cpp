@@ -1,0 +1,186 @@
+#include "control/json.h"
+
+namespace plab::control
+{
+namespace
+{
+
+Json outcome(const link::StepOutcome& o)
+{
+    return {{"energy", o.energy},
+            {"momentum", {o.momentum[0], o.momentum[1], o.momentum[2]}},
+            {"error", o.error},
+            {"cost_ns", o.cost_ns}};
+}
+
+Json roles(const std::vector<link::Participants>& participants)
+{
+    Json out = Json::object();
+    for (const link::Participants& p : participants) out[p.role] = p.members;
+    return out;
+}
+
+Json field(const link::FieldInfo& f)
+{
+    return {{"name", f.name},         {"kind", f.kind},         {"value_type", f.value_type}, {"unit", f.unit},
+            {"fallback", f.fallback}, {"required", f.required}, {"rule", f.rule},             {"doc", f.doc}};
+}
+
+Json role(const link::RoleInfo& r)
+{
+    const Json most = r.most == link::kAnyNumber ? Json() : Json(r.most);
+    return {{"name", r.name}, {"accepts", r.accepts}, {"least", r.least}, {"most", most}, {"doc", r.doc}};
+}
+
+template <class T, class Convert>
+Json array(const std::vector<T>& items, Convert convert)
+{
+    Json out = Json::array();
+    for (const T& item : items) out.push_back(convert(item));
+    return out;
+}
+
+}  // namespace
+
+Json json_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+Json json_of(const Quat& q) { return Json::array({q.w, q.x, q.y, q.z}); }
+
+Json json_of(const link::ServerInfo& s)
+{
+    Json dropped = Json::object();
+    for (const auto& [topic, samples] : s.dropped) dropped[topic] = samples;
+    return {{"name", s.name},
+            {"version", s.version},
+            {"host", s.host},
+            {"process", s.process},
+            {"started_ns", s.started_ns},
+            {"scene_file", s.scene_file},
+            {"run", s.run},
+            {"revision", s.revision},
+            {"step", s.step},
+            {"time", s.time},
+            {"dt", s.dt},
+            {"paused", s.paused},
+            {"rate_asked", s.rate_asked},
+            {"rate_reached", s.rate_reached},
+            {"slipped", s.slipped},
+            {"overload", s.overload},
+            {"states_per_second", s.states_per_second},
+            {"threads", s.threads},
+            {"last_event", s.last_event},
+            {"last_collision", s.last_collision},
+            {"requests_done", s.requests_done},
+            {"requests_refused", s.requests_refused},
+            {"dropped", dropped}};
+}
+
+Json json_of(const std::vector<link::Parameter>& parameters)
+{
+    Json out = Json::object();
+    for (const link::Parameter& p : parameters) out[p.name] = {{"text", p.text}, {"unit", p.unit}, {"kind", p.kind}};
+    return out;
+}
+
+Json json_of(const link::Object& o)
+{
+    return {{"id", o.id},
+            {"name", o.name},
+            {"type", o.type},
+            {"kind", o.is_shaft ? "shaft" : "body"},
+            {"motion", o.motion},
+            {o.is_shaft ? "inertia" : "mass", o.mass},
+            {"position", json_of(o.position)},
+            {"orientation", json_of(o.orientation)},
+            {"color", o.color ? json_of(*o.color) : Json()},
+            {"shapes", o.shapes},
+            {"handle", o.handle},
+            {"run", o.run},
+            {"quarantined", o.quarantined},
+            {"parameters", json_of(o.parameters)}};
+}
+
+Json json_of(const link::Shape& s)
+{
+    return {{"id", s.id},
+            {"type", s.type},
+            {"form", s.form},
+            {"position", json_of(s.position)},
+            {"orientation", json_of(s.orientation)},
+            {"size", json_of(s.size)},
+            {"vertices", s.vertices.size()},
+            {"triangles", s.triangles.size()}};
+}
+
+Json json_of(const link::Interaction& i)
+{
+    return {{"id", i.id},
+            {"name", i.name},
+            {"type", i.type},
+            {"family", i.family},
+            {"run", i.run},
+            {"since", i.since},
+            {"roles", roles(i.roles)},
+            {"quarantined", i.quarantined},
+            {"parameters", json_of(i.parameters)}};
+}
+
+Json json_of(const link::InteractionMetrics& m)
+{
+    return {{"requested", m.requested}, {"resolved", m.resolved}, {"cost_ns", m.cost_ns},         {"error", m.error},
+            {"work", m.work},           {"outputs", json_of(m.outputs)}};
+}
+
+Json json_of(const link::Metrics& m)
+{
+    Json interactions = Json::object();
+    for (const link::InteractionMetrics& i : m.interactions)
+    {
+        interactions[i.component] = json_of(i);
+        interactions[i.component]["quarantined"] = i.quarantined;
+    }
+    return {{"run", m.run},
+            {"revision", m.revision},
+            {"step", m.step},
+            {"time", m.time},
+            {"step_ns", m.step_ns},
+            {"real_time_factor", m.real_time_factor},
+            {"energy",
+             {{"kinetic", m.kinetic}, {"stored", m.stored}, {"work", m.work}, {"of_requests", m.of_requests}, {"unexplained", m.unexplained}}},
+            {"momentum", json_of(m.momentum)},
+            {"angular_momentum", json_of(m.angular_momentum)},
+            {"residual", m.residual},
+            {"deepest", m.deepest},
+            {"contacts", m.contacts},
+            {"interactions", interactions}};
+}
+
+Json json_of(const link::Type& t)
+{
+    return {{"name", t.name},     {"family", t.family}, {"doc", t.doc},       {"plugin", t.plugin},
+            {"loaded", t.loaded}, {"order", t.order},   {"cost", t.cost},     {"limits", t.limits},
+            {"source", t.source}, {"roles", array(t.roles, role)}, {"fields", array(t.fields, field)}};
+}
+
+Json json_of(const link::SwapReport& s)
+{
+    Json fields = Json::object();
+    for (const link::FieldFate& f : s.fields) fields[f.name] = f.fate;
+    return {{"component", s.component},       {"from", s.from},
+            {"to", s.to},                     {"fields", fields},
+            {"energy_before", s.energy_before}, {"with_old", outcome(s.with_old)},
+            {"with_new", outcome(s.with_new)}};
+}
+
+Json json_of(const link::Reply& r)
+{
+    return {{"outcome", r.outcome},   {"repeated", r.repeated}, {"reasons", r.reasons},
+            {"run", r.run},           {"revision", r.revision}, {"step", r.step},
+            {"time", r.time},         {"pause_ns", r.pause_ns}, {"waited_ns", r.waited_ns},
+            {"swaps", array(r.swaps, [](const link::SwapReport& s) { return json_of(s); })}};
+}
+
+std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+void print(const Console& console, const Json& json) { console.out(line_of(json) + "\n"); }
+
+}  // namespace plab::control

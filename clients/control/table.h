@@ -1,0 +1,67 @@
+/// Rows in aligned columns that fit the terminal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "control/console.h"
+
+namespace plab::control
+{
+
+enum class Align : unsigned char
+{
+    Left,
+    Right,  ///< numbers
+};
+/// How a column gives way on a terminal that is too narrow. Elsewhere nothing is shortened: a program may read it.
+enum class Shrink : unsigned char
+{
+    Never,
+    Middle,  ///< ids, type names: both ends tell them apart
+    End,     ///< prose
+};
+
+struct Column
+{
+    std::string title;
+    Align align = Align::Left;
+    Shrink shrink = Shrink::Never;
+};
+
+class Table
+{
+public:
+    explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
+    /// One cell per column; they go through printable().
+    void add(std::vector<std::string> cells, Style style = Style::Plain);
+    bool empty() const { return rows_.empty(); }
+    /// Columns that are empty in all rows are left out. `title` false: rows only, for a stream.
+    void print(const Console& console, bool title = true) const;
+
+private:
+    struct Row
+    {
+        std::vector<std::string> cells;
+        Style style;
+    };
+    std::vector<std::size_t> widths(const Console& console) const;
+    std::string cell(std::size_t column, const std::string& text, std::size_t width) const;
+    std::string line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) const;
+
+    std::vector<Column> columns_;
+    std::vector<Row> rows_;
+};
+
+/// Names with their texts below one another, "  name   text": what `show` and a reply print.
+class Lines
+{
+public:
+    void add(std::string name, std::string text);
+    void print(const Console& console) const;
+
+private:
+    std::vector<std::pair<std::string, std::string>> lines_;
+};
+
+}  // namespace plab::control

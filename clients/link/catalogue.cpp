@@ -1,0 +1,183 @@
+#include "link/catalogue.h"
+
+#include <algorithm>
+
+#include "link/catalogue_convert.h"
+
+namespace plab::link
+{
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+// Types have no count on the bus: when no more have come for this long, they are all there. They come in one burst.
+constexpr Seconds kQuiet(0.05);
+constexpr Seconds kSlice(0.05);
+
+template <class T>
+Result<void> open_reader(const Session& session, bool wanted, wire::Reader<T>& reader)
+{
+    if (!wanted) return {};
+    auto made = session.reader<T>();
+    if (!made) return made.errors();
+    reader = made.take();
+    return {};
+}
+
+/// Brings `things` up to date with what the reader holds; true if something came.
+template <class T, class Thing, class KeyOf, class Convert>
+bool take_into(wire::Reader<T>& reader, std::map<std::string, Thing>& things, KeyOf key_of, Convert convert)
+{
+    if (!reader.entity().valid()) return false;
+    const dds_return_t taken = reader.take(
+        [&](const T& sample, const dds_sample_info_t& info)
+        {
+            if (info.instance_state != DDS_IST_ALIVE)
+                things.erase(key_of(sample));
+            else if (info.valid_data)
+                things.insert_or_assign(key_of(sample), convert(sample));
+        });
+    return taken > 0;
+}
+
+std::string count_text(const char* what, std::size_t got, std::size_t wanted)
+{
+    return std::to_string(got) + " of " + std::to_string(wanted) + " " + what;
+}
+
+}  // namespace
+
+const InteractionMetrics* Metrics::find(const std::string& component) const
+{
+    const auto at = std::find_if(interactions.begin(), interactions.end(), [&](const auto& i) { return i.component == component; });
+    return at == interactions.end() ? nullptr : &*at;
+}
+
+Result<Catalogue> Catalogue::open(const Session& session, Parts parts)
+{
+    Catalogue c;
+    c.session_ = &session;
+    c.parts_ = parts | Part::Server | Part::Scene;
+    for (const auto& opened :
+         {open_reader(session, true, c.server_), open_reader(session, true, c.scene_),
+          open_reader(session, has(parts, Part::Objects), c.objects_), open_reader(session, has(parts, Part::Shapes), c.shapes_),
+          open_reader(session, has(parts, Part::Interactions), c.interactions_), open_reader(session, has(parts, Part::Types), c.types_),
+          open_reader(session, has(parts, Part::Metrics), c.metrics_)})
+        if (!opened) return opened.errors();
+    c.waitset_ = wire::Entity(dds_create_waitset(session.participant().get()));
+    if (!c.waitset_.valid()) return reason("cannot wait for the catalogue");
+    for (const wire::Entity* reader : {&c.server_.entity(), &c.scene_.entity(), &c.objects_.entity(), &c.shapes_.entity(),
+                                       &c.interactions_.entity(), &c.types_.entity(), &c.metrics_.entity()})
+    {
+        if (!reader->valid()) continue;
+        (void)dds_set_status_mask(reader->get(), DDS_DATA_AVAILABLE_STATUS);
+        if (const auto code = dds_waitset_attach(c.waitset_.get(), reader->get(), 0); code < 0)
+            return wire::failed("cannot wait for the catalogue", code);
+    }
+    return c;
+}
+
+std::string Catalogue::missing() const
+{
+    if (!now_.server) return "the server's state";
+    if (!now_.scene) return "the scene";
+    if (has(parts_, Part::Objects) && now_.objects.size() < now_.scene->objects)
+        return count_text("objects", now_.objects.size(), now_.scene->objects);
+    if (has(parts_, Part::Interactions) && now_.interactions.size() < now_.scene->interactions)
+        return count_text("interactions", now_.interactions.size(), now_.scene->interactions);
+    if (has(parts_, Part::Types) && now_.types.empty()) return "types";
+    if (!has(parts_, Part::Shapes) || !has(parts_, Part::Objects)) return {};
+    for (const auto& [id, object] : now_.objects)
+        for (const std::string& shape : object.shapes)
+            if (now_.shapes.count(shape) == 0) return "shape '" + shape + "'";
+    return {};
+}
+
+Result<void> Catalogue::fetch(Seconds timeout, const Stop& stop)
+{
+    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    auto last = Clock::now();
+    while (true)
+    {
+        if (update()) last = Clock::now();
+        const std::string gap = missing();
+        // Shapes and types have no count of their own: their burst must have ended.
+        const bool counted = !has(parts_, Part::Types) && !has(parts_, Part::Metrics);
+        if (gap.empty() && (counted || Clock::now() - last >= kQuiet)) return {};
+        if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not tell everything: got no " + gap);
+        if (stop && stop()) return reason("interrupted");
+        const Seconds left = std::min(kSlice, Seconds(end - Clock::now()));
+        (void)dds_waitset_wait(waitset_.get(), nullptr, 0, std::max<dds_duration_t>(0, Session::duration(left)));
+    }
+}
+
+bool Catalogue::update()
+{
+    const std::uint64_t before = version_;
+    bool changed = take_state();
+    if (take_things()) ++version_, rebuild_handles();
+    return changed || version_ != before;
+}
+
+bool Catalogue::wait(Seconds timeout)
+{
+    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    do {
+        const Seconds left = std::max(Seconds(0), Seconds(end - Clock::now()));
+        (void)dds_waitset_wait(waitset_.get(), nullptr, 0, Session::duration(left));
+        if (update()) return true;
+    } while (Clock::now() < end);
+    return false;
+}
+
+bool Catalogue::take_state()
+{
+    bool changed = server_.take(
+                       [&](const plab_v1_Server& sample, const dds_sample_info_t& info)
+                       {
+                           if (info.instance_state != DDS_IST_ALIVE)
+                               now_.server.reset();
+                           else if (info.valid_data)
+                               now_.server = server_of(sample), was_there_ = true;
+                       }) > 0;
+    if (!metrics_.entity().valid()) return changed;
+    changed |= metrics_.take(
+                   [&](const plab_v1_Metrics& sample, const dds_sample_info_t& info)
+                   {
+                       if (info.valid_data) now_.metrics = metrics_of(sample);
+                   }) > 0;
+    return changed;
+}
+
+bool Catalogue::take_things()
+{
+    bool changed = scene_.take(
+                       [&](const plab_v1_Scene& sample, const dds_sample_info_t& info)
+                       {
+                           if (info.valid_data && info.instance_state == DDS_IST_ALIVE) now_.scene = scene_of(sample);
+                       }) > 0;
+    const auto component = [](const auto& sample) { return std::string(sample.component); };
+    changed |= take_into(objects_, now_.objects, component, object_of);
+    changed |= take_into(shapes_, now_.shapes, component, shape_of);
+    changed |= take_into(interactions_, now_.interactions, component, interaction_of);
+    changed |= take_into(
+        types_, now_.types, [](const plab_v1_Type& t) { return std::string(t.type_name); }, type_of);
+    return changed;
+}
+
+void Catalogue::rebuild_handles()
+{
+    handles_.clear();
+    for (const auto& [id, object] : now_.objects) handles_[object.handle] = id;
+}
+
+const Object* Catalogue::find_object(std::uint32_t handle) const
+{
+    const auto at = handles_.find(handle);
+    if (at == handles_.end()) return nullptr;
+    const auto object = now_.objects.find(at->second);
+    return object == now_.objects.end() ? nullptr : &object->second;
+}
+
+}  // namespace plab::link

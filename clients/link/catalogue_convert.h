@@ -1,0 +1,16 @@
+/// Samples of the catalogue's topics as plain structs: texts and sequences are copied out of DDS's memory.
+#pragma once
+
+#include "link/catalogue.h"
+
+namespace plab::link
+{
+
+Scene scene_of(const plab_v1_Scene& sample);
+Object object_of(const plab_v1_Object& sample);
+/// Index triples that point outside the vertices are left out.
+Shape shape_of(const plab_v1_Shape& sample);
+Interaction interaction_of(const plab_v1_Interaction& sample);
+Type type_of(const plab_v1_Type& sample);
+
+}  // namespace plab::link

@@ -1,0 +1,102 @@
+/// Samples of types that a program was not built with: what a type is made of, and the values in its bytes.
+///
+/// Bytes come from others: every length is checked against what is there, and what does not fit is an error that says
+/// where ("bodies[3].position.y: the sample ends here"). Nothing is guessed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "plab/result.h"
+
+namespace plab::link
+{
+
+struct DynamicType;
+using DynamicTypePtr = std::shared_ptr<const DynamicType>;
+
+struct DynamicMember
+{
+    std::string name;
+    DynamicTypePtr type;
+    bool is_key = false;
+};
+
+/// A type as its XTypes TypeObject tells it. What is not listed here (unions, maps, wide strings, optional members,
+/// bit masks) is refused when the type is read, before any sample.
+struct DynamicType
+{
+    enum class Kind : std::uint8_t
+    {
+        Boolean,
+        Octet,
+        Int16,
+        Int32,
+        Int64,
+        Uint16,
+        Uint32,
+        Uint64,
+        Float32,
+        Float64,
+        Char,
+        String,
+        Enum,
+        Struct,
+        Sequence,
+        Array,
+    };
+    Kind kind = Kind::Octet;
+    std::string name;                    ///< of structs and enums
+    bool is_appendable = false;          ///< struct: XCDR2 writes its length before it
+    std::vector<DynamicMember> members;  ///< struct; those of its base come first
+    DynamicTypePtr element;              ///< sequence, array
+    std::uint32_t bound = 0;             ///< string, sequence: most; 0: any number
+    std::vector<std::uint32_t> dimensions;
+    std::uint8_t enum_bytes = 4;  ///< 1, 2 or 4
+    std::vector<std::pair<std::int32_t, std::string>> literals;
+};
+
+bool is_scalar(const DynamicType& type);
+
+/// An enum's value; the literal is empty where the type has none for it.
+struct EnumValue
+{
+    std::int32_t number = 0;
+    std::string_view literal;
+};
+using Scalar = std::variant<bool, std::int64_t, std::uint64_t, float, double, std::string_view, EnumValue>;
+
+/// Hears the values of a sample, in order.
+class SampleVisitor
+{
+public:
+    virtual ~SampleVisitor() = default;
+    virtual void open_struct(const DynamicType& type) = 0;
+    virtual void member(std::string_view name) = 0;  ///< its value comes next
+    virtual void close_struct() = 0;
+    virtual void open_list(const DynamicType& element, std::size_t count) = 0;
+    virtual void close_list() = 0;
+    virtual void scalar(const Scalar& value) = 0;
+};
+
+/// Reads a sample as it was on the wire: 4 bytes that name the encoding (XCDR1, or XCDR2 plain or delimited, of either
+/// byte order), then the values. On an error the visitor has heard a part of it.
+Result<void> decode(const DynamicType& type, std::span<const std::byte> bytes, SampleVisitor& visitor);
+
+/// The members that make its key, and their own: what a sample holds that only says that its instance is gone.
+/// Null if it has none.
+DynamicTypePtr key_of(const DynamicType& type);
+
+/// One JSON value, on one line. Enums are the names of their literals, or numbers where they have none.
+Result<std::string> json_of(const DynamicType& type, std::span<const std::byte> bytes);
+/// "name: value" lines, members of structs indented below it. Lists longer than `most` elements are cut short, and say so.
+Result<std::string> tree_of(const DynamicType& type, std::span<const std::byte> bytes, std::size_t most);
+
+}  // namespace plab::link

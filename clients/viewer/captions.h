@@ -1,0 +1,43 @@
+/// The text in a picture: time, title and the algorithm of each interaction.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "link/catalogue.h"
+#include "viewer/state.h"
+
+namespace plab::view
+{
+
+class Captions
+{
+public:
+    /// More interactions than this: those that cost most, and how many there are beside them.
+    static constexpr std::size_t kMostLines = 12;
+    static constexpr std::size_t kLongestLine = 72;  ///< characters
+
+    /// The scene has changed. Which interactions are shown stays the same until the next change.
+    void use(const link::Snapshot& scene);
+
+    /// From the top: title and time, then "id: algorithm" as it was in this state.
+    std::vector<std::string> lines(const State& state) const;
+
+private:
+    /// An algorithm, and the step from which on it was the one.
+    using Change = std::pair<std::int64_t, std::string>;
+
+    const std::string& algorithm_at(const std::string& id, std::int64_t step) const;
+
+    std::string title_;
+    std::uint64_t run_ = 0;
+    std::vector<std::string> shown_;  ///< ids
+    std::size_t left_out_ = 0;
+    std::map<std::string, bool> quarantined_;
+    std::map<std::string, std::vector<Change>> algorithms_;
+};
+
+}  // namespace plab::view

@@ -1,0 +1,44 @@
+/// A film: raw pictures through a pipe to ffmpeg.
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/render.h"
+
+namespace plab::view
+{
+
+/// Where ffmpeg is, or that it is not in PATH.
+Result<std::string> find_ffmpeg();
+
+class Film
+{
+public:
+    /// Starts ffmpeg. The file has its name when finish() has succeeded, not before.
+    static Result<Film> open(const std::string& ffmpeg, const std::string& file, std::uint32_t width, std::uint32_t height,
+                             double frames_per_second);
+    Film(Film&& other) noexcept;
+    Film& operator=(Film&&) = delete;
+    /// Without finish(): gives the film up.
+    ~Film();
+
+    Result<void> add(const render::Picture& picture);
+    Result<void> finish();
+
+private:
+    Film(std::string file, std::string partial) : file_(std::move(file)), partial_(std::move(partial)) {}
+    Result<void> start(const std::vector<std::string>& command);
+    void close_pipe();
+    /// Exit status of ffmpeg, which has been told that there is no more; none if it did not end by itself.
+    std::optional<int> wait();
+
+    std::string file_, partial_;
+    int pipe_ = -1;
+    pid_t process_ = -1;
+};
+
+}  // namespace plab::view

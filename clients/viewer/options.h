@@ -1,0 +1,70 @@
+/// The command line of plab-view.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "link/session.h"
+#include "plab/vector.h"
+
+namespace plab::view
+{
+
+/// One picture: of the first state at or after `at`, of the present one without it.
+struct Shot
+{
+    std::optional<double> at;  ///< s, simulated
+    std::string camera;        ///< of the scene; empty: the view that the options choose
+    std::string file;
+};
+
+struct ViewChoice
+{
+    std::string camera;
+    std::optional<Vec3> from, look_at, up;  ///< W, m
+    std::optional<double> orbit;            ///< m; 0: as far as the scene needs
+    double orbit_period = 10;               ///< s, simulated
+    std::string track;                      ///< component id
+};
+
+enum class Task : std::uint8_t
+{
+    Shots,
+    Frames,
+    Film,
+};
+
+struct Options
+{
+    Task task = Task::Shots;
+    std::vector<Shot> shots;         ///< Task::Shots, by time
+    std::string target;              ///< Task::Frames: folder; Task::Film: file
+    std::optional<double> at;        ///< s: time of the first frame
+    double frames_per_second = 30;   ///< of simulated time
+    std::optional<double> duration;  ///< s
+    std::optional<double> until;     ///< s
+    ViewChoice view;
+    std::uint32_t width = 1280, height = 720;
+    bool captions = true, ground = true;
+    link::Options link;
+    link::Seconds timeout{10};
+};
+
+/// Why the program ends before it begins: --help, --version (code 0, for standard output) or wrong use (code 2).
+struct ParseEnd
+{
+    int code = 0;
+    std::string message;
+};
+
+/// Nothing: `options` is filled.
+std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options& options);
+
+/// "T[@CAMERA]=FILE"
+Result<Shot> parse_shot(const std::string& text);
+/// "x y z", with blanks or commas.
+Result<Vec3> parse_vector(const std::string& text);
+
+}  // namespace plab::view

@@ -1,0 +1,219 @@
+#include "viewer/scene_model.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "plab/rotation.h"
+
+namespace plab::view
+{
+namespace
+{
+
+const Vec3 kStaticColor{0.62, 0.63, 0.66};
+const Vec3 kMarkColor{0.95, 0.75, 0.2};
+
+Quat about_z(double angle) { return exp_rotation({0, 0, angle}); }
+
+std::optional<render::Form> form_of(const std::string& name)
+{
+    if (name == "sphere") return render::Form::Sphere;
+    if (name == "box") return render::Form::Box;
+    if (name == "plane") return render::Form::Plane;
+    if (name == "mesh") return render::Form::Mesh;
+    return {};  // "none", and what a newer server may have
+}
+
+/// The row with this handle; null if there is none.
+template <class T>
+const T* find_row(const std::vector<T>& rows, std::uint32_t handle)
+{
+    const auto row = std::lower_bound(rows.begin(), rows.end(), handle, [](const T& r, std::uint32_t h) { return r.handle < h; });
+    return row != rows.end() && row->handle == handle ? &*row : nullptr;
+}
+
+double angle_of(const link::Object& shaft)
+{
+    double angle = 0;
+    for (const link::Parameter& p : shaft.parameters)
+        if (p.name == "angle") (void)std::from_chars(p.text.data(), p.text.data() + p.text.size(), angle);
+    return angle;
+}
+
+bool same_mesh(const render::Mesh& mesh, const link::Shape& shape)
+{
+    const auto equal = [](std::uint32_t a, std::uint32_t b) { return a == b; };
+    return mesh.vertices == shape.vertices && mesh.triangles.size() == 3 * shape.triangles.size() &&
+           (shape.triangles.empty() || std::equal(mesh.triangles.begin(), mesh.triangles.end(), shape.triangles.front().data(), equal));
+}
+
+render::Mesh mesh_of(const link::Shape& shape)
+{
+    render::Mesh out{shape.vertices, {}};
+    for (const auto& triangle : shape.triangles) out.triangles.insert(out.triangles.end(), triangle.begin(), triangle.end());
+    return out;
+}
+
+}  // namespace
+
+Vec3 color_of_id(const std::string& id)
+{
+    static constexpr std::array<Vec3, 10> kPalette{{{0.87, 0.33, 0.28},
+                                                    {0.24, 0.52, 0.78},
+                                                    {0.93, 0.69, 0.22},
+                                                    {0.36, 0.68, 0.42},
+                                                    {0.58, 0.42, 0.74},
+                                                    {0.91, 0.51, 0.24},
+                                                    {0.27, 0.68, 0.71},
+                                                    {0.84, 0.44, 0.62},
+                                                    {0.61, 0.66, 0.25},
+                                                    {0.47, 0.56, 0.69}}};
+    std::uint32_t hash = 2166136261u;  // FNV-1a
+    for (const char c : id) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+    return kPalette[(hash ^ (hash >> 16)) % kPalette.size()];
+}
+
+Axle axle_of_inertia(double inertia)
+{
+    // A disk of radius r, length r/2 and density 1000: J = rho pi r^4 (r/2) / 2.
+    constexpr double kDensity = 1000, kThinnest = 0.05, kThickest = 0.5;
+    const double r = inertia > 0 ? std::pow(4 * inertia / (kDensity * std::numbers::pi), 0.2) : kThinnest;
+    const double radius = std::clamp(r, kThinnest, kThickest);
+    return {radius, std::clamp(radius / 4, 0.02, 0.1)};
+}
+
+void SceneModel::use(std::shared_ptr<const link::Snapshot> scene)
+{
+    if (scene == scene_) return;
+    scene_ = std::move(scene);
+    rebuild_meshes();
+    captions_.use(*scene_);
+    props_.clear();
+    for (const auto& [id, object] : scene_->objects) add_prop(object);
+}
+
+void SceneModel::rebuild_meshes()
+{
+    std::vector<const link::Shape*> wanted;
+    for (const auto& [id, shape] : scene_->shapes)
+        if (shape.form == "mesh") wanted.push_back(&shape);
+    const auto as_before = [this](const link::Shape* shape)
+    {
+        const auto known = std::find(mesh_ids_.begin(), mesh_ids_.end(), shape->id);
+        return known != mesh_ids_.end() && same_mesh(drawing_.meshes[static_cast<std::size_t>(known - mesh_ids_.begin())], *shape);
+    };
+    if (wanted.size() == mesh_ids_.size() && std::all_of(wanted.begin(), wanted.end(), as_before)) return;
+    mesh_ids_.clear();
+    drawing_.meshes.clear();
+    for (const link::Shape* shape : wanted)
+    {
+        mesh_ids_.push_back(shape->id);
+        drawing_.meshes.push_back(mesh_of(*shape));
+    }
+    ++drawing_.meshes_revision;
+}
+
+void SceneModel::add_parts(const link::Object& object, const Vec3& color, std::vector<Part>& out) const
+{
+    for (const std::string& id : object.shapes)
+    {
+        const auto shape = scene_->shapes.find(id);
+        if (shape == scene_->shapes.end()) continue;  // it comes with a later snapshot
+        const std::optional<render::Form> form = form_of(shape->second.form);
+        if (!form) continue;
+        Part part{*form, {shape->second.position, shape->second.orientation}, shape->second.size, color, 0};
+        if (*form == render::Form::Mesh)
+            part.mesh = static_cast<std::uint32_t>(std::find(mesh_ids_.begin(), mesh_ids_.end(), id) - mesh_ids_.begin());
+        out.push_back(part);
+    }
+}
+
+void SceneModel::add_prop(const link::Object& object)
+{
+    const bool is_static = !object.is_shaft && object.motion == "static";
+    const Vec3 color = object.color.value_or(is_static ? kStaticColor : color_of_id(object.id));
+    Prop prop{object.id, object.handle, object.run, object.is_shaft, is_static, {object.position, object.orientation}, {}};
+    add_parts(object, color, prop.parts);
+    if (object.is_shaft && object.shapes.empty())
+    {
+        const Axle axle = axle_of_inertia(object.mass);
+        prop.parts.push_back({render::Form::Cylinder, {}, {axle.radius, axle.radius, axle.half_length}, color, 0});
+        // A cylinder that turns looks like one that stands: a mark across both faces and the rim shows it.
+        const Vec3 mark{0.22 * axle.radius, 0.08 * axle.radius, 1.12 * axle.half_length};
+        prop.parts.push_back({render::Form::Box, {{0.82 * axle.radius, 0, 0}, {}}, mark, kMarkColor, 0});
+    }
+    props_.push_back(std::move(prop));
+}
+
+std::optional<Pose> SceneModel::pose_of(const Prop& prop, const State& state) const
+{
+    if (prop.is_static) return prop.X_WB;
+    // Handles are never used again in a run, but they are in the next one.
+    if (prop.run != state.run) return {};
+    if (prop.is_shaft)
+    {
+        const Shaft* const shaft = find_row(state.shafts, prop.handle);
+        if (shaft == nullptr) return {};
+        return Pose{prop.X_WB.p, prop.X_WB.q * about_z(shaft->angle)};
+    }
+    const Body* const body = find_row(state.bodies, prop.handle);
+    if (body == nullptr) return {};
+    return body->pose;
+}
+
+render::Drawing& SceneModel::draw(const State& state)
+{
+    drawing_.items.clear();
+    for (const Prop& prop : props_)
+        if (const std::optional<Pose> X_WB = pose_of(prop, state))
+            for (const Part& part : prop.parts)
+                drawing_.items.push_back({part.form, *X_WB * part.X_BS, part.size, part.color, part.mesh});
+    drawing_.ground = look_.ground;
+    drawing_.captions.clear();
+    if (look_.captions)
+        for (std::string& line : captions_.lines(state)) drawing_.captions.push_back({std::move(line), false});
+    return drawing_;
+}
+
+const std::vector<link::Camera>& SceneModel::cameras() const
+{
+    static const std::vector<link::Camera> kNone;
+    return scene_ && scene_->scene ? scene_->scene->cameras : kNone;
+}
+
+bool SceneModel::has_object(const std::string& id) const { return scene_ && scene_->objects.contains(id); }
+
+std::optional<Vec3> SceneModel::position_of(const std::string& id, const State& state) const
+{
+    for (const Prop& prop : props_)
+        if (prop.id == id)
+        {
+            const std::optional<Pose> pose = pose_of(prop, state);
+            return pose ? std::optional(pose->p) : std::nullopt;
+        }
+    return {};
+}
+
+State SceneModel::state_of_catalogue() const
+{
+    State out;
+    if (!scene_) return out;
+    if (scene_->server)
+        out = {scene_->server->run, scene_->server->revision, scene_->server->step, scene_->server->time, {}, {}};
+    for (const auto& [id, object] : scene_->objects)
+    {
+        if (object.is_shaft)
+            out.shafts.push_back({object.handle, angle_of(object)});
+        else if (object.motion != "static")
+            out.bodies.push_back({object.handle, {object.position, object.orientation}});
+    }
+    const auto by_handle = [](const auto& a, const auto& b) { return a.handle < b.handle; };
+    std::sort(out.bodies.begin(), out.bodies.end(), by_handle);
+    std::sort(out.shafts.begin(), out.shafts.end(), by_handle);
+    return out;
+}
+
+}  // namespace plab::view

@@ -1,0 +1,83 @@
+/// What a server says of its scene, and a state, as geometry to draw.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "link/catalogue.h"
+#include "render/render.h"
+#include "viewer/captions.h"
+#include "viewer/state.h"
+
+namespace plab::view
+{
+
+class SceneModel
+{
+public:
+    struct Look
+    {
+        bool captions = true, ground = true;
+    };
+
+    explicit SceneModel(const Look& look) : look_(look) {}
+
+    /// From now on the scene is this. Cheap if it is the one that is in use.
+    void use(std::shared_ptr<const link::Snapshot> scene);
+
+    /// Everything that can be seen at this state; valid until the next call. The view is for the caller to choose.
+    render::Drawing& draw(const State& state);
+
+    const std::vector<link::Camera>& cameras() const;
+    bool has_object(const std::string& id) const;
+    /// Origin of an object (W, m); none if it has no place in this state.
+    std::optional<Vec3> position_of(const std::string& id, const State& state) const;
+    /// Poses as the catalogue has them, for a server that sends no states.
+    State state_of_catalogue() const;
+
+private:
+    struct Part
+    {
+        render::Form form = render::Form::Sphere;
+        Pose X_BS;
+        Vec3 size, color;
+        std::uint32_t mesh = 0;
+    };
+    /// An object, ready to be drawn.
+    struct Prop
+    {
+        std::string id;
+        std::uint32_t handle = 0;
+        std::uint64_t run = 0;
+        bool is_shaft = false, is_static = false;
+        Pose X_WB;  ///< where it is, or of a shaft its axle at angle 0
+        std::vector<Part> parts;
+    };
+
+    void rebuild_meshes();
+    void add_prop(const link::Object& object);
+    void add_parts(const link::Object& object, const Vec3& color, std::vector<Part>& out) const;
+    std::optional<Pose> pose_of(const Prop& prop, const State& state) const;
+
+    Look look_;
+    std::shared_ptr<const link::Snapshot> scene_;
+    std::vector<Prop> props_;
+    std::vector<std::string> mesh_ids_;  ///< of shapes, as in drawing_.meshes
+    Captions captions_;
+    render::Drawing drawing_;
+};
+
+/// Colour of an object that names none: one of a few that go together, always the same for one id.
+Vec3 color_of_id(const std::string& id);
+
+/// Radius and half length of the cylinder that stands for a shaft without shapes: a solid disk of its inertia
+/// (kg m^2), within bounds that can be seen.
+struct Axle
+{
+    double radius = 0, half_length = 0;  ///< m
+};
+Axle axle_of_inertia(double inertia);
+
+}  // namespace plab::view

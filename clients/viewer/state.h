@@ -1,0 +1,47 @@
+/// Where everything is at one time: what a frame of plab/states says, without velocities, ordered by handle.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "idl/plab.h"
+#include "plab/vector.h"
+
+namespace plab::view
+{
+
+/// Times that differ by less are the same time (s): far below any step, far above the rounding of n * dt.
+inline constexpr double kSameTime = 1e-9;
+
+struct Body
+{
+    std::uint32_t handle = 0;
+    Pose pose;  ///< X_WB
+};
+
+struct Shaft
+{
+    std::uint32_t handle = 0;
+    double angle = 0;  ///< rad
+};
+
+struct State
+{
+    std::uint64_t run = 0, revision = 0;
+    std::int64_t step = 0;
+    double time = 0;            ///< s, simulated
+    std::vector<Body> bodies;   ///< by handle
+    std::vector<Shaft> shafts;  ///< by handle
+};
+
+State state_of(const plab_v1_Frame& frame);
+
+/// From a (at 0) to b (at 1) by the shorter way, at a constant rate of turning.
+Quat slerp(const Quat& a, const Quat& b, double share);
+
+/// The state at `time` between those of two frames of one run, a before b: positions and angles linearly, orientations
+/// by slerp. What is only in a stays where it is until b; what is only in b appears with b. Step and revision are those
+/// of the last frame that is not later than `time`.
+State interpolate(const State& a, const State& b, double time);
+
+}  // namespace plab::view

@@ -1,0 +1,37 @@
+/// A server's name is taken once on a host (and in a network name space), for as long as the process lives.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "plab/result.h"
+
+namespace plab::bus
+{
+
+/// An abstract unix socket of that name. The kernel lets go of it when the process ends, however it ends.
+class NameLock
+{
+public:
+    NameLock() = default;
+    NameLock(NameLock&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
+    NameLock& operator=(NameLock&& other) noexcept
+    {
+        std::swap(socket_, other.socket_);
+        return *this;
+    }
+    NameLock(const NameLock&) = delete;
+    NameLock& operator=(const NameLock&) = delete;
+    ~NameLock();
+
+    /// The error names the process that has it, where that can be known.
+    static Result<NameLock> take(std::uint32_t domain, const std::string& name);
+
+private:
+    explicit NameLock(int socket) : socket_(socket) {}
+
+    int socket_ = -1;
+};
+
+}  // namespace plab::bus

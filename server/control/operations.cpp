@@ -1,0 +1,266 @@
+#include "control/operations.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "blueprint/reader.h"
+#include "model/compile.h"
+#include "model/values.h"
+
+namespace plab::control
+{
+namespace
+{
+
+using publish::OperationText;
+using simulation::Operation;
+
+/// What a verb uses; whatever else is filled is a mistake of the client's, not to be passed over.
+struct Verb
+{
+    std::string_view name;
+    std::string_view target;    ///< what it is, "" if not used
+    std::string_view argument;  ///< likewise
+    bool argument_optional = false;
+    bool blueprint = false;
+    bool values = false;
+    Result<Operation> (*make)(const OperationText&, model::TypeSource&) = nullptr;
+};
+
+std::vector<simulation::NamedValue> named_values(const OperationText& op)
+{
+    std::vector<simulation::NamedValue> out;
+    for (const auto& [name, text] : op.values) out.push_back({name, text});
+    return out;
+}
+
+Result<Vec3> parse_vector(const std::string& text, Unit unit)
+{
+    Field field;
+    field.type = FieldType::Vector, field.unit = unit;
+    auto value = model::parse_value(text, field);
+    if (!value) return value.errors();
+    return std::get<Vec3>(*value);
+}
+
+/// Three numbers in N s, or one in N m s for a shaft.
+Result<Vec3> parse_impulse(const std::string& text)
+{
+    Field field;
+    field.type = FieldType::Real, field.unit = unit::newton_metre_second;
+    if (auto one = model::parse_value(text, field)) return Vec3{std::get<double>(*one), 0, 0};
+    return parse_vector(text, unit::newton_second);
+}
+
+Result<Operation> make_add(const OperationText& op, model::TypeSource&)
+{
+    auto blueprint = blueprint::read_blueprint(op.blueprint, op.argument.empty() ? "request" : op.argument);
+    if (!blueprint) return blueprint.errors();
+    return Operation{simulation::AddBlueprintOperation{blueprint.take()}};
+}
+Result<Operation> make_load(const OperationText& op, model::TypeSource& types)
+{
+    auto blueprint = blueprint::read_blueprint(op.blueprint, op.argument.empty() ? "request" : op.argument);
+    if (!blueprint) return blueprint.errors();
+    auto scene = model::compile(*blueprint, types);
+    if (!scene) return scene.errors();
+    return Operation{simulation::LoadOperation{scene.take()}};
+}
+Result<Operation> make_remove(const OperationText& op, model::TypeSource&) { return Operation{simulation::RemoveOperation{op.target}}; }
+Result<Operation> make_swap(const OperationText& op, model::TypeSource&)
+{
+    return Operation{simulation::SwapOperation{op.target, op.argument, named_values(op)}};
+}
+Result<Operation> make_push(const OperationText& op, model::TypeSource&)
+{
+    simulation::PushOperation push{op.target, {}, {}};
+    bool given = false;
+    for (const auto& [name, text] : op.values)
+    {
+        if (name != "impulse" && name != "point")
+            return reason("has no value '" + name + "'" + model::did_you_mean(name, {"impulse", "point"}) + "; it has impulse and point");
+        auto value = name == "impulse" ? parse_impulse(text) : parse_vector(text, unit::metre);
+        if (!value) return reason(name + ": " + value.error().reason);
+        if (name == "impulse")
+            push.impulse = *value, given = true;
+        else
+            push.point = *value;
+    }
+    if (!given) return reason("needs the value impulse: three numbers in N s, or one in N m s for a shaft");
+    return Operation{push};
+}
+Result<Operation> make_pause(const OperationText&, model::TypeSource&) { return Operation{simulation::PauseOperation{}}; }
+Result<Operation> make_resume(const OperationText&, model::TypeSource&) { return Operation{simulation::ResumeOperation{}}; }
+Result<Operation> make_reset(const OperationText&, model::TypeSource&) { return Operation{simulation::ResetOperation{}}; }
+Result<Operation> make_step(const OperationText& op, model::TypeSource&)
+{
+    std::int64_t steps = 0;
+    const char* const end = op.argument.data() + op.argument.size();
+    const auto [stop, error] = std::from_chars(op.argument.data(), end, steps);
+    if (error != std::errc() || stop != end || steps < 1) return reason("'" + op.argument + "' is no number of steps: 1 or more");
+    return Operation{simulation::StepOperation{steps}};
+}
+Result<Operation> make_rate(const OperationText& op, model::TypeSource&)
+{
+    auto factor = parse_rate(op.argument);
+    if (!factor) return factor.errors();
+    return Operation{simulation::RateOperation{*factor}};
+}
+Result<Operation> make_dt(const OperationText& op, model::TypeSource&)
+{
+    auto dt = model::parse_step_length(op.argument);
+    if (!dt) return dt.errors();
+    return Operation{simulation::StepLengthOperation{*dt}};
+}
+/// Only a place in the table: set makes one operation of each value, shutdown none.
+Result<Operation> make_nothing(const OperationText&, model::TypeSource&) { return reason("is no operation"); }
+
+constexpr std::array<Verb, 13> kVerbs{{
+    {"add", "", "the file's name for messages", true, true, false, &make_add},
+    {"remove", "the component", "", false, false, false, &make_remove},
+    {"swap", "the component", "the new type", false, false, true, &make_swap},
+    {"set", "the component", "", false, false, true, &make_nothing},
+    {"push", "the object", "", false, false, true, &make_push},
+    {"pause", "", "", false, false, false, &make_pause},
+    {"resume", "", "", false, false, false, &make_resume},
+    {"step", "", "the number of steps", false, false, false, &make_step},
+    {"rate", "", "real, max or a factor", false, false, false, &make_rate},
+    {"reset", "", "", false, false, false, &make_reset},
+    {"load", "", "the file's name for messages", true, true, false, &make_load},
+    {"dt", "", "the step length", false, false, false, &make_dt},
+    {"shutdown", "", "", false, false, false, &make_nothing},
+}};
+
+const Verb* find_verb(const std::string& name)
+{
+    const auto found = std::find_if(kVerbs.begin(), kVerbs.end(), [&](const Verb& v) { return v.name == name; });
+    return found == kVerbs.end() ? nullptr : &*found;
+}
+
+Error unknown_verb(const std::string& name)
+{
+    std::vector<std::string> known;
+    for (const Verb& v : kVerbs) known.emplace_back(v.name);
+    return reason("'" + name + "' is no operation" + model::did_you_mean(name, known));
+}
+
+std::string given_too_much(const Verb& verb, const OperationText& op)
+{
+    if (verb.target.empty() && !op.target.empty()) return "takes no target";
+    if (verb.argument.empty() && !op.argument.empty()) return "takes no argument";
+    if (!verb.blueprint && !op.blueprint.empty()) return "takes no blueprint";
+    if (!verb.values && !op.values.empty()) return "takes no values";
+    return {};
+}
+
+std::string given_too_little(const Verb& verb, const OperationText& op)
+{
+    if (!verb.target.empty() && op.target.empty()) return "needs a target: " + std::string(verb.target);
+    if (!verb.argument.empty() && !verb.argument_optional && op.argument.empty()) return "needs an argument: " + std::string(verb.argument);
+    if (verb.blueprint && op.blueprint.empty()) return "needs a blueprint: XML text";
+    if (op.verb == "set" && op.values.empty()) return "needs values: names and texts";
+    for (std::size_t i = 0; i < op.values.size(); ++i)
+        for (std::size_t k = 0; k <= i; ++k)
+        {
+            if (op.values[i].first.empty()) return "has a value without a name";
+            if (k < i && op.values[i].first == op.values[k].first) return "gives '" + op.values[i].first + "' twice";
+        }
+    return {};
+}
+
+Result<void> append(const OperationText& op, model::TypeSource& types, Wanted& out)
+{
+    const Verb* verb = find_verb(op.verb);
+    if (!verb) return unknown_verb(op.verb);
+    if (const std::string why = given_too_much(*verb, op); !why.empty()) return reason(why);
+    if (const std::string why = given_too_little(*verb, op); !why.empty()) return reason(why);
+    if (op.verb == "shutdown")
+    {
+        out.shutdown = true;
+        return {};
+    }
+    if (op.verb == "set")
+    {
+        for (const auto& [name, text] : op.values) out.request.operations.push_back(simulation::SetOperation{op.target, name, text});
+        return {};
+    }
+    auto made = verb->make(op, types);
+    if (!made) return made.errors();
+    out.request.operations.push_back(made.take());
+    return {};
+}
+
+}  // namespace
+
+Description description_of(const simulation::Operation& operation)
+{
+    using namespace simulation;
+    struct Words
+    {
+        Description operator()(const AddOperation& op) const
+        {
+            return {"add", op.fragment.components.empty() ? "" : op.fragment.components.front().id, ""};
+        }
+        Description operator()(const AddBlueprintOperation& op) const
+        {
+            return {"add", op.blueprint.components.empty() ? "" : op.blueprint.components.front().id, ""};
+        }
+        Description operator()(const RemoveOperation& op) const { return {"remove", op.id, ""}; }
+        Description operator()(const SwapOperation& op) const { return {"swap", op.id, op.type}; }
+        Description operator()(const SetOperation& op) const
+        {
+            const auto* text = std::get_if<std::string>(&op.value);
+            return {"set", op.id, op.name + " = " + (text ? *text : model::format_value(std::get<Value>(op.value)))};
+        }
+        Description operator()(const PushOperation& op) const { return {"push", op.id, model::format_value(op.impulse)}; }
+        Description operator()(const PauseOperation&) const { return {"pause", "", ""}; }
+        Description operator()(const ResumeOperation&) const { return {"resume", "", ""}; }
+        Description operator()(const StepOperation& op) const { return {"step", "", std::to_string(op.steps)}; }
+        Description operator()(const RateOperation& op) const
+        {
+            return {"rate", "", op.factor == 0 ? std::string("max") : model::format_real(op.factor)};
+        }
+        Description operator()(const ResetOperation&) const { return {"reset", "", ""}; }
+        Description operator()(const LoadOperation& op) const { return {"load", "", op.scene.file}; }
+        Description operator()(const StepLengthOperation& op) const { return {"dt", "", model::format_real(op.dt.seconds)}; }
+    };
+    return std::visit(Words{}, operation);
+}
+
+Result<double> parse_rate(const std::string& text)
+{
+    if (text == "real") return 1.0;
+    if (text == "max") return 0.0;
+    double factor = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
+    if (error != std::errc() || end != text.data() + text.size() || !(factor > 0) || !(factor <= 1e9))
+        return reason("a rate is real, max or a positive factor of real time, not '" + text + "'");
+    return factor;
+}
+
+Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types)
+{
+    Wanted out;
+    Errors errors;
+    for (std::size_t i = 0; i < text.operations.size(); ++i)
+    {
+        auto done = append(text.operations[i], types, out);
+        if (done) continue;
+        for (Error e : done.errors())
+        {
+            // Errors in a blueprint have a place of their own.
+            if (e.where.file.empty())
+                e.element = "operation " + std::to_string(i + 1) + " (" + text.operations[i].verb + ")" +
+                            (e.element.empty() ? "" : ": " + e.element);
+            errors.push_back(std::move(e));
+        }
+    }
+    if (errors.empty() && out.shutdown && text.operations.size() > 1) errors.push_back(reason("shutdown stands alone in a request"));
+    if (!errors.empty()) return errors;
+    if (text.at >= 0) out.request.at = text.at;
+    if (text.revision >= 0) out.request.revision = static_cast<std::uint64_t>(text.revision);
+    return out;
+}
+
+}  // namespace plab::control

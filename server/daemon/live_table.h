@@ -1,0 +1,32 @@
+/// The live table of --table.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <string>
+
+#include "simulation/simulation.h"
+
+namespace plab::daemon
+{
+
+/// Redraws in place on a terminal, else a block each simulated second. The last events stand below it.
+class LiveTable
+{
+public:
+    explicit LiveTable(bool wanted);
+    void note(const simulation::Simulation& simulation);
+    void note(std::string line);
+    void show(const simulation::Simulation& simulation, bool last = false);
+
+private:
+    bool wanted_, terminal_;
+    std::chrono::steady_clock::time_point shown_{};
+    double next_ = 0;
+    std::deque<std::string> lines_;
+};
+
+/// "contact.impact contact (red, green): message".
+std::string event_text(const simulation::Simulation& simulation, const Event& event);
+
+}  // namespace plab::daemon

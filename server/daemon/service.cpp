@@ -1,0 +1,224 @@
+#include "daemon/service.h"
+
+#include <spdlog/spdlog.h>
+
+#include "simulation/clock.h"
+
+namespace plab::daemon
+{
+namespace
+{
+
+void wake_up(void* wake) { static_cast<const Wake*>(wake)->wake(); }
+
+const char* word(simulation::Fate fate)
+{
+    switch (fate)
+    {
+        case simulation::Fate::Kept:
+            return "kept";
+        case simulation::Fate::Converted:
+            return "converted";
+        case simulation::Fate::Given:
+            return "given";
+        case simulation::Fate::Fresh:
+            return "fresh";
+        case simulation::Fate::Lost:
+            return "lost";
+    }
+    return "";
+}
+
+void log_swap(const simulation::Reply& r, const simulation::SwapReport& swap)
+{
+    std::string fields;
+    for (const simulation::FieldFate& f : swap.fields) fields += fmt::format(" {} {}", f.field, word(f.fate));
+    spdlog::info("step {}: {} {} -> {}; pause {:.1f} us;{}", r.step, swap.id, swap.from, swap.to, r.pause_ns * 1e-3, fields);
+    spdlog::info("  first step: energy {:.9g} J -> {:.9g} J (old: {:.9g} J), error {:.3g} (old: {:.3g}), cost {:.1f} us (old: {:.1f} us)",
+                 swap.energy_before, swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error,
+                 swap.with_new.cost_ns * 1e-3, swap.with_old.cost_ns * 1e-3);
+}
+
+publish::CollectorOptions collector_options(const Options& options)
+{
+    publish::CollectorOptions out;
+    out.states_per_second = options.states_per_second;
+    return out;
+}
+
+}  // namespace
+
+Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const Options& options)
+    : simulation_(&simulation),
+      library_(&library),
+      scene_file_(options.scene),
+      states_per_second_(options.states_per_second),
+      threads_(static_cast<std::uint32_t>(options.threads)),
+      collector_(collector_options(options), options.bus ? library.summaries() : std::vector<model::TypeSummary>{})
+{
+}
+
+Result<void> Service::open_bus(const Options& options, const Wake& wake)
+{
+    auto module = plugins::open_module("bus", bus::kEntryName, plugins::PluginLibrary::default_directories());
+    if (!module) return module.errors();
+    bus::BusOptions bus;
+    bus.name = options.name, bus.version = PLAB_VERSION, bus.domain = options.domain;
+    bus.network_interface = options.network_interface;
+    bus.wake = &wake_up, bus.wake_argument = const_cast<Wake*>(&wake);
+    Error error;
+    auto opened = reinterpret_cast<bus::Open>(module->entry)(bus, error);
+    if (!opened) return error;
+    module_ = module.take(), bus_ = std::move(opened);
+    collector_.attach(*bus_);
+    simulation_->draw_for(this);
+    return {};
+}
+
+void Service::post(simulation::Request request)
+{
+    Origin origin;
+    for (const simulation::Operation& op : request.operations) origin.operations.push_back(control::description_of(op));
+    request.id = ++last_request_;
+    waiting_.emplace(request.id, std::move(origin));
+    simulation_->post(std::move(request));
+}
+
+void Service::take_requests()
+{
+    if (!bus_) return;
+    publish::RequestText text;
+    while (bus_->take(text))
+    {
+        auto wanted = control::wanted_of(text, *library_);
+        if (!wanted)
+        {
+            refuse(text, wanted.errors());
+            continue;
+        }
+        if (wanted->shutdown)
+        {
+            shut_down(text);
+            continue;
+        }
+        Origin origin;
+        origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
+        for (const simulation::Operation& op : wanted->request.operations) origin.operations.push_back(control::description_of(op));
+        wanted->request.id = ++last_request_;
+        waiting_.emplace(last_request_, std::move(origin));
+        simulation_->post(std::move(wanted->request));
+    }
+}
+
+void Service::shut_down(const publish::RequestText& text)
+{
+    Origin origin;
+    origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
+    origin.operations = {{"shutdown", "", ""}};
+    simulation::Reply reply;
+    reply.done = true, reply.step = simulation_->tick(), reply.revision = simulation_->revision();
+    note(origin, reply);
+    ++done_;
+    answer_client(origin, std::move(reply));
+    shutdown_ = true;
+}
+
+void Service::refuse(const publish::RequestText& text, Errors errors)
+{
+    Origin origin;
+    origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
+    for (const publish::OperationText& op : text.operations) origin.operations.push_back({op.verb, op.target, op.argument});
+    simulation::Reply reply;
+    reply.errors = std::move(errors), reply.step = simulation_->tick(), reply.revision = simulation_->revision();
+    ++refused_;
+    note(origin, reply);
+    answer_client(origin, std::move(reply));
+}
+
+void Service::answer_client(const Origin& origin, simulation::Reply reply)
+{
+    publish::Answer answer;
+    answer.client = origin.client, answer.number = origin.number, answer.run = simulation_->run(), answer.time = simulation_->time();
+    answer.waited_ns = static_cast<double>(simulation::now_ns()) - static_cast<double>(origin.arrived_ns) - reply.pause_ns;
+    answer.reply = std::move(reply);
+    bus_->answer(std::move(answer));
+}
+
+bool Service::answer()
+{
+    bool fine = true;
+    for (simulation::Reply& reply : simulation_->take_replies())
+    {
+        const auto found = waiting_.find(reply.request);
+        if (found == waiting_.end()) continue;  // nobody asked for it under this number
+        const Origin origin = std::move(found->second);
+        waiting_.erase(found);
+        ++(reply.done ? done_ : refused_);
+        note(origin, reply);
+        for (const simulation::SwapReport& swap : reply.swaps) log_swap(reply, swap);
+        if (origin.from_bus)
+            answer_client(origin, std::move(reply));
+        else
+            fine = fine && reply.done;
+    }
+    return fine;
+}
+
+void Service::note(const Origin& origin, const simulation::Reply& reply)
+{
+    for (const Error& e : reply.errors)
+    {
+        // What a client gets wrong is told to the client; the log of the server does not fill up with it.
+        if (origin.from_bus)
+            spdlog::info("request refused at step {}: {}", reply.step, e.text());
+        else
+            spdlog::error("request refused at step {}: {}", reply.step, e.text());
+    }
+    publish::EventRecord event;
+    event.time = simulation_->time();
+    if (!reply.done)
+    {
+        event.kind = "request.refused", event.severity = Severity::Warning;
+        event.component = origin.operations.empty() ? "" : origin.operations.front().target;
+        event.message = reply.errors.empty() ? "" : reply.errors.front().text();
+        collector_.note(*simulation_, std::move(event));
+        return;
+    }
+    std::size_t swaps = 0;
+    for (const control::Description& op : origin.operations)
+    {
+        event.kind = "request." + op.verb, event.component = op.target, event.message = op.argument;
+        if (op.verb == "swap" && swaps < reply.swaps.size())
+        {
+            event.message = reply.swaps[swaps].from + " -> " + reply.swaps[swaps].to;
+            ++swaps;
+        }
+        collector_.note(*simulation_, event);
+    }
+}
+
+void Service::publish(bool stepped) { collector_.collect(*simulation_, simulation_->take_changes(), stepped); }
+
+void Service::publish_status(double rate_reached, double slipped, bool slipping)
+{
+    if (!bus_) return;
+    publish::Status s;
+    s.scene_file = scene_file_, s.run = simulation_->run(), s.revision = simulation_->revision();
+    s.step = simulation_->tick(), s.time = simulation_->time(), s.dt = simulation_->dt();
+    s.paused = simulation_->paused(), s.rate_asked = simulation_->rate(), s.rate_reached = rate_reached;
+    s.slipped = slipped, s.slipping = slipping, s.states_per_second = states_per_second_, s.threads = threads_;
+    s.last_event = collector_.last_event(), s.last_collision = collector_.last_collision();
+    s.requests_done = done_, s.requests_refused = refused_;
+    collector_.status(std::move(s));
+}
+
+void Service::show(std::uint32_t component, std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba)
+{
+    publish::Image image;
+    image.camera = simulation_->world().id_of(component), image.run = simulation_->run();
+    image.step = simulation_->tick() + 1, image.time = simulation_->time() + simulation_->dt();
+    image.width = width, image.height = height, image.rgba = std::move(rgba);
+    bus_->image(std::move(image));
+}
+
+}  // namespace plab::daemon

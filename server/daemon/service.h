@@ -1,0 +1,72 @@
+/// What plabd does for clients: requests in, answers and records out. Without a bus it serves the command line only.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "bus/bus.h"
+#include "control/operations.h"
+#include "daemon/options.h"
+#include "daemon/wake.h"
+#include "plugins/library.h"
+#include "publish/collector.h"
+
+namespace plab::daemon
+{
+
+class Service final : public ImageSink
+{
+public:
+    Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const Options& options);
+
+    /// Loads bus.so and joins. `wake` must outlive this.
+    Result<void> open_bus(const Options& options, const Wake& wake);
+
+    /// A request of the command line.
+    void post(simulation::Request request);
+    /// Requests that have arrived on the bus go to the simulation; those that are nonsense are refused.
+    void take_requests();
+    /// Answers those that took effect (or did not): to clients, as events, as log lines. False if one of the command line
+    /// was refused: a run that was asked for something else must not pass for it.
+    bool answer();
+    /// Records for observers: after a step, or (`stepped` false) after requests between steps.
+    void publish(bool stepped);
+    void publish_status(double rate_reached, double slipped, bool slipping);
+
+    bool shutdown_wanted() const { return shutdown_; }
+    /// Why the server must end, if it must.
+    std::string lost() const { return bus_ ? bus_->lost() : std::string(); }
+    std::uint64_t answered() const { return done_ + refused_; }
+
+    // ImageSink: pictures of cameras in the scene.
+    bool wanted() const override { return bus_ && bus_->wants(publish::Stream::Images); }
+    void show(std::uint32_t component, std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) override;
+
+private:
+    struct Origin
+    {
+        bool from_bus = false;
+        publish::ClientId client{};
+        std::uint64_t number = 0;
+        std::int64_t arrived_ns = 0;
+        std::vector<control::Description> operations;
+    };
+    void refuse(const publish::RequestText& text, Errors errors);
+    void answer_client(const Origin& origin, simulation::Reply reply);
+    void shut_down(const publish::RequestText& text);
+    void note(const Origin& origin, const simulation::Reply& reply);
+
+    simulation::Simulation* simulation_;
+    plugins::PluginLibrary* library_;
+    std::string scene_file_;
+    double states_per_second_;
+    std::uint32_t threads_;
+    plugins::Module module_;  // goes after bus_
+    std::unique_ptr<bus::Bus> bus_;
+    publish::Collector collector_;
+    std::map<std::uint64_t, Origin> waiting_;
+    std::uint64_t last_request_ = 0, done_ = 0, refused_ = 0;
+    bool shutdown_ = false;
+};
+
+}  // namespace plab::daemon

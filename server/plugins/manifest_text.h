@@ -1,0 +1,37 @@
+/// The lines of a manifest, one at a time. Its format stands in manifest.h.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/type_summary.h"
+#include "plab/result.h"
+
+namespace plab::plugins
+{
+
+/// Collects what the lines say. An error carries only a reason; its line is the caller's to know.
+class ManifestReader
+{
+public:
+    /// One line behind the header.
+    Result<void> add(std::string_view line);
+    /// What was read. An error if it does not make a manifest: no plugin, a type twice.
+    Result<std::vector<model::TypeSummary>> finish();
+
+private:
+    using Cells = std::vector<std::string>;
+    Result<void> add_plugin(Cells& cells);
+    Result<void> add_type(Cells& cells);
+    Result<void> add_role(Cells& cells);
+    Result<void> add_field(Cells& cells);
+
+    std::string plugin_;
+    std::vector<model::TypeSummary> types_;
+};
+
+/// All lines behind the header, the types in the order in which they stand.
+std::string manifest_lines(const std::string& plugin, const std::vector<model::TypeSummary>& types);
+
+}  // namespace plab::plugins

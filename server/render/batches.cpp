@@ -1,0 +1,156 @@
+#include "batches.h"
+
+#include <cstddef>
+
+namespace plab::render
+{
+namespace
+{
+
+constexpr int kFinestSphere = 5;
+constexpr int kCylinderSides = 64;
+
+void attribute(GLuint index, GLint size, GLsizei stride, std::size_t offset, GLuint divisor)
+{
+    glEnableVertexAttribArray(index);
+    glVertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, stride, reinterpret_cast<const void*>(offset));
+    glVertexAttribDivisor(index, divisor);
+}
+
+template <class T>
+void fill(GLenum target, const Buffer& buffer, const std::vector<T>& data, GLenum usage)
+{
+    glBindBuffer(target, buffer.name());
+    glBufferData(target, static_cast<GLsizeiptr>(data.size() * sizeof(T)), data.data(), usage);
+}
+
+std::array<float, 3> floats(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+Vec3 scale_of(const Item& item)
+{
+    switch (item.form)
+    {
+        case Form::Sphere:
+            return {item.size.x, item.size.x, item.size.x};
+        case Form::Cylinder:
+            return {item.size.x, item.size.x, item.size.z};
+        case Form::Mesh:
+            return {1, 1, 1};
+        default:
+            return item.size;
+    }
+}
+
+Instance instance_of(const Item& item, const Frame& frame)
+{
+    const Quat& q = item.pose.q;
+    return {floats(frame.from_eye(item.pose.p)),
+            {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)},
+            floats(scale_of(item)),
+            floats(item.color)};
+}
+
+/// As many triangles as keep the outline within about a third of a pixel of the circle.
+std::size_t sphere_level(double radius, const Vec3& from_eye, double pixels_per_radian)
+{
+    const double pixels = radius / std::fmax(length(from_eye), 1e-9) * pixels_per_radian;
+    return pixels < 5 ? 0 : pixels < 24 ? 1 : pixels < 100 ? 2 : pixels < 400 ? 3 : 4;
+}
+
+}  // namespace
+
+Batch Batch::make(const Surface& surface)
+{
+    Batch out;
+    out.array_ = VertexArray::make();
+    out.corners_ = Buffer::make(), out.triangles_ = Buffer::make(), out.instance_buffer_ = Buffer::make();
+    out.count_ = static_cast<GLsizei>(surface.triangles.size());
+    glBindVertexArray(out.array_.name());
+    fill(GL_ARRAY_BUFFER, out.corners_, surface.corners, GL_STATIC_DRAW);
+    attribute(0, 3, sizeof(Corner), offsetof(Corner, position), 0);
+    attribute(1, 3, sizeof(Corner), offsetof(Corner, normal), 0);
+    fill(GL_ELEMENT_ARRAY_BUFFER, out.triangles_, surface.triangles, GL_STATIC_DRAW);
+    glBindBuffer(GL_ARRAY_BUFFER, out.instance_buffer_.name());
+    attribute(2, 3, sizeof(Instance), offsetof(Instance, place), 1);
+    attribute(3, 4, sizeof(Instance), offsetof(Instance, turn), 1);
+    attribute(4, 3, sizeof(Instance), offsetof(Instance, size), 1);
+    attribute(5, 3, sizeof(Instance), offsetof(Instance, color), 1);
+    glBindVertexArray(0);
+    return out;
+}
+
+void Batch::upload() const
+{
+    if (!instances_.empty()) fill(GL_ARRAY_BUFFER, instance_buffer_, instances_, GL_STREAM_DRAW);
+}
+
+void Batch::draw() const
+{
+    if (instances_.empty()) return;
+    glBindVertexArray(array_.name());
+    glDrawElementsInstanced(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(instances_.size()));
+}
+
+Batches Batches::make()
+{
+    Batches out;
+    for (int level = 1; level <= kFinestSphere; ++level) out.spheres_.push_back(Batch::make(unit_sphere(level)));
+    out.box_and_cylinder_.push_back(Batch::make(unit_box()));
+    out.box_and_cylinder_.push_back(Batch::make(unit_cylinder(kCylinderSides)));
+    return out;
+}
+
+Result<void> Batches::keep_meshes(const Drawing& drawing)
+{
+    if (kept_ && revision_ == drawing.meshes_revision && meshes_.size() == drawing.meshes.size()) return {};
+    kept_ = false;
+    meshes_.clear(), mesh_radii_.clear();
+    for (const Mesh& mesh : drawing.meshes)
+    {
+        const auto surface = surface_of(mesh);
+        if (!surface) return reason("mesh " + std::to_string(meshes_.size()) + ": " + surface.error().reason);
+        meshes_.push_back(Batch::make(*surface));
+        mesh_radii_.push_back(radius_of(mesh));
+    }
+    revision_ = drawing.meshes_revision, kept_ = true;
+    return {};
+}
+
+std::vector<Batch*> Batches::all()
+{
+    std::vector<Batch*> out;
+    for (auto* group : {&spheres_, &box_and_cylinder_, &meshes_})
+        for (Batch& batch : *group) out.push_back(&batch);
+    return out;
+}
+
+Batch& Batches::batch_of(const Item& item, const Frame& frame)
+{
+    if (item.form == Form::Mesh) return meshes_[item.mesh];
+    if (item.form == Form::Box) return box_and_cylinder_[0];
+    if (item.form == Form::Cylinder) return box_and_cylinder_[1];
+    return spheres_[sphere_level(item.size.x, frame.from_eye(item.pose.p), frame.pixels_per_radian)];
+}
+
+Result<void> Batches::sort(const Drawing& drawing, const Frame& frame)
+{
+    for (Batch* batch : all()) batch->clear();
+    for (const Item& item : drawing.items)
+    {
+        if (item.form == Form::Plane || !can_be_drawn(item)) continue;
+        if (item.form == Form::Mesh && item.mesh >= meshes_.size())
+            return reason("an item names mesh " + std::to_string(item.mesh) + "; there are " + std::to_string(meshes_.size()) +
+                          ", numbered from 0");
+        batch_of(item, frame).add(instance_of(item, frame));
+    }
+    for (const Batch* batch : all()) batch->upload();
+    return {};
+}
+
+void Batches::draw() const
+{
+    for (const auto* group : {&spheres_, &box_and_cylinder_, &meshes_})
+        for (const Batch& batch : *group) batch.draw();
+}
+
+}  // namespace plab::render

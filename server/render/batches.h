@@ -1,0 +1,66 @@
+/// Items sorted into draws: one per surface, with all its instances.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "forms.h"
+#include "frame.h"
+#include "gl.h"
+
+namespace plab::render
+{
+
+/// What the vertex shader gets for each item, as it lies in memory.
+struct Instance
+{
+    std::array<float, 3> place;  ///< relative to the eye
+    std::array<float, 4> turn;   ///< x y z w
+    std::array<float, 3> size;
+    std::array<float, 3> color;
+};
+
+/// A surface on OpenGL's side, and the items that look like it in this picture.
+class Batch
+{
+public:
+    static Batch make(const Surface& surface);
+    void clear() { instances_.clear(); }
+    void add(const Instance& instance) { instances_.push_back(instance); }
+    void upload() const;
+    void draw() const;
+
+private:
+    Batch() = default;
+
+    VertexArray array_;
+    Buffer corners_, triangles_, instance_buffer_;
+    GLsizei count_ = 0;
+    std::vector<Instance> instances_;
+};
+
+class Batches
+{
+public:
+    static Batches make();
+    /// Takes over the drawing's meshes if their revision is another than before.
+    Result<void> keep_meshes(const Drawing& drawing);
+    const std::vector<double>& mesh_radii() const { return mesh_radii_; }
+    /// Everything but planes; refuses an item whose mesh is not there.
+    Result<void> sort(const Drawing& drawing, const Frame& frame);
+    void draw() const;
+
+private:
+    Batches() = default;
+    Batch& batch_of(const Item& item, const Frame& frame);
+    std::vector<Batch*> all();
+
+    std::vector<Batch> spheres_;  ///< from coarse to fine
+    std::vector<Batch> box_and_cylinder_;
+    std::vector<Batch> meshes_;
+    std::vector<double> mesh_radii_;
+    std::uint64_t revision_ = 0;
+    bool kept_ = false;
+};
+
+}  // namespace plab::render

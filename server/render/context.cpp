@@ -1,0 +1,40 @@
+#include "context.h"
+
+#include <array>
+
+namespace plab::render
+{
+namespace
+{
+
+/// OSMesa wants an image of its own; we draw into framebuffer objects and never look at it.
+constexpr GLsizei kDummySize = 16;
+
+}  // namespace
+
+Result<Context> Context::make()
+{
+    constexpr int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3,
+                              OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    const OSMesaContext made = OSMesaCreateContextAttribs(wanted, nullptr);
+    if (!made) return reason("OSMesa makes no context of OpenGL 3.3; Mesa 17 or newer with llvmpipe or softpipe is needed");
+    return Context(made);
+}
+
+Context::~Context()
+{
+    if (context_) OSMesaDestroyContext(context_);
+}
+
+Result<void> Context::acquire()
+{
+    // Shared by all contexts of a thread: nobody reads it.
+    thread_local std::array<std::uint8_t, 4 * kDummySize * kDummySize> dummy;
+    if (!OSMesaMakeCurrent(context_, dummy.data(), GL_UNSIGNED_BYTE, kDummySize, kDummySize))
+        return reason("OSMesa cannot make its context current");
+    return {};
+}
+
+void Context::release() { OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
+
+}  // namespace plab::render

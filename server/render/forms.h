@@ -1,0 +1,37 @@
+/// What is drawn, as triangles with normals: primitives of unit size, and meshes as they were given.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "plab/result.h"
+#include "render/render.h"
+
+namespace plab::render
+{
+
+struct Corner
+{
+    std::array<float, 3> position, normal;
+    friend bool operator==(const Corner&, const Corner&) = default;
+};
+
+struct Surface
+{
+    std::vector<Corner> corners;
+    std::vector<std::uint32_t> triangles;
+};
+
+/// Radius 1; 20 * 4^level triangles.
+Surface unit_sphere(int level);
+/// Half extents 1.
+Surface unit_box();
+/// Radius 1, from z = -1 to 1.
+Surface unit_cylinder(int sides);
+
+/// The mesh with normals: faces that meet at less than a crease's angle are shaded as one smooth surface, sharper edges
+/// stay sharp. Refuses triangles that name vertices which are not there.
+Result<Surface> surface_of(const Mesh& mesh);
+
+}  // namespace plab::render

@@ -1,0 +1,35 @@
+/// A linked shader program and its uniforms.
+#pragma once
+
+#include <string>
+
+#include "gl.h"
+#include "matrix.h"
+#include "plab/result.h"
+
+namespace plab::render
+{
+
+class Program
+{
+public:
+    Program() = default;
+    /// `name` is for messages; the compiler's log is part of them.
+    static Result<Program> make(const std::string& name, const std::string& vertex, const std::string& fragment);
+
+    void use() const { glUseProgram(program_.name()); }
+    // Each sets a uniform of the program in use; one that the compiler removed is none of our business.
+    void set(const char* name, const Mat4& m) const { glUniformMatrix4fv(at(name), 1, GL_FALSE, m.m); }
+    void set(const char* name, const Vec3& v) const;
+    void set(const char* name, double a, double b) const { glUniform2f(at(name), static_cast<float>(a), static_cast<float>(b)); }
+    void set(const char* name, double a) const { glUniform1f(at(name), static_cast<float>(a)); }
+    void set_unit(const char* name, int texture_unit) const { glUniform1i(at(name), texture_unit); }
+
+private:
+    explicit Program(ProgramName program) : program_(std::move(program)) {}
+    GLint at(const char* name) const { return glGetUniformLocation(program_.name(), name); }
+
+    ProgramName program_;
+};
+
+}  // namespace plab::render

@@ -1,0 +1,124 @@
+// Requests in words: what each verb becomes, and that nothing that a client wrote is passed over.
+#include "control/operations.h"
+
+#include <doctest/doctest.h>
+
+#include "plugins/library.h"
+
+using namespace plab;
+using publish::OperationText;
+
+namespace
+{
+
+Result<control::Wanted> wanted(std::vector<OperationText> operations)
+{
+    plugins::PluginLibrary library;
+    publish::RequestText text;
+    text.number = 1, text.operations = std::move(operations);
+    return control::wanted_of(text, library);
+}
+
+template <class T>
+T only(const OperationText& op)
+{
+    const auto out = wanted({op});
+    REQUIRE_MESSAGE(out.ok(), out.error().text());
+    REQUIRE(out->request.operations.size() == 1);
+    return std::get<T>(out->request.operations.front());
+}
+
+std::string refusal(const OperationText& op)
+{
+    const auto out = wanted({op});
+    REQUIRE_FALSE(out.ok());
+    return out.error().text();
+}
+
+}  // namespace
+
+TEST_CASE("each verb becomes its operation")
+{
+    CHECK(only<simulation::RemoveOperation>({"remove", "red", "", "", {}}).id == "red");
+    const auto swap = only<simulation::SwapOperation>({"swap", "gears", "Constraint/X", "", {{"a", "1"}, {"b", "2 m"}}});
+    CHECK(swap.type == "Constraint/X");
+    REQUIRE(swap.values.size() == 2);
+    CHECK(std::get<std::string>(swap.values[1].value) == "2 m");
+    CHECK(only<simulation::StepOperation>({"step", "", "17", "", {}}).steps == 17);
+    CHECK(only<simulation::RateOperation>({"rate", "", "max", "", {}}).factor == 0);
+    CHECK(only<simulation::RateOperation>({"rate", "", "real", "", {}}).factor == 1);
+    CHECK(only<simulation::RateOperation>({"rate", "", "2.5", "", {}}).factor == 2.5);
+    CHECK(only<simulation::StepLengthOperation>({"dt", "", "1/480", "", {}}).dt.denominator == 480);
+    (void)only<simulation::PauseOperation>({"pause", "", "", "", {}});
+    (void)only<simulation::ResumeOperation>({"resume", "", "", "", {}});
+    (void)only<simulation::ResetOperation>({"reset", "", "", "", {}});
+    const auto add =
+        only<simulation::AddBlueprintOperation>({"add", "", "", "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>", {}});
+    CHECK(add.blueprint.components.size() == 1);
+    const auto load = only<simulation::LoadOperation>({"load", "", "a.xml", "<plab version=\"1\"><scene dt=\"1/100\"/></plab>", {}});
+    CHECK(load.scene.settings.dt.denominator == 100);
+    CHECK(wanted({{"shutdown", "", "", "", {}}})->shutdown);
+}
+
+TEST_CASE("set makes one operation of each value")
+{
+    const auto out = wanted({{"set", "red", "", "", {{"mass", "2 kg"}, {"color", "1 0 0"}}}});
+    REQUIRE(out.ok());
+    REQUIRE(out->request.operations.size() == 2);
+    CHECK(std::get<simulation::SetOperation>(out->request.operations[1]).name == "color");
+}
+
+TEST_CASE("a push in N s at a point, or of a shaft in N m s")
+{
+    const auto push = only<simulation::PushOperation>({"push", "red", "", "", {{"impulse", "1 2 3"}, {"point", "0 0 5 cm"}}});
+    CHECK(push.impulse == Vec3{1, 2, 3});
+    REQUIRE(push.point.has_value());
+    CHECK(push.point->z == doctest::Approx(0.05));
+    CHECK(only<simulation::PushOperation>({"push", "axle", "", "", {{"impulse", "0.5"}}}).impulse == Vec3{0.5, 0, 0});
+}
+
+TEST_CASE("what a verb does not use is refused, and so is what it lacks")
+{
+    CHECK(refusal({"pause", "red", "", "", {}}) == "operation 1 (pause): takes no target");
+    CHECK(refusal({"remove", "red", "now", "", {}}) == "operation 1 (remove): takes no argument");
+    CHECK(refusal({"swap", "a", "T/x", "<x/>", {}}) == "operation 1 (swap): takes no blueprint");
+    CHECK(refusal({"reset", "", "", "", {{"a", "1"}}}) == "operation 1 (reset): takes no values");
+    CHECK(refusal({"swap", "a", "", "", {}}) == "operation 1 (swap): needs an argument: the new type");
+    CHECK(refusal({"remove", "", "", "", {}}) == "operation 1 (remove): needs a target: the component");
+    CHECK(refusal({"set", "red", "", "", {}}) == "operation 1 (set): needs values: names and texts");
+    CHECK(refusal({"set", "red", "", "", {{"mass", "1"}, {"mass", "2"}}}) == "operation 1 (set): gives 'mass' twice");
+    CHECK(refusal({"add", "", "", "", {}}) == "operation 1 (add): needs a blueprint: XML text");
+    CHECK(refusal({"push", "red", "", "", {{"point", "0 0 0"}}}).find("needs the value impulse") != std::string::npos);
+    CHECK(refusal({"push", "red", "", "", {{"impulse", "1 nan 0"}}}).find("impulse") != std::string::npos);
+    for (const char* bad : {"", "0", "-1", "1.5", "1e3", "99999999999999999999", "7 "})
+        CHECK(wanted({{"step", "", bad, "", {}}}).ok() == false);
+    for (const char* bad : {"0", "-1", "fast", "inf", "nan", "1 ", "1e300"}) CHECK(wanted({{"rate", "", bad, "", {}}}).ok() == false);
+    CHECK(refusal({"swpa", "a", "T", "", {}}) == "operation 1 (swpa): 'swpa' is no operation, did you mean 'swap'?");
+}
+
+TEST_CASE("errors of a blueprint keep their place, all of them are told, and shutdown stands alone")
+{
+    const auto out = wanted({{"load", "", "bad.xml", "<plab version=\"1\">\n  <component id=\"x\" type=\"No/Such\"/>\n</plab>", {}},
+                             {"step", "", "0", "", {}}});
+    REQUIRE_FALSE(out.ok());
+    REQUIRE(out.errors().size() == 2);
+    CHECK(out.errors()[0].text().rfind("bad.xml:2:", 0) == 0);
+    CHECK(out.errors()[1].text().rfind("operation 2 (step)", 0) == 0);
+    CHECK(wanted({{"shutdown", "", "", "", {}}, {"pause", "", "", "", {}}}).ok() == false);
+}
+
+TEST_CASE("step and revision that a request names")
+{
+    plugins::PluginLibrary library;
+    publish::RequestText text;
+    text.at = 0, text.revision = 3;
+    text.operations = {{"pause", "", "", "", {}}};
+    const auto out = control::wanted_of(text, library);
+    REQUIRE(out.ok());
+    CHECK(out->request.at == 0);
+    CHECK(out->request.revision == 3u);
+    text.at = text.revision = -1;
+    const auto free = control::wanted_of(text, library);
+    CHECK_FALSE(free->request.at.has_value());
+    CHECK_FALSE(free->request.revision.has_value());
+}
