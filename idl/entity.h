@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -121,8 +122,9 @@ public:
     }
     /// Hands every waiting sample to `handle(const T&, const dds_sample_info_t&)`; valid_data false means that only the
     /// key is filled (the instance was disposed of, or its writer is gone). Returns their number, or an error code.
+    /// Stops after the batch in which `most` is reached: who floods a reader must not keep its thread for ever.
     template <class Handle>
-    dds_return_t take(Handle&& handle)
+    dds_return_t take(Handle&& handle, dds_return_t most = std::numeric_limits<dds_return_t>::max())
     {
         constexpr std::size_t kBatch = 64;
         dds_return_t total = 0;
@@ -136,7 +138,7 @@ public:
                 handle(*static_cast<const T*>(samples[i]), static_cast<const dds_sample_info_t&>(infos[i]));
             (void)dds_return_loan(reader_.get(), samples.data(), n);
             total += n;
-            if (static_cast<std::size_t>(n) < kBatch) return total;
+            if (static_cast<std::size_t>(n) < kBatch || total >= most) return total;
         }
     }
     /// Writers that are matched now.

@@ -15,10 +15,10 @@ Exit Context::join()
     return Exit::Done;
 }
 
-Exit Context::connect()
+Exit Context::connect(double otherwise)
 {
     if (const Exit e = join(); e != Exit::Done) return e;
-    if (auto found = session_->find_server(settings.link, timeout(), stop()); !found) return fail(Exit::NoServer, found.errors());
+    if (auto found = session_->find_server(settings.link, timeout(otherwise), stop()); !found) return fail(Exit::NoServer, found.errors());
     return Exit::Done;
 }
 

@@ -48,10 +48,12 @@ public:
     Console console;
     Action action;  ///< of the command that was named; main runs it when the command line is parsed
 
-    /// Joins and finds the server. Prints why not, and gives the exit code; Done: session() is there.
-    Exit connect();
+    /// Joins and finds the server, within timeout(otherwise). Prints why not and gives the exit code; Done: session()
+    /// is there.
+    Exit connect(double otherwise = kTimeout);
     /// Joins the domain only: for commands that look at no particular server.
     Exit join();
+    bool is_connected() const { return session_.has_value(); }
     const link::Session& session() const { return *session_; }
 
     link::Seconds timeout(double otherwise = kTimeout) const { return link::Seconds(settings.timeout.value_or(otherwise)); }

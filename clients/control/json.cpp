@@ -7,10 +7,7 @@ namespace
 
 Json outcome(const link::StepOutcome& o)
 {
-    return {{"energy", o.energy},
-            {"momentum", {o.momentum[0], o.momentum[1], o.momentum[2]}},
-            {"error", o.error},
-            {"cost_ns", o.cost_ns}};
+    return {{"energy", o.energy}, {"momentum", {o.momentum[0], o.momentum[1], o.momentum[2]}}, {"error", o.error}, {"cost_ns", o.cost_ns}};
 }
 
 Json roles(const std::vector<link::Participants>& participants)
@@ -22,8 +19,14 @@ Json roles(const std::vector<link::Participants>& participants)
 
 Json field(const link::FieldInfo& f)
 {
-    return {{"name", f.name},         {"kind", f.kind},         {"value_type", f.value_type}, {"unit", f.unit},
-            {"fallback", f.fallback}, {"required", f.required}, {"rule", f.rule},             {"doc", f.doc}};
+    return {{"name", f.name},
+            {"kind", f.kind},
+            {"value_type", f.value_type},
+            {"unit", f.unit},
+            {"fallback", f.fallback},
+            {"required", f.required},
+            {"rule", f.rule},
+            {"doc", f.doc}};
 }
 
 Json role(const link::RoleInfo& r)
@@ -126,8 +129,8 @@ Json json_of(const link::Interaction& i)
 
 Json json_of(const link::InteractionMetrics& m)
 {
-    return {{"requested", m.requested}, {"resolved", m.resolved}, {"cost_ns", m.cost_ns},         {"error", m.error},
-            {"work", m.work},           {"outputs", json_of(m.outputs)}};
+    return {{"requested", m.requested}, {"resolved", m.resolved}, {"cost_ns", m.cost_ns},
+            {"error", m.error},         {"work", m.work},         {"outputs", json_of(m.outputs)}};
 }
 
 Json json_of(const link::Metrics& m)
@@ -138,45 +141,58 @@ Json json_of(const link::Metrics& m)
         interactions[i.component] = json_of(i);
         interactions[i.component]["quarantined"] = i.quarantined;
     }
-    return {{"run", m.run},
-            {"revision", m.revision},
-            {"step", m.step},
-            {"time", m.time},
-            {"step_ns", m.step_ns},
-            {"real_time_factor", m.real_time_factor},
-            {"energy",
-             {{"kinetic", m.kinetic}, {"stored", m.stored}, {"work", m.work}, {"of_requests", m.of_requests}, {"unexplained", m.unexplained}}},
-            {"momentum", json_of(m.momentum)},
-            {"angular_momentum", json_of(m.angular_momentum)},
-            {"residual", m.residual},
-            {"deepest", m.deepest},
-            {"contacts", m.contacts},
-            {"interactions", interactions}};
+    return {
+        {"run", m.run},
+        {"revision", m.revision},
+        {"step", m.step},
+        {"time", m.time},
+        {"step_ns", m.step_ns},
+        {"real_time_factor", m.real_time_factor},
+        {"energy",
+         {{"kinetic", m.kinetic}, {"stored", m.stored}, {"work", m.work}, {"of_requests", m.of_requests}, {"unexplained", m.unexplained}}},
+        {"momentum", json_of(m.momentum)},
+        {"angular_momentum", json_of(m.angular_momentum)},
+        {"residual", m.residual},
+        {"deepest", m.deepest},
+        {"contacts", m.contacts},
+        {"interactions", interactions}};
 }
 
 Json json_of(const link::Type& t)
 {
-    return {{"name", t.name},     {"family", t.family}, {"doc", t.doc},       {"plugin", t.plugin},
-            {"loaded", t.loaded}, {"order", t.order},   {"cost", t.cost},     {"limits", t.limits},
-            {"source", t.source}, {"roles", array(t.roles, role)}, {"fields", array(t.fields, field)}};
+    return {{"name", t.name},
+            {"family", t.family},
+            {"doc", t.doc},
+            {"plugin", t.plugin},
+            {"loaded", t.loaded},
+            {"order", t.order},
+            {"cost", t.cost},
+            {"limits", t.limits},
+            {"source", t.source},
+            {"roles", array(t.roles, role)},
+            {"fields", array(t.fields, field)}};
 }
 
 Json json_of(const link::SwapReport& s)
 {
     Json fields = Json::object();
     for (const link::FieldFate& f : s.fields) fields[f.name] = f.fate;
-    return {{"component", s.component},       {"from", s.from},
-            {"to", s.to},                     {"fields", fields},
-            {"energy_before", s.energy_before}, {"with_old", outcome(s.with_old)},
+    return {{"component", s.component},
+            {"from", s.from},
+            {"to", s.to},
+            {"fields", fields},
+            {"energy_before", s.energy_before},
+            {"with_old", outcome(s.with_old)},
             {"with_new", outcome(s.with_new)}};
 }
 
 Json json_of(const link::Reply& r)
 {
-    return {{"outcome", r.outcome},   {"repeated", r.repeated}, {"reasons", r.reasons},
-            {"run", r.run},           {"revision", r.revision}, {"step", r.step},
-            {"time", r.time},         {"pause_ns", r.pause_ns}, {"waited_ns", r.waited_ns},
-            {"swaps", array(r.swaps, [](const link::SwapReport& s) { return json_of(s); })}};
+    return {{"outcome", r.outcome},     {"repeated", r.repeated},
+            {"reasons", r.reasons},     {"run", r.run},
+            {"revision", r.revision},   {"step", r.step},
+            {"time", r.time},           {"pause_ns", r.pause_ns},
+            {"waited_ns", r.waited_ns}, {"swaps", array(r.swaps, [](const link::SwapReport& s) { return json_of(s); })}};
 }
 
 std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }

@@ -105,7 +105,7 @@ Result<void> Catalogue::fetch(Seconds timeout, const Stop& stop)
         // Shapes and types have no count of their own: their burst must have ended.
         const bool counted = !has(parts_, Part::Types) && !has(parts_, Part::Metrics);
         if (gap.empty() && (counted || Clock::now() - last >= kQuiet)) return {};
-        if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not tell everything: got no " + gap);
+        if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not tell everything; missing: " + gap);
         if (stop && stop()) return reason("interrupted");
         const Seconds left = std::min(kSlice, Seconds(end - Clock::now()));
         (void)dds_waitset_wait(waitset_.get(), nullptr, 0, std::max<dds_duration_t>(0, Session::duration(left)));

@@ -71,8 +71,7 @@ std::string shortest(T value)
 template <class T>
 std::string json_of(T value)
 {
-    if (std::isnan(value)) return "\"NaN\"";
-    if (std::isinf(value)) return value > 0 ? "\"Infinity\"" : "\"-Infinity\"";
+    if (!std::isfinite(value)) return "null";
     return shortest(value);
 }
 

@@ -20,7 +20,7 @@ std::string terminal_text(std::string_view text);
 
 /// Quoted and escaped; always valid UTF-8.
 std::string json_text(std::string_view text);
-/// JSON has no infinities: they, and what is no number, become the strings "Infinity", "-Infinity" and "NaN".
+/// JSON has no infinities: they, and what is no number, become null.
 std::string json_number(double value);
 std::string json_number(float value);
 
@@ -32,31 +32,42 @@ std::string json_number(float value);
 class JsonWriter
 {
 public:
-    JsonWriter& open(char bracket) { return raw(bracket == '{' ? "{" : "["), is_first_ = true, *this; }
+    JsonWriter& open(char bracket)
+    {
+        put(std::string_view(&bracket, 1));
+        is_first_ = true;
+        return *this;
+    }
     JsonWriter& close(char bracket)
     {
         text_ += bracket;
         is_first_ = false;
         return *this;
     }
-    JsonWriter& key(std::string_view name) { return raw(json_text(name) + ":"), is_first_ = true, *this; }
-    JsonWriter& value(std::string_view text) { return raw(json_text(text)); }
-    JsonWriter& value(const char* text) { return raw(json_text(text == nullptr ? "" : text)); }
+    JsonWriter& key(std::string_view name)
+    {
+        put(json_text(name) + ":");
+        is_first_ = true;
+        return *this;
+    }
+    JsonWriter& value(std::string_view text) { return put(json_text(text)); }
+    JsonWriter& value(const char* text) { return put(json_text(text == nullptr ? "" : text)); }
     template <class T>
     requires std::is_arithmetic_v<T> JsonWriter& value(T number)
     {
         if constexpr (std::is_same_v<T, bool>)
-            return raw(number ? "true" : "false");
+            return put(number ? "true" : "false");
         else if constexpr (std::is_floating_point_v<T>)
-            return raw(json_number(number));
+            return put(json_number(number));
         else
-            return raw(std::to_string(number));
+            return put(std::to_string(number));
     }
+    /// A value that is JSON already.
+    JsonWriter& json(std::string_view ready) { return put(ready); }
     std::string take() { return std::exchange(text_, {}); }
 
 private:
-    /// A complete value, or a beginning.
-    JsonWriter& raw(std::string_view part)
+    JsonWriter& put(std::string_view part)
     {
         if (!is_first_) text_ += ',';
         text_ += part;

@@ -123,10 +123,13 @@ Film::Film(Film&& other) noexcept
 
 Film::~Film()
 {
-    if (process_ < 0) return close_pipe();
-    (void)wait();
-    std::error_code ignored;
-    (void)std::filesystem::remove(partial_, ignored);
+    if (process_ >= 0)
+    {
+        (void)wait();
+        std::error_code ignored;
+        (void)std::filesystem::remove(partial_, ignored);
+    }
+    close_pipe();
 }
 
 Result<void> Film::add(const render::Picture& picture)
@@ -178,8 +181,8 @@ Result<void> Film::finish()
     std::error_code ignored;
     (void)std::filesystem::remove(partial_, ignored);
     if (status == 0) return reason("cannot write '" + file_ + "': " + error.message());
-    return reason("ffmpeg failed" + (status ? " with exit code " + std::to_string(*status) : std::string(": it was killed")) +
-                  ", '" + file_ + "' is not written");
+    return reason("ffmpeg failed" + (status ? " with exit code " + std::to_string(*status) : std::string(": it was killed")) + ", '" +
+                  file_ + "' is not written");
 }
 
 }  // namespace plab::view

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "idl/topics.h"
+
 namespace plab::view
 {
 namespace
@@ -111,8 +113,9 @@ void add_server(CLI::App& app, Options& options, Texts& texts)
 
 Result<void> take_vectors(const Texts& texts, ViewChoice& view)
 {
-    for (const auto& [name, text, target] : {std::tuple("--from", &texts.from, &view.from),
-                                             std::tuple("--look-at", &texts.look_at, &view.look_at), std::tuple("--up", &texts.up, &view.up)})
+    for (const auto& [name, text, target] :
+         {std::tuple("--from", &texts.from, &view.from), std::tuple("--look-at", &texts.look_at, &view.look_at),
+          std::tuple("--up", &texts.up, &view.up)})
     {
         if (text->empty()) continue;
         const auto vector = parse_vector(*text);
@@ -146,7 +149,8 @@ Result<void> take_task(const Texts& texts, Options& options)
     if (tasks > 1) return reason("makes pictures, frames or a film, one of them in a run");
     options.task = !texts.frames.empty() ? Task::Frames : !texts.film.empty() ? Task::Film : Task::Shots;
     options.target = options.task == Task::Frames ? texts.frames : texts.film;
-    if (options.task == Task::Shots && (options.duration || options.until)) return reason("--duration and --until are for --frames and --mp4");
+    if (options.task == Task::Shots && (options.duration || options.until))
+        return reason("--duration and --until are for --frames and --mp4");
     if (options.task == Task::Shots && texts.png.empty() && options.at) return reason("--at is for --png, --frames and --mp4");
     if (options.at && options.until && *options.until < *options.at) return reason("--until is before --at");
     return {};
@@ -206,6 +210,8 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options
     }
     if (texts.timeout) options.timeout = link::Seconds(*texts.timeout);
     options.captions = !texts.no_captions, options.ground = !texts.no_ground;
+    if (!options.link.server.empty() && !wire::is_server_name(options.link.server))
+        return ParseEnd{2, "plab-view: '" + options.link.server + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'\n"};
     for (const auto& taken : {take_vectors(texts, options.view), take_task(texts, options)})
         if (!taken) return ParseEnd{2, "plab-view: " + taken.error().reason + "\n"};
     return {};

@@ -22,11 +22,11 @@ struct Shot
 
 struct ViewChoice
 {
-    std::string camera;
-    std::optional<Vec3> from, look_at, up;  ///< W, m
-    std::optional<double> orbit;            ///< m; 0: as far as the scene needs
-    double orbit_period = 10;               ///< s, simulated
-    std::string track;                      ///< component id
+    std::string camera = {};
+    std::optional<Vec3> from = {}, look_at = {}, up = {};  ///< W, m
+    std::optional<double> orbit = {};                      ///< m; 0: as far as the scene needs
+    double orbit_period = 10;                              ///< s, simulated
+    std::string track = {};                                ///< component id
 };
 
 enum class Task : std::uint8_t

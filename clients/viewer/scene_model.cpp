@@ -85,6 +85,22 @@ Axle axle_of_inertia(double inertia)
     return {radius, std::clamp(radius / 4, 0.02, 0.1)};
 }
 
+State state_of_catalogue(const link::Snapshot& scene, const link::ServerInfo& server)
+{
+    State out{server.run, server.revision, server.step, server.time, {}, {}};
+    for (const auto& [id, object] : scene.objects)
+    {
+        if (object.is_shaft)
+            out.shafts.push_back({object.handle, angle_of(object)});
+        else if (object.motion != "static")
+            out.bodies.push_back({object.handle, {object.position, object.orientation}});
+    }
+    const auto by_handle = [](const auto& a, const auto& b) { return a.handle < b.handle; };
+    std::sort(out.bodies.begin(), out.bodies.end(), by_handle);
+    std::sort(out.shafts.begin(), out.shafts.end(), by_handle);
+    return out;
+}
+
 void SceneModel::use(std::shared_ptr<const link::Snapshot> scene)
 {
     if (scene == scene_) return;
@@ -169,8 +185,7 @@ render::Drawing& SceneModel::draw(const State& state)
     drawing_.items.clear();
     for (const Prop& prop : props_)
         if (const std::optional<Pose> X_WB = pose_of(prop, state))
-            for (const Part& part : prop.parts)
-                drawing_.items.push_back({part.form, *X_WB * part.X_BS, part.size, part.color, part.mesh});
+            for (const Part& part : prop.parts) drawing_.items.push_back({part.form, *X_WB * part.X_BS, part.size, part.color, part.mesh});
     drawing_.ground = look_.ground;
     drawing_.captions.clear();
     if (look_.captions)
@@ -195,25 +210,6 @@ std::optional<Vec3> SceneModel::position_of(const std::string& id, const State& 
             return pose ? std::optional(pose->p) : std::nullopt;
         }
     return {};
-}
-
-State SceneModel::state_of_catalogue() const
-{
-    State out;
-    if (!scene_) return out;
-    if (scene_->server)
-        out = {scene_->server->run, scene_->server->revision, scene_->server->step, scene_->server->time, {}, {}};
-    for (const auto& [id, object] : scene_->objects)
-    {
-        if (object.is_shaft)
-            out.shafts.push_back({object.handle, angle_of(object)});
-        else if (object.motion != "static")
-            out.bodies.push_back({object.handle, {object.position, object.orientation}});
-    }
-    const auto by_handle = [](const auto& a, const auto& b) { return a.handle < b.handle; };
-    std::sort(out.bodies.begin(), out.bodies.end(), by_handle);
-    std::sort(out.shafts.begin(), out.shafts.end(), by_handle);
-    return out;
 }
 
 }  // namespace plab::view

@@ -34,8 +34,6 @@ public:
     bool has_object(const std::string& id) const;
     /// Origin of an object (W, m); none if it has no place in this state.
     std::optional<Vec3> position_of(const std::string& id, const State& state) const;
-    /// Poses as the catalogue has them, for a server that sends no states.
-    State state_of_catalogue() const;
 
 private:
     struct Part
@@ -68,6 +66,9 @@ private:
     Captions captions_;
     render::Drawing drawing_;
 };
+
+/// Poses as the catalogue has them, for a server that is paused and sends no states.
+State state_of_catalogue(const link::Snapshot& scene, const link::ServerInfo& server);
 
 /// Colour of an object that names none: one of a few that go together, always the same for one id.
 Vec3 color_of_id(const std::string& id);

@@ -21,14 +21,15 @@ constexpr link::Parts kParts =
 Result<std::unique_ptr<Source>> Source::open(const link::Session& session, const Grid& grid, link::Seconds timeout, const link::Stop& stop)
 {
     std::unique_ptr<Source> out(new Source(session, grid));
-    auto frames = session.reader<plab_v1_Frame>();
-    if (!frames) return frames.errors();
-    out->frames_ = frames.take();
     auto catalogue = link::Catalogue::open(session, kParts);
     if (!catalogue) return catalogue.errors();
     out->catalogue_ = catalogue.take();
     if (auto fetched = out->catalogue_->fetch(timeout, stop); !fetched) return fetched.errors();
     out->take_catalogue();
+    // Only now: a reader of states that nobody empties keeps the last four.
+    auto frames = session.reader<plab_v1_Frame>();
+    if (!frames) return frames.errors();
+    out->frames_ = frames.take();
     out->thread_ = std::jthread([source = out.get()](const std::stop_token& token) { source->read(token); });
     return out;
 }

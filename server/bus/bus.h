@@ -14,9 +14,14 @@ struct BusOptions
     std::string version;            ///< of pLab
     std::uint32_t domain = 0;       ///< DDS domain
     std::string network_interface;  ///< empty: this host only
-    /// Wakes the step loop when a request has arrived. Called on a thread of the bus; must not wait.
+    /// Wakes the step loop when a request has arrived, or when somebody begins to watch a stream (a paused server may
+    /// want to show where it stands). Called on a thread of the bus; must not wait.
     void (*wake)(void*) = nullptr;
     void* wake_argument = nullptr;
+    /// A line for the server's log about trouble on the bus, at most a few in a second. Called on a thread of the bus.
+    /// Null: standard error.
+    void (*log)(void*, const char* line) = nullptr;
+    void* log_argument = nullptr;
 };
 
 class Bus : public publish::Observer

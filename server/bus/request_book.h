@@ -15,9 +15,9 @@ namespace plab::bus
 
 struct BookLimits
 {
-    std::size_t waiting = 1024;         ///< requests under way, all clients together
-    std::size_t answers = 64;           ///< kept of each client
-    std::size_t clients = 1024;         ///< remembered
+    std::size_t waiting = 1024;            ///< requests under way, all clients together
+    std::size_t answers = 64;              ///< kept of each client
+    std::size_t clients = 1024;            ///< remembered
     std::size_t answer_bytes = 64u << 20;  ///< of all answers that are kept, about
 };
 
@@ -28,10 +28,10 @@ public:
 
     enum class Verdict : std::uint8_t
     {
-        New,      ///< to be carried out; counts as waiting until close()
-        Waiting,  ///< the same one is under way: its answer will come
-        Answered, ///< `answer` is what was answered before
-        Refused,  ///< `answer` says why
+        New,       ///< to be carried out; counts as waiting until close()
+        Waiting,   ///< the same one is under way: its answer will come
+        Answered,  ///< `answer` is what was answered before
+        Refused,   ///< `answer` says why
     };
     struct Decision
     {

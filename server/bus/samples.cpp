@@ -91,7 +91,9 @@ void convert_texts(std::vector<char*>& out, const std::vector<std::string>& text
 void convert_parameters(std::vector<plab_v1_Parameter>& out, const std::vector<publish::Parameter>& parameters)
 {
     convert_each(out, parameters,
-                 [](const publish::Parameter& p) { return plab_v1_Parameter{text(p.name), text(p.text), text(p.unit), text(p.kind)}; });
+                 [](const publish::Parameter& p) {
+                     return plab_v1_Parameter{text(p.name), text(p.text), text(p.unit), text(p.kind)};
+                 });
 }
 
 plab_v1_StepOutcome outcome(const simulation::StepOutcome& o) { return {o.energy, vector(o.momentum), o.error, o.cost_ns}; }
@@ -118,9 +120,10 @@ const plab_v1_Server& ServerSample::of(const Identity& identity, const publish::
 
 const plab_v1_Scene& SceneSample::of(const std::string& server, const publish::SceneEntry& scene)
 {
-    convert_each(
-        cameras_, scene.cameras, [](const model::Camera& c)
-        { return plab_v1_View{text(c.name), vector(c.position), vector(c.look_at), vector(c.up), c.field_of_view}; });
+    convert_each(cameras_, scene.cameras,
+                 [](const model::Camera& c) {
+                     return plab_v1_View{text(c.name), vector(c.position), vector(c.look_at), vector(c.up), c.field_of_view};
+                 });
     wire_.server = text(server), wire_.run = scene.run, wire_.file = text(scene.file), wire_.title = text(scene.title);
     wire_.dt = scene.dt, wire_.seed = scene.seed, wire_.objects = scene.objects, wire_.interactions = scene.interactions;
     view(wire_.cameras, cameras_);
@@ -171,8 +174,10 @@ const plab_v1_Interaction& InteractionSample::of(const publish::InteractionEntry
 
 const plab_v1_Type& TypeSample::of(const model::TypeSummary& type)
 {
-    convert_each(roles_, type.roles, [](const model::RoleSummary& r)
-                 { return plab_v1_RoleInfo{text(r.name), text(r.accepts), r.least, r.most, text(r.doc)}; });
+    convert_each(roles_, type.roles,
+                 [](const model::RoleSummary& r) {
+                     return plab_v1_RoleInfo{text(r.name), text(r.accepts), r.least, r.most, text(r.doc)};
+                 });
     convert_each(fields_, type.fields,
                  [](const model::FieldSummary& f)
                  {
@@ -214,8 +219,8 @@ const plab_v1_Events& EventsSample::of(const publish::Batch<publish::EventRecord
     convert_each(entries_, batch.entries,
                  [](const publish::EventRecord& e)
                  {
-                     plab_v1_EventInfo info{text(e.kind), text(word(e.severity)), e.time, text(e.component), text(e.a), text(e.b),
-                                            text(e.message), {}};
+                     plab_v1_EventInfo info{text(e.kind), text(word(e.severity)), e.time, text(e.component), text(e.a),
+                                            text(e.b),    text(e.message),        {}};
                      view(info.values, e.values);
                      return info;
                  });
@@ -263,7 +268,9 @@ const plab_v1_Reply& ReplySample::of(const publish::Answer& answer, bool repeate
     {
         const simulation::SwapReport& s = r.swaps[i];
         convert_each(fields_[i], s.fields,
-                     [](const simulation::FieldFate& f) { return plab_v1_FieldFate{text(f.field), text(word(f.fate))}; });
+                     [](const simulation::FieldFate& f) {
+                         return plab_v1_FieldFate{text(f.field), text(word(f.fate))};
+                     });
         swaps_.push_back({text(s.id), text(s.from), text(s.to), {}, s.energy_before, outcome(s.with_old), outcome(s.with_new)});
         view(swaps_.back().fields, fields_[i]);
     }

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "publish/figures.h"
 #include "simulation/step_tree.h"
 
 namespace plab::daemon
@@ -72,13 +73,7 @@ std::string collision_text(const simulation::Simulation& s)
 {
     std::string out;
     for (const simulation::Detector& d : s.stepper().detectors())
-    {
-        out += "collision " + s.world().id_of(d.component) + ": ";
-        out += d.resolution == kNoIndex ? "no resolution" : s.world().type_of(d.resolution)->info.name;
-        out += d.locates ? (d.local ? " (rewinds who is touched)" : " (rewinds the whole world)") : " (no rewinding)";
-        out += ", " + (d.response == kNoIndex ? std::string("no response") : s.world().type_of(d.response)->info.name);
-        out += d.responds ? "\n" : " (a sensor: nobody is pushed)\n";
-    }
+        out += "collision " + s.world().id_of(d.component) + ": " + publish::answer_of(s, d) + "\n";
     if (out.empty()) out = "collision: none, so no memento is kept and no contact is looked for\n";
     return out;
 }

@@ -31,7 +31,9 @@ std::string event_text(const simulation::Simulation& s, const Event& e)
     return text;
 }
 
-LiveTable::LiveTable(bool wanted) : wanted_(wanted), terminal_(isatty(STDOUT_FILENO) != 0) {}
+LiveTable::LiveTable(bool wanted, std::string footer) : wanted_(wanted), terminal_(isatty(STDOUT_FILENO) != 0), footer_(std::move(footer))
+{
+}
 
 void LiveTable::note(const simulation::Simulation& s)
 {
@@ -62,6 +64,7 @@ void LiveTable::show(const simulation::Simulation& s, bool last)
     std::string text = table_text(s);
     if (!lines_.empty()) text += "latest events\n";
     for (const std::string& line : lines_) text += "  " + line + "\n";
+    if (terminal_ && !footer_.empty()) text += footer_ + "\n";
     if (terminal_) std::fputs("\x1b[H\x1b[J", stdout);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);

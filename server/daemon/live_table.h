@@ -14,13 +14,15 @@ namespace plab::daemon
 class LiveTable
 {
 public:
-    explicit LiveTable(bool wanted);
+    /// `footer` stands below the table on a terminal.
+    LiveTable(bool wanted, std::string footer);
     void note(const simulation::Simulation& simulation);
     void note(std::string line);
     void show(const simulation::Simulation& simulation, bool last = false);
 
 private:
     bool wanted_, terminal_;
+    std::string footer_;
     std::chrono::steady_clock::time_point shown_{};
     double next_ = 0;
     std::deque<std::string> lines_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "publish/figures.h"
 #include "world/host_tables.h"
 
 namespace plab::daemon
@@ -42,13 +43,10 @@ std::string quoted(const std::string& s)
 std::string array(const Vec3& v) { return "[" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]"; }
 std::string array(const Quat& q) { return "[" + number(q.w) + ", " + number(q.x) + ", " + number(q.y) + ", " + number(q.z) + "]"; }
 
-bool is_object(const world::Component& c) { return c.facet == Facet::Body || c.facet == Facet::Shaft; }
-
-/// Interactions: what acts between objects; not shapes, solvers or groups.
-bool is_interaction(const world::World& world, std::uint32_t i)
+/// What stands under "interactions": solvers have their groups (--explain).
+bool is_listed(const world::World& world, std::uint32_t i)
 {
-    const world::Component& c = world.component(i);
-    return c.table != kNoIndex && c.facet == Facet::Component && world.type_of(i)->info.name.rfind("Solver/", 0) != 0;
+    return publish::is_interaction(world.component(i)) && !publish::is_solver(world, i);
 }
 
 std::string object_json(const world::World& world, std::uint32_t i)
@@ -64,22 +62,10 @@ std::string object_json(const world::World& world, std::uint32_t i)
            ", \"angular_velocity\": " + array(std::get<Vec3>(hosted("angular_velocity"))) + "}";
 }
 
-/// A type's cost is measured per phase; an instance's share is by rows.
-double cost_per_step(const simulation::Simulation& s, std::uint32_t i)
-{
-    const auto& book = s.stepper().cost();
-    const world::Component& c = s.world().component(i);
-    if (book.steps == 0 || c.table >= book.by_table.size()) return 0;
-    double sum = 0, rows = 0;
-    for (const std::uint64_t ns : book.by_table[c.table]) sum += static_cast<double>(ns);
-    for (const std::uint32_t owner : s.world().tables()[c.table]->component_of_row()) rows += owner != kNoIndex ? 1 : 0;
-    return sum / rows / static_cast<double>(book.steps);
-}
-
-std::string interaction_json(const simulation::Simulation& s, std::uint32_t i)
+std::string interaction_json(const simulation::Simulation& s, std::uint32_t i, double cost)
 {
     const world::World& world = s.world();
-    std::string out = "{\"type\": " + quoted(world.type_of(i)->info.name) + ", \"cost_ns_per_step\": " + number(cost_per_step(s, i)) +
+    std::string out = "{\"type\": " + quoted(world.type_of(i)->info.name) + ", \"cost_ns_per_step\": " + number(cost) +
                       ", \"work\": " + number(s.stepper().work()[i]) + ", \"error\": " + number(s.error_of(i));
     for (const Field& field : world.table_of(i).schema().fields())
     {
@@ -120,14 +106,15 @@ std::string end_state_json(const simulation::Simulation& s)
 {
     const world::World& world = s.world();
     const simulation::Totals totals = s.totals();
+    const std::vector<double> costs = publish::cost_of_rows(s);
     std::string objects, interactions;
     for (const std::uint32_t i : world.in_id_order())
     {
-        if (is_object(world.component(i)))
+        if (publish::is_object(world.component(i)))
             objects += (objects.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + object_json(world, i);
-        if (is_interaction(world, i))
-            interactions +=
-                (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + interaction_json(s, i);
+        if (is_listed(world, i))
+            interactions += (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " +
+                            interaction_json(s, i, publish::cost_of(costs, world.component(i)));
     }
     const auto& cost = s.stepper().cost();
     const double per_step = cost.steps == 0 ? 0 : static_cast<double>(cost.total) / static_cast<double>(cost.steps);
@@ -141,7 +128,7 @@ std::string end_state_json(const simulation::Simulation& s)
            ", \"work\": " + number(totals.work) + ", \"kinetic_at_start\": " + number(s.kinetic_at_start()) +
            ", \"work_of_requests\": " + number(s.stepper().requests_work()) +
            ", \"work_of_removed\": " + number(s.stepper().departed_work()) +
-           ", \"unexplained\": " + number(totals.kinetic - s.kinetic_at_start() - totals.work) + "}";
+           ", \"unexplained\": " + number(publish::unexplained(s, totals)) + "}";
     out += ",\n  \"contacts\": [" + contacts_json(s) + "\n  ]";
     out += ",\n  \"cost_ns_per_step\": " + number(per_step);
     out += ",\n  \"objects\": {" + objects + "\n  },\n  \"interactions\": {" + interactions + "\n  }\n}\n";
@@ -158,7 +145,7 @@ Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simula
     for (const std::uint32_t i : s.world().in_id_order())
     {
         const world::Component& c = s.world().component(i);
-        if (!is_object(c)) continue;
+        if (!publish::is_object(c)) continue;
         trace->objects_.push_back({c.id, c.facet == Facet::Shaft ? 2u : 13u});
         const char* const shaft[] = {"angle", "angular_velocity"};
         const char* const body[] = {"position.x",        "position.y",        "position.z",         "orientation.w",
@@ -186,7 +173,7 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     for (const auto& [id, columns] : objects_)
     {
         const std::uint32_t i = s.world().find(id);
-        if (i == kNoIndex || !is_object(s.world().component(i)))
+        if (i == kNoIndex || !publish::is_object(s.world().component(i)))
         {
             row += std::string(columns, ',');  // gone: its columns stay empty
             continue;
@@ -215,6 +202,7 @@ std::string table_text(const simulation::Simulation& s)
     std::snprintf(line, sizeof line, "t = %9.4f s   step %" PRId64 "   energy %.6g J\n", s.time(), s.tick(),
                   s.totals().kinetic + s.totals().stored);
     std::string out = line;
+    const std::vector<double> costs = publish::cost_of_rows(s);
     for (const std::uint32_t i : world.in_id_order())
     {
         const world::Component& c = world.component(i);
@@ -227,9 +215,9 @@ std::string table_text(const simulation::Simulation& s)
             std::snprintf(line, sizeof line, "  %-24.24s (%8.4f %8.4f %8.4f) m  (%8.4f %8.4f %8.4f) m/s\n", c.id.c_str(), p.x, p.y, p.z,
                           v.x, v.y, v.z);
         }
-        else if (is_interaction(world, i))
+        else if (is_listed(world, i))
             std::snprintf(line, sizeof line, "  %-24.24s %-34.34s %8.0f ns/step  error %.2e\n", c.id.c_str(),
-                          world.type_of(i)->info.name.c_str(), cost_per_step(s, i), s.error_of(i));
+                          world.type_of(i)->info.name.c_str(), publish::cost_of(costs, c), s.error_of(i));
         else
             continue;
         out += line;

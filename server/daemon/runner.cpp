@@ -55,12 +55,19 @@ void print_mapped_libraries()
     for (const std::string& library : libraries) std::printf("%s\n", library.c_str());
 }
 
+std::string footer(const Options& options)
+{
+    if (!options.bus) return {};
+    const std::string ctl = options.name == "plab" ? "plabctl" : "plabctl --server " + options.name;
+    return "second terminal: " + ctl + " interactions; " + ctl + " swap ID --to TYPE; " + ctl + " --help     Ctrl-C ends";
+}
+
 /// One run of plabd: what the loop carries along.
 class Run
 {
 public:
     Run(simulation::Simulation& simulation, Service& service, const Options& options, const Wake& wake, const std::atomic<bool>& stop)
-        : s_(simulation), service_(service), options_(options), wake_(wake), stop_(stop), table_(options.table)
+        : s_(simulation), service_(service), options_(options), wake_(wake), stop_(stop), table_(options.table, footer(options))
     {
     }
 

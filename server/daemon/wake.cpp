@@ -31,7 +31,7 @@ void Wake::wake() const
 {
     const std::uint64_t one = 1;
     // A full counter is a wake that nobody has read yet: nothing is lost.
-    [[maybe_unused]] const auto written = write(descriptor_, &one, sizeof one);
+    [[maybe_unused]] const auto written = ::write(descriptor_, &one, sizeof one);
 }
 
 bool Wake::wait_until(Clock::time_point due) const
@@ -44,7 +44,7 @@ bool Wake::wait_until(Clock::time_point due) const
     pollfd watched{descriptor_, POLLIN, 0};
     if (ppoll(&watched, 1, &time, nullptr) <= 0) return false;
     std::uint64_t count = 0;
-    return read(descriptor_, &count, sizeof count) == sizeof count;
+    return ::read(descriptor_, &count, sizeof count) == sizeof count;
 }
 
 }  // namespace plab::daemon

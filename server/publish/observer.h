@@ -23,6 +23,8 @@ public:
 
     /// Whether anybody wants this stream now. Where nobody does, nothing is collected or copied.
     virtual bool wants(Stream stream) const = 0;
+    /// Counts those who began to want it: whoever is new gets a frame, or a sample of metrics, also while nothing moves.
+    virtual std::uint64_t joins(Stream) const { return 0; }
 
     /// A frame to fill, its vectors with the memory of an earlier one; end_frame() hands it over. The oldest unsent one
     /// is given up when all are full.

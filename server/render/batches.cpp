@@ -7,8 +7,10 @@ namespace plab::render
 namespace
 {
 
-constexpr int kFinestSphere = 5;
-constexpr int kCylinderSides = 64;
+/// Outlines of spheres of that level keep within a third of a pixel of the circle up to 130, 500 pixels of radius.
+constexpr int kCoarseSphere = 3, kFineSphere = 4;
+constexpr double kCoarsePixels = 130;
+constexpr int kCylinderSides = 64, kShadowSides = 16;
 
 void attribute(GLuint index, GLint size, GLsizei stride, std::size_t offset, GLuint divisor)
 {
@@ -50,11 +52,12 @@ Instance instance_of(const Item& item, const Frame& frame)
             floats(item.color)};
 }
 
-/// As many triangles as keep the outline within about a third of a pixel of the circle.
-std::size_t sphere_level(double radius, const Vec3& from_eye, double pixels_per_radian)
+/// Smaller spheres, by their radius in pixels, are squares.
+constexpr double kBallPixels = 60;
+
+double pixels_of(double radius, const Vec3& from_eye, double pixels_per_radian)
 {
-    const double pixels = radius / std::fmax(length(from_eye), 1e-9) * pixels_per_radian;
-    return pixels < 5 ? 0 : pixels < 24 ? 1 : pixels < 100 ? 2 : pixels < 400 ? 3 : 4;
+    return radius / std::fmax(length(from_eye), 1e-9) * pixels_per_radian;
 }
 
 }  // namespace
@@ -94,7 +97,8 @@ void Batch::draw() const
 Batches Batches::make()
 {
     Batches out;
-    for (int level = 1; level <= kFinestSphere; ++level) out.spheres_.push_back(Batch::make(unit_sphere(level)));
+    for (const int sides : {4, kShadowSides}) out.balls_.push_back(Batch::make(unit_disc(sides)));
+    for (const int level : {kCoarseSphere, kFineSphere}) out.spheres_.push_back(Batch::make(unit_sphere(level)));
     out.box_and_cylinder_.push_back(Batch::make(unit_box()));
     out.box_and_cylinder_.push_back(Batch::make(unit_cylinder(kCylinderSides)));
     return out;
@@ -119,17 +123,20 @@ Result<void> Batches::keep_meshes(const Drawing& drawing)
 std::vector<Batch*> Batches::all()
 {
     std::vector<Batch*> out;
-    for (auto* group : {&spheres_, &box_and_cylinder_, &meshes_})
+    for (auto* group : {&balls_, &spheres_, &box_and_cylinder_, &meshes_})
         for (Batch& batch : *group) out.push_back(&batch);
     return out;
 }
 
-Batch& Batches::batch_of(const Item& item, const Frame& frame)
+void Batches::add(const Item& item, const Frame& frame)
 {
-    if (item.form == Form::Mesh) return meshes_[item.mesh];
-    if (item.form == Form::Box) return box_and_cylinder_[0];
-    if (item.form == Form::Cylinder) return box_and_cylinder_[1];
-    return spheres_[sphere_level(item.size.x, frame.from_eye(item.pose.p), frame.pixels_per_radian)];
+    const Instance instance = instance_of(item, frame);
+    if (item.form == Form::Mesh) return meshes_[item.mesh].add(instance);
+    if (item.form != Form::Sphere) return box_and_cylinder_[item.form == Form::Box ? 0 : 1].add(instance);
+    const double pixels = pixels_of(item.size.x, frame.from_eye(item.pose.p), frame.pixels_per_radian);
+    Batch& as_seen = pixels < kBallPixels ? balls_[0] : spheres_[pixels < kCoarsePixels ? 0 : 1];
+    as_seen.add(instance);
+    balls_[1].add(instance);
 }
 
 Result<void> Batches::sort(const Drawing& drawing, const Frame& frame)
@@ -141,16 +148,17 @@ Result<void> Batches::sort(const Drawing& drawing, const Frame& frame)
         if (item.form == Form::Mesh && item.mesh >= meshes_.size())
             return reason("an item names mesh " + std::to_string(item.mesh) + "; there are " + std::to_string(meshes_.size()) +
                           ", numbered from 0");
-        batch_of(item, frame).add(instance_of(item, frame));
+        add(item, frame);
     }
     for (const Batch* batch : all()) batch->upload();
     return {};
 }
 
-void Batches::draw() const
+void Batches::draw_solids(bool shadows) const
 {
     for (const auto* group : {&spheres_, &box_and_cylinder_, &meshes_})
-        for (const Batch& batch : *group) batch.draw();
+        for (const Batch& batch : *group)
+            if (!shadows || group != &spheres_) batch.draw();
 }
 
 }  // namespace plab::render

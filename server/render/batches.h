@@ -48,13 +48,19 @@ public:
     const std::vector<double>& mesh_radii() const { return mesh_radii_; }
     /// Everything but planes; refuses an item whose mesh is not there.
     Result<void> sort(const Drawing& drawing, const Frame& frame);
-    void draw() const;
+    /// All that is made of triangles. As shadows, spheres are not.
+    void draw_solids(bool shadows) const;
+    /// Spheres that are small in the picture, as squares.
+    void draw_balls() const { balls_[0].draw(); }
+    /// All spheres, as discs.
+    void draw_ball_shadows() const { balls_[1].draw(); }
 
 private:
     Batches() = default;
-    Batch& batch_of(const Item& item, const Frame& frame);
+    void add(const Item& item, const Frame& frame);
     std::vector<Batch*> all();
 
+    std::vector<Batch> balls_;    ///< squares, discs
     std::vector<Batch> spheres_;  ///< from coarse to fine
     std::vector<Batch> box_and_cylinder_;
     std::vector<Batch> meshes_;

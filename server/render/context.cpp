@@ -14,8 +14,15 @@ constexpr GLsizei kDummySize = 16;
 
 Result<Context> Context::make()
 {
-    constexpr int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3,
-                              OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    constexpr int wanted[] = {OSMESA_FORMAT,
+                              OSMESA_RGBA,
+                              OSMESA_PROFILE,
+                              OSMESA_CORE_PROFILE,
+                              OSMESA_CONTEXT_MAJOR_VERSION,
+                              3,
+                              OSMESA_CONTEXT_MINOR_VERSION,
+                              3,
+                              0};
     const OSMesaContext made = OSMesaCreateContextAttribs(wanted, nullptr);
     if (!made) return reason("OSMesa makes no context of OpenGL 3.3; Mesa 17 or newer with llvmpipe or softpipe is needed");
     return Context(made);

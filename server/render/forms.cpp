@@ -167,6 +167,20 @@ Surface unit_cylinder(int sides)
     return out;
 }
 
+Surface unit_disc(int sides)
+{
+    Surface out;
+    const double outer = 1 / std::cos(std::numbers::pi / sides);
+    for (int i = 0; i < sides; ++i)
+    {
+        const double angle = 2 * std::numbers::pi * (i + 0.5) / sides;
+        out.corners.push_back({floats({outer * std::cos(angle), outer * std::sin(angle), 0}), {0, 0, 1}});
+        const auto k = static_cast<std::uint32_t>(i);
+        if (k >= 2) out.triangles.insert(out.triangles.end(), {0, k - 1, k});
+    }
+    return out;
+}
+
 Result<Surface> surface_of(const Mesh& mesh)
 {
     if (auto fine = check_triangles(mesh); !fine) return fine.error();

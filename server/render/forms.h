@@ -30,6 +30,9 @@ Surface unit_box();
 /// Radius 1, from z = -1 to 1.
 Surface unit_cylinder(int sides);
 
+/// In the plane z = 0, about the unit disc; four sides make a square that is parallel to x and y.
+Surface unit_disc(int sides);
+
 /// The mesh with normals: faces that meet at less than a crease's angle are shaded as one smooth surface, sharper edges
 /// stay sharp. Refuses triangles that name vertices which are not there.
 Result<Surface> surface_of(const Mesh& mesh);

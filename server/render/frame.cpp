@@ -10,7 +10,7 @@ namespace
 {
 
 /// Where the light comes from: over the left shoulder of who looks from the default view.
-const Vec3 kToLight = normalized({-0.42, -0.55, 1.05});
+const Vec3 kToLight = normalized(Vec3{-0.42, -0.55, 1.05});
 /// Planes and shadows end this many times the distance from the eye to the focus.
 constexpr double kReach = 14;
 /// About this many cells of the grid lie between eye and focus.
@@ -55,20 +55,20 @@ Box3 casters(const Drawing& drawing, const Frame& frame, const Basis& light, con
     return out;
 }
 
-void aim_light(Frame& frame, const Drawing& drawing, const std::vector<double>& radii, int shadow_size)
+void aim_light(Frame& frame, const Drawing& drawing, const std::vector<double>& radii)
 {
     frame.to_light = kToLight;
-    const Basis light = basis_of(kToLight, {0, 1, 0});
-    Box3 box = casters(drawing, frame, light, radii);
-    if (!(box.low.x <= box.high.x)) return;
-    // A margin, so that nothing lies on the rim, and a depth that is not too flat.
+    frame.light = basis_of(kToLight, {0, 1, 0});
+    Box3 box = casters(drawing, frame, frame.light, radii);
+    frame.shadows = box.low.x <= box.high.x;
+    if (!frame.shadows) return;
+    // A square with a margin, so that nothing lies on the rim, and a depth that is not too flat.
     const double most = std::max({box.high.x - box.low.x, box.high.y - box.low.y, 1e-6 * frame.reach});
     const Vec3 middle = (box.low + box.high) * 0.5;
-    const double half = 0.52 * most;
-    box.low = {middle.x - half, middle.y - half, box.low.z - 0.05 * most};
-    box.high = {middle.x + half, middle.y + half, box.high.z + 0.05 * most};
-    frame.light_from_E = orthographic(light, box);
-    frame.texel = 2 * half / shadow_size;
+    const double half = 0.53 * most;
+    frame.casters = {{middle.x - half, middle.y - half, box.low.z - 0.05 * most},
+                     {middle.x + half, middle.y + half, box.high.z + 0.05 * most}};
+    frame.light_from_E = orthographic(frame.light, frame.casters);
 }
 
 }  // namespace
@@ -103,8 +103,7 @@ double radius_of(const Item& item, const std::vector<double>& mesh_radii)
     return item.mesh < mesh_radii.size() ? mesh_radii[item.mesh] : 0;
 }
 
-Result<Frame> make_frame(const Drawing& drawing, const std::vector<double>& mesh_radii, std::uint32_t width, std::uint32_t height,
-                         int shadow_size)
+Result<Frame> make_frame(const Drawing& drawing, const std::vector<double>& mesh_radii, std::uint32_t width, std::uint32_t height)
 {
     const View& view = drawing.view;
     if (auto fine = check(view); !fine) return fine.error();
@@ -131,7 +130,7 @@ Result<Frame> make_frame(const Drawing& drawing, const std::vector<double>& mesh
     // A depth of 24 bits tells apart what is near to 1e-3 of its distance even at this ratio.
     const double near = std::clamp(0.5 * nearest, 2e-3 * distance, 0.2 * distance);
     out.clip_from_E = perspective(out.basis, view.field_of_view, static_cast<double>(width) / height, near, farthest);
-    aim_light(out, drawing, radii, shadow_size);
+    aim_light(out, drawing, radii);
     return out;
 }
 

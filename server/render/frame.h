@@ -22,16 +22,17 @@ struct Frame
     double grid = 1;               ///< width of its cells, m
 
     Vec3 to_light;  ///< unit, W
+    Basis light;
+    Box3 casters;  ///< of all that throws a shadow, along the light's axes, relative to the eye, m
+    bool shadows = false;
     Mat4 light_from_E;
-    double texel = 0;  ///< of the shadow map, m; 0: nothing throws a shadow
 
     Vec3 from_eye(const Vec3& p_W) const { return p_W - eye; }
 };
 
 /// Refuses a view that shows nothing: not finite, an angle out of (0, pi), or no distance to what it looks at.
 /// `mesh_radii`: of each mesh, about its origin.
-Result<Frame> make_frame(const Drawing& drawing, const std::vector<double>& mesh_radii, std::uint32_t width, std::uint32_t height,
-                         int shadow_size);
+Result<Frame> make_frame(const Drawing& drawing, const std::vector<double>& mesh_radii, std::uint32_t width, std::uint32_t height);
 
 /// Of the ball about a mesh's origin that holds it, m.
 double radius_of(const Mesh& mesh);

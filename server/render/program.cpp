@@ -35,13 +35,13 @@ private:
 
 }  // namespace
 
-Result<Program> Program::make(const std::string& name, const std::string& vertex, const std::string& fragment)
+Result<Program> Program::make(const ShaderText& text)
 {
     const Shader vertex_shader(GL_VERTEX_SHADER), fragment_shader(GL_FRAGMENT_SHADER);
-    if (auto done = vertex_shader.compile(vertex); !done)
-        return reason("vertex shader of '" + name + "' does not compile: " + done.error().reason);
-    if (auto done = fragment_shader.compile(fragment); !done)
-        return reason("fragment shader of '" + name + "' does not compile: " + done.error().reason);
+    if (auto done = vertex_shader.compile(text.vertex); !done)
+        return reason("vertex shader of '" + text.name + "' does not compile: " + done.error().reason);
+    if (auto done = fragment_shader.compile(text.fragment); !done)
+        return reason("fragment shader of '" + text.name + "' does not compile: " + done.error().reason);
 
     ProgramName program = ProgramName::make();
     glAttachShader(program.name(), vertex_shader.name());
@@ -53,7 +53,7 @@ Result<Program> Program::make(const std::string& name, const std::string& vertex
     glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
     std::string log(static_cast<std::size_t>(length), '\0');
     glGetProgramInfoLog(program.name(), length, nullptr, log.data());
-    return reason("shader program '" + name + "' does not link: " + log.c_str());
+    return reason("shader program '" + text.name + "' does not link: " + log.c_str());
 }
 
 void Program::set(const char* name, const Vec3& v) const

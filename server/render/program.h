@@ -6,6 +6,7 @@
 #include "gl.h"
 #include "matrix.h"
 #include "plab/result.h"
+#include "shaders.h"
 
 namespace plab::render
 {
@@ -14,8 +15,8 @@ class Program
 {
 public:
     Program() = default;
-    /// `name` is for messages; the compiler's log is part of them.
-    static Result<Program> make(const std::string& name, const std::string& vertex, const std::string& fragment);
+    /// An error has the compiler's log in it.
+    static Result<Program> make(const ShaderText& text);
 
     void use() const { glUseProgram(program_.name()); }
     // Each sets a uniform of the program in use; one that the compiler removed is none of our business.

@@ -6,14 +6,20 @@
 namespace plab::render
 {
 
-std::string solid_vertex_shader();
-std::string solid_fragment_shader();
-/// Depth only.
-std::string shadow_fragment_shader();
-/// Planes: the ground's grid and Form::Plane.
-std::string plane_vertex_shader();
-std::string plane_fragment_shader();
-std::string background_vertex_shader();
-std::string background_fragment_shader();
+struct ShaderText
+{
+    std::string name, vertex, fragment;
+};
+
+ShaderText solid_shader();
+/// Spheres that are small in the picture, as squares.
+ShaderText ball_shader();
+ShaderText solid_shadow_shader();
+ShaderText ball_shadow_shader();
+/// The ground's grid and Form::Plane.
+ShaderText plane_shader();
+/// What the items throw on a plane.
+ShaderText plane_shadow_shader();
+ShaderText background_shader();
 
 }  // namespace plab::render

@@ -38,7 +38,8 @@ Result<Target> Target::make(std::uint32_t width, std::uint32_t height)
     out.width_ = width, out.height_ = height;
     out.samples_ = Framebuffer::make();
     glBindFramebuffer(GL_FRAMEBUFFER, out.samples_.name());
-    out.color_ = make_storage(GL_RGBA8, samples, width, height);
+    // Without alpha: the picture is opaque, whatever was blended into it.
+    out.color_ = make_storage(GL_RGB8, samples, width, height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, out.color_.name());
     out.depth_ = make_storage(GL_DEPTH_COMPONENT24, samples, width, height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, out.depth_.name());
@@ -46,7 +47,7 @@ Result<Target> Target::make(std::uint32_t width, std::uint32_t height)
 
     out.resolved_ = Framebuffer::make();
     glBindFramebuffer(GL_FRAMEBUFFER, out.resolved_.name());
-    out.resolved_color_ = make_storage(GL_RGBA8, 0, width, height);
+    out.resolved_color_ = make_storage(GL_RGB8, 0, width, height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, out.resolved_color_.name());
     if (auto done = check_frame("the picture"); !done) return done.error();
     return out;

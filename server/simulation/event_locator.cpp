@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace plab::simulation
 {
@@ -9,6 +10,13 @@ namespace
 {
 /// Events in one step of one world before the rest of them is answered at its end, and said so.
 constexpr int kMostEvents = 20000;
+
+/// What an event says of a contact: point, normal, impulse, depth (server/docs/step.md).
+std::vector<double> values_of(const Contact& c, const Vec3& impulse)
+{
+    return {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, impulse.x, impulse.y, impulse.z, c.depth};
+}
+
 }  // namespace
 
 bool EventLocator::acts(const Detector& detector, const PairState* pair, bool approaching) const
@@ -209,7 +217,7 @@ void EventLocator::announce_rest(const FoundContact& f, PairState& pair, double 
     if (!f.contact.resting || pair.resting) return;
     pair.resting = true;
     Event e = s_->contact_event("contact.rest", pair, time);
-    e.values = {f.contact.point.x, f.contact.point.y, f.contact.point.z};
+    e.values = values_of(f.contact, f.contact.impulse);
     s_->emit(std::move(e));
 }
 
@@ -219,16 +227,21 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
     bool added = false;
     PairState& pair = s_->cache_.get_or_add(detector.component, candidate.a, candidate.b, s_->world_, s_->frame_.tick, added);
     pair.overlapping = !detector.responds || candidate.at_end;
-    if (added) s_->emit(s_->contact_event("contact.begin", pair, time));
     for (const FoundContact& f : contacts)
     {
         if (f.detector != candidate.detector || f.contact.a != candidate.a || f.contact.b != candidate.b) continue;
+        if (std::exchange(added, false))
+        {
+            // Impulses are told by the impacts that follow.
+            Event begin = s_->contact_event("contact.begin", pair, time);
+            begin.values = values_of(f.contact, {});
+            s_->emit(std::move(begin));
+        }
         pair.normal = f.contact.normal;
         (void)s_->cache_.contact_of(pair, f.contact.feature);
         if (!detector.responds) continue;
         Event e = s_->contact_event("contact.impact", pair, time);
-        const Contact& c = f.contact;
-        e.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.impulse.x, c.impulse.y, c.impulse.z};
+        e.values = values_of(f.contact, f.contact.impulse);
         s_->emit(std::move(e));
         announce_rest(f, pair, time);
     }

@@ -1,9 +1,12 @@
 #include "plab/plugin.h"
 
 #include "box.h"
+#include "cylinder.h"
+#include "gear.h"
 #include "mesh.h"
 #include "placed.h"
 #include "plane.h"
+#include "rotor.h"
 #include "sphere.h"
 
 namespace
@@ -36,6 +39,12 @@ PLAB_PLUGIN("shapes", registrar)
     add_shape<prepare_mesh, measure_mesh, MeshRows>(registrar, "Shape/Mesh",
                                                     "triangles; drawn and integrated as given, collides as its convex hull or not at all",
                                                     "volume, centre and inertia, exact for closed triangle meshes");
+    add_shape<prepare_cylinder, measure_cylinder, CylinderRows>(registrar, "Shape/Cylinder", "a solid cylinder along z",
+                                                                "volume, centre and inertia, in closed form");
+    add_shape<prepare_gear, measure_gear, GearRows>(registrar, "Shape/Gear", "a spur wheel with straight-flanked teeth, about z",
+                                                    "volume, centre and inertia, exact for the wheel as drawn");
+    add_shape<prepare_rotor, measure_rotor, RotorRows>(registrar, "Shape/Rotor", "a fan's wheel: hub and twisted blades, about z",
+                                                       "volume, centre and inertia, exact for the wheel as drawn");
     add_shape<prepare_placed, measure_placed, PlacedRows>(registrar, "Shape/Placed", "another shape at another pose",
                                                           "those of the referred shape, moved");
 }

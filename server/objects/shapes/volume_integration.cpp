@@ -83,6 +83,13 @@ MassProperties solid_box(const Vec3& half_extents)
     return {mass, {}, Mat3::diagonal(third * (yy + zz), third * (zz + xx), third * (xx + yy))};
 }
 
+MassProperties solid_cylinder(double radius, double height)
+{
+    const double mass = std::numbers::pi * radius * radius * height;
+    const double across = mass * (3 * radius * radius + height * height) / 12;
+    return {mass, {}, Mat3::diagonal(across, across, 0.5 * mass * radius * radius)};
+}
+
 Result<MassProperties> solid_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles)
 {
     if (auto closed = check_closed(vertices, triangles); !closed) return closed.error();

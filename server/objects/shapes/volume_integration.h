@@ -18,6 +18,9 @@ MassProperties solid_sphere(double radius);
 /// m = 8 a b c, I_xx = m (b^2 + c^2) / 3, ... ; half extents (a, b, c) in m.
 MassProperties solid_box(const Vec3& half_extents);
 
+/// m = pi r^2 h, I_zz = m r^2 / 2, I_xx = I_yy = m (3 r^2 + h^2) / 12; about z, lengths in m.
+MassProperties solid_cylinder(double radius, double height);
+
 /// The solid inside closed triangles (index triples, counter-clockwise seen from outside). Refuses what encloses no
 /// definite volume: an open, non-manifold, inconsistently wound, inside-out or flat mesh. Does not look for
 /// self-intersection: parts that overlap count twice.

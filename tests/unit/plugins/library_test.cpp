@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,9 +18,23 @@ namespace
 
 const std::string kSamples = SAMPLE_DIR;
 
-std::string sample(const std::string& flaw)
+std::string sample(const std::string& flaw) { return kSamples + "/sample_" + flaw + ".so"; }
+
+const std::string kHead = "plab-manifest 2\nplugin\tsample\n";
+
+/// A line for a type of which nothing but the name is told.
+std::string bare_type(const std::string& name) { return "type\t" + name + "\tSample\t0\t\t\t\t\n"; }
+
+std::string manifest(const std::string& types)
 {
-    return kSamples + "/sample_" + flaw + ".so";
+    std::string out = kHead;
+    for (std::size_t begin = 0; begin < types.size();)
+    {
+        const std::size_t end = std::min(types.find('\n', begin), types.size());
+        out += bare_type(types.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return out;
 }
 
 /// A folder of plugins for one test.
@@ -39,12 +54,11 @@ public:
     std::string path() const { return fs::canonical(path_).string(); }
     std::string file(const std::string& name) const { return path() + "/" + name; }
     void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
-    /// A manifest that lists `types`, and beside it the sample with this flaw.
+    /// A manifest that lists `types`, a line each, and beside it the sample with this flaw.
     void plugin(const std::string& name, const std::string& flaw, const std::string& types) const
     {
-        write(name + ".manifest", "plab-manifest 1\n" + types);
-        if (!flaw.empty())
-            fs::copy_file(sample(flaw), path_ / (name + ".so"));
+        write(name + ".manifest", manifest(types));
+        if (!flaw.empty()) fs::copy_file(sample(flaw), path_ / (name + ".so"));
     }
 
 private:
@@ -70,8 +84,7 @@ bool is_mapped(const std::string& path)
 {
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);)
-        if (line.find(path) != line.npos)
-            return true;
+        if (line.find(path) != line.npos) return true;
     return false;
 }
 
@@ -124,14 +137,13 @@ TEST_CASE("unknown types: the nearest names of all manifests, and what could not
     b.plugin("y", "", "Solver/SemiImplicitEuler\n");
     PluginLibrary library({a.path(), b.path(), a.path() + "/../" + fs::path(a.path()).filename().string()});
     CHECK(library.names().size() == 2);
-    CHECK(refusal(library, "Solver/RungeKuta4") ==
-          "unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
+    CHECK(refusal(library, "Solver/RungeKuta4") == "unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
     CHECK(refusal(library, "") == "unknown type ''");
     CHECK(refusal(library, "Solver/RungeKutta4").find("cannot be loaded") != std::string::npos);  // not: in two plugins
 
     PluginLibrary nowhere({a.file("missing")});
-    CHECK(refusal(nowhere, "A/B") == "unknown type 'A/B'; no plugins were found; plugin folder " + a.file("missing") +
-                                         " cannot be read: No such file or directory");
+    CHECK(refusal(nowhere, "A/B") ==
+          "unknown type 'A/B'; no plugins were found; plugin folder " + a.file("missing") + " cannot be read: No such file or directory");
 }
 
 TEST_CASE("a type in two plugins is refused, naming both; the others can be had")
@@ -140,30 +152,49 @@ TEST_CASE("a type in two plugins is refused, naming both; the others can be had"
     folder.plugin("a", "none", "Sample/Good\nSample/Better\n");
     folder.plugin("b", "none", "Sample/Good\n");
     PluginLibrary library({folder.path()});
-    CHECK(refusal(library, "Sample/Good") == "type 'Sample/Good' is in two plugins, " + folder.file("a.so") + " and " +
-                                                 folder.file("b.so") + "; take one of them away");
+    CHECK(refusal(library, "Sample/Good") ==
+          "type 'Sample/Good' is in two plugins, " + folder.file("a.so") + " and " + folder.file("b.so") + "; take one of them away");
     CHECK(refusal(library, "Sample/Better") == "accepted");
 }
 
 TEST_CASE("bad manifests are problems, not the end")
 {
     const Folder folder("bad");
-    folder.write("a.manifest", "plab-manifest 2\nA/B\n");
-    folder.write("b.manifest", "");
-    folder.write("c.manifest", "plab-manifest 1\nA/B\nno spaces please\n");
-    folder.write("d.manifest", "plab-manifest 1\nA/B\nC/D\nA/B\n");
-    folder.write("e.manifest", "plab-manifest 1\n\nE/F\n");
+    struct Case
+    {
+        std::string text, problem;
+    };
+    const std::vector<Case> cases{
+        {"plab-manifest 1\nA/B\n", ":1:1: is no manifest of this version: the first line must be 'plab-manifest 2'"},
+        {"", ": cannot be read"},
+        {"plab-manifest 2\n" + bare_type("A/B"), ": names no plugin"},
+        {kHead + "plugin\tother\n", ":3:1: names a second plugin"},
+        {kHead + bare_type("A/B") + bare_type("no spaces please"), ":4:1: is no type name; letters, digits, '_' and '/' are allowed"},
+        {kHead + bare_type("A/B") + bare_type("C/D") + bare_type("A/B"), ": names A/B twice"},
+        {kHead + "A/B\n", ":3:1: begins with no word of a manifest; plugin, type, role and field are allowed"},
+        {kHead + "type\tA/B\tA\t0\n", ":3:1: a 'type' line has 8 cells, not 4"},
+        {kHead + "type\tA/B\tA\t4x\t\t\t\t\n", ":3:1: the order of convergence is no whole number that fits"},
+        {kHead + "field\tx\tparam\treal\tm\t0\toptional\t\t\n", ":3:1: a field before the first type"},
+        {kHead + bare_type("A/B") + "field\tx\tparam\treal\tm\t0\tmaybe\t\t\n", ":4:1: a field is 'required' or 'optional'"},
+        {kHead + bare_type("A/B") + "role\tx\tbody\t1\t4294967296\t\n",
+         ":4:1: the largest number of participants is no whole number that fits"},
+        {kHead + "type\tA/B\tA\t0\tdo\\c\t\t\t\n", ":3:1: holds a '\\' that is neither '\\\\' nor '\\x' and two digits"},
+        {kHead + "type\tA/B\tA\t0\tdo\\x0\t\t\t\n", ":3:1: holds a '\\' that is neither '\\\\' nor '\\x' and two digits"},
+        {kHead + "type\tA/B\tA\t0\tdo\rc\t\t\t\n", ":3:1: holds a control character; it must be written as \\x and two digits"},
+    };
+    std::vector<std::string> expected;
+    for (std::size_t i = 0; i < cases.size(); ++i)
+    {
+        const std::string name = std::string(1, static_cast<char>('a' + i)) + ".manifest";
+        folder.write(name, cases[i].text);
+        expected.push_back(folder.file(name) + cases[i].problem);
+    }
+    folder.write("z.manifest", kHead + "\n" + bare_type("E/F"));
     folder.write("not_a_manifest.txt", "A/B");
     PluginLibrary library({folder.path()});
     std::vector<std::string> problems;
     for (const Error& e : library.problems()) problems.push_back(e.text());
-    CHECK(problems == std::vector<std::string>{
-                          folder.file("a.manifest") +
-                              ":1:1: is no manifest of this version: the first line must be 'plab-manifest 1'",
-                          folder.file("b.manifest") + ": cannot be read",
-                          folder.file("c.manifest") + ":3:1: is no type name; letters, digits, '_' and '/' are allowed",
-                          folder.file("d.manifest") + ": names A/B twice",
-                      });
+    CHECK(problems == expected);
     CHECK(library.names() == std::vector<std::string>{"E/F"});
     CHECK(refusal(library, "G/H").find("a.manifest:1:1") != std::string::npos);
 }
@@ -177,26 +208,22 @@ TEST_CASE("a manifest without its plugin, and one that promises too much")
     const std::string missing = refusal(library, "Sample/Missing");
     CHECK(missing.starts_with("plugin " + folder.file("missing.so") + ": cannot be loaded: "));
     CHECK(refusal(library, "Sample/Missing") == missing);
-    CHECK(refusal(library, "Sample/Other") == "type 'Sample/Other' is in " + folder.file("liar.manifest") +
-                                                  ", but its plugin does not declare it; build the plugin again");
+    CHECK(refusal(library, "Sample/Other") ==
+          "type 'Sample/Other' is in " + folder.file("liar.manifest") + ", but its plugin does not declare it; build the plugin again");
     CHECK(refusal(library, "Sample/Good") == "accepted");
 }
 
 TEST_CASE("each mismatch of the stamp has its own words")
 {
     const std::string again = "; build it again with this SDK";
-    CHECK(load_refusal("version") ==
-          "plugin " + sample("version") + ": was built for version 2 of the SDK, version 1 is needed" + again);
-    CHECK(load_refusal("size") == "plugin " + sample("size") + ": its stamp has " +
-                                      std::to_string(sizeof(PluginStamp) + 8) + " bytes, " +
+    CHECK(load_refusal("version") == "plugin " + sample("version") + ": was built for version 2 of the SDK, version 1 is needed" + again);
+    CHECK(load_refusal("size") == "plugin " + sample("size") + ": its stamp has " + std::to_string(sizeof(PluginStamp) + 8) + " bytes, " +
                                       std::to_string(sizeof(PluginStamp)) + " are needed" + again);
-    CHECK(load_refusal("layout") ==
-          "plugin " + sample("layout") +
-              ": its structures are laid out differently: layout 42 (compiler " __VERSION__ "), " +
-              std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + again);
+    CHECK(load_refusal("layout") == "plugin " + sample("layout") +
+                                        ": its structures are laid out differently: layout 42 (compiler " __VERSION__ "), " +
+                                        std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + again);
     CHECK(load_refusal("name") == "plugin " + sample("name") + ": its stamp has no name");
-    CHECK(load_refusal("stamp") ==
-          "plugin " + sample("stamp") + ": is no pLab plugin: it has no symbol plab_plugin_stamp");
+    CHECK(load_refusal("stamp") == "plugin " + sample("stamp") + ": is no pLab plugin: it has no symbol plab_plugin_stamp");
     CHECK(load_refusal("entry") == "plugin " + sample("entry") + ": has no symbol plab_plugin_register");
 }
 
@@ -234,8 +261,7 @@ TEST_CASE("load_plugin: twice is once; other plugins with the same types are ref
     folder.plugin("copy", "none", "Sample/Good\n");
     const auto copy = library.load_plugin(folder.file("copy.so"));
     REQUIRE(!copy.ok());
-    CHECK(copy.error().text() ==
-          "plugin " + folder.file("copy.so") + ": Sample/Good: is already declared by plugin 'sample'");
+    CHECK(copy.error().text() == "plugin " + folder.file("copy.so") + ": Sample/Good: is already declared by plugin 'sample'");
     CHECK(library.loaded().size() == 1);
 
     folder.write("text.so", "no library");
@@ -257,16 +283,64 @@ TEST_CASE("where plugins are looked for")
     unsetenv("PLAB_PLUGIN_PATH");
 }
 
-TEST_CASE("manifests are written sorted, whole or not at all, and read back")
+TEST_CASE("manifests are written sorted, whole or not at all, and read back with whatever text they hold")
 {
     const Folder folder("write");
-    REQUIRE(plugins::write_manifest(folder.file("m.manifest"), {"B/C", "A/B"}).ok());
+    model::TypeSummary odd{"B/C", "B", "a tab\t, a line\nbreak, a back\\slash, \x7f and \xc3\xa9", "sample"};
+    odd.order = -3, odd.cost = "\\x41", odd.limits = " ", odd.source = "|";
+    odd.roles = {{"between", "body or shaft", "who\r", 0, 4294967295}};
+    odd.fields = {{"code", "param", "text", "", "x = 1\n\ty = 2", "", "", false},
+                  {"mass", "param", "real", "kg", "", "positive", "", true}};
+    const model::TypeSummary plain{"A/B", "A", "", "sample"};
+    REQUIRE(plugins::write_manifest(folder.file("m.manifest"), "sample", {odd, plain}).ok());
     const auto back = plugins::read_manifest(folder.file("m.manifest"));
-    REQUIRE(back.ok());
+    REQUIRE_MESSAGE(back.ok(), (back.ok() ? "" : back.error().text()));
     CHECK(back->types == std::vector<std::string>{"A/B", "B/C"});
+    CHECK(back->summaries == std::vector<model::TypeSummary>{plain, odd});
     CHECK(back->plugin == folder.file("m.so"));
     CHECK(!fs::exists(folder.file("m.manifest.tmp")));
-    const auto nowhere = plugins::write_manifest(folder.file("missing/m.manifest"), {"A/B"});
+    const auto nowhere = plugins::write_manifest(folder.file("missing/m.manifest"), "sample", {plain});
     REQUIRE(!nowhere.ok());
     CHECK(nowhere.error().text() == folder.file("missing/m.manifest.tmp") + ": cannot be written");
+}
+
+TEST_CASE("a type is told alike by its manifest and by its plugin")
+{
+    PluginLibrary library({PLAB_BINARY_DIR "/lib/plab"});
+    std::vector<model::TypeSummary> told = library.summaries();
+    CHECK(library.loaded().empty());
+    REQUIRE(told.size() == library.names().size());
+    REQUIRE(told.size() > 20);
+    for (model::TypeSummary& type : told)
+    {
+        CHECK(!type.loaded);
+        CHECK(!type.family.empty());
+        REQUIRE(library.require(type.name).ok());
+        type.loaded = true;
+    }
+    CHECK(library.summaries() == told);
+
+    const auto named = [&](const std::string& name)
+    { return std::find_if(told.begin(), told.end(), [&](const auto& t) { return t.name == name; }); };
+    const model::TypeSummary& gravity = *named("Field/Gravity");
+    CHECK(gravity.plugin == "fields");
+    REQUIRE(gravity.fields.size() == 1);
+    CHECK(gravity.fields[0] ==
+          model::FieldSummary{"acceleration", "param", "vector", "m/s^2", "0 0 -9.81", "", "of free fall, in the world", false});
+    REQUIRE(gravity.roles.size() == 1);
+    CHECK(gravity.roles[0].accepts == "body");
+    CHECK(gravity.roles[0].least == 1);
+    CHECK(gravity.roles[0].most == 4294967295);
+    CHECK(named("Solver/RungeKutta4")->order == 4);
+}
+
+TEST_CASE("rules and defaults in words")
+{
+    PluginLibrary library(std::vector<std::string>{});
+    REQUIRE(library.load_plugin(sample("none")).ok());
+    const std::vector<model::TypeSummary> types = library.summaries();
+    REQUIRE(types.size() == 2);
+    CHECK(types[0].name == "Sample/Better");
+    CHECK(types[0].loaded);
+    CHECK(types[0].fields == std::vector<model::FieldSummary>{{"value", "param", "real", "m", "2", "positive", "a length", false}});
 }

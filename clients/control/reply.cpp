@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "control/request.h"
+#include "control/table.h"
+
+namespace plab::control
+{
+namespace
+{
+
+std::string when(const link::Reply& r) { return "step " + std::to_string(r.step) + " (" + number(r.time) + " s)"; }
+
+std::string past_of(const link::Operation& op)
+{
+    static constexpr std::array<std::pair<const char*, const char*>, 13> kWords{{
+        {"add", "added"},
+        {"remove", "removed"},
+        {"swap", "swapped"},
+        {"set", "set"},
+        {"push", "pushed"},
+        {"pause", "paused"},
+        {"resume", "resumed"},
+        {"step", "steps granted:"},
+        {"rate", "rate is now"},
+        {"reset", "reset"},
+        {"load", "loaded"},
+        {"dt", "step length is now"},
+        {"shutdown", "shutting down"},
+    }};
+    std::string out = op.verb;
+    for (const auto& [verb, past] : kWords)
+        if (op.verb == verb) out = past;
+    if (!op.target.empty()) out += " " + op.target;
+    if (op.verb == "set")
+        for (const auto& [name, value] : op.values) out += " " + name + "=" + value;
+    if (!op.argument.empty() && op.verb != "swap") out += " " + op.argument;
+    return printable(out);
+}
+
+/// "kept a b; fresh c": the fates in the order of the brief's words, unknown ones last.
+void print_fields(const Console& console, const link::SwapReport& swap)
+{
+    std::vector<std::pair<std::string, Style>> fates{
+        {"kept", Style::Green}, {"converted", Style::Yellow}, {"given", Style::Cyan}, {"fresh", Style::Yellow}, {"lost", Style::Red}};
+    for (const link::FieldFate& f : swap.fields)
+        if (std::none_of(fates.begin(), fates.end(), [&](const auto& known) { return known.first == f.fate; }))
+            fates.emplace_back(f.fate, Style::Plain);
+    for (const auto& [fate, style] : fates)
+    {
+        std::string names;
+        for (const link::FieldFate& f : swap.fields)
+            if (f.fate == fate) names += (names.empty() ? "" : ", ") + printable(f.name);
+        if (names.empty()) names = "-";
+        const std::string padded = fate + std::string(fate.size() < 10 ? 10 - fate.size() : 1, ' ');
+        console.out("  " + console.styled(names == "-" ? Style::Dim : style, padded) + names + "\n");
+    }
+}
+
+std::string vector_text(const double (&v)[3]) { return exact_number(v[0]) + " " + exact_number(v[1]) + " " + exact_number(v[2]); }
+
+std::string change_text(const double (&a)[3], const double (&b)[3])
+{
+    return number(b[0] - a[0]) + " " + number(b[1] - a[1]) + " " + number(b[2] - a[2]);
+}
+
+void print_swap(const Console& console, const link::SwapReport& swap)
+{
+    console.out(console.styled(Style::Bold, printable(swap.component)) + ": " + printable(swap.from) + " -> " +
+                console.styled(Style::Bold, printable(swap.to)) + "\n");
+    print_fields(console, swap);
+    const link::StepOutcome &a = swap.with_old, &b = swap.with_new;
+    Table table({{"first step"}, {"with the old", Align::Right}, {"with the new", Align::Right}, {"difference", Align::Right}});
+    table.add({"energy, J", exact_number(a.energy), exact_number(b.energy), number(b.energy - a.energy)});
+    table.add({"momentum, N s", vector_text(a.momentum), vector_text(b.momentum), change_text(a.momentum, b.momentum)});
+    table.add({"error", exact_number(a.error), exact_number(b.error), number(b.error - a.error)});
+    table.add({"cost of the step", duration_text(a.cost_ns), duration_text(b.cost_ns), duration_text(b.cost_ns - a.cost_ns)});
+    table.print(console);
+    console.out("energy at the boundary " + exact_number(swap.energy_before) + " J\n");
+}
+
+}  // namespace
+
+void print_reply(const Console& console, const std::vector<link::Operation>& operations, const link::Reply& reply)
+{
+    std::string text;
+    for (const link::Operation& op : operations) text += (text.empty() ? "" : ", ") + past_of(op);
+    console.out(text + " at " + when(reply) + ", revision " + std::to_string(reply.revision) + ", run " + std::to_string(reply.run) +
+                ", pause " + duration_text(reply.pause_ns) + (reply.repeated ? " (carried out before)" : "") + "\n");
+    for (const link::SwapReport& swap : reply.swaps) print_swap(console, swap);
+}
+
+}  // namespace plab::control

@@ -1,0 +1,74 @@
+#include "control/request.h"
+
+#include <fstream>
+#include <iostream>
+
+#include "control/json.h"
+
+namespace plab::control
+{
+namespace
+{
+
+Exit refused(const Context& context, const link::Reply& reply)
+{
+    std::vector<std::string> reasons = reply.reasons;
+    if (reasons.empty()) reasons.push_back("the server gave no reason");
+    context.console.say("plabctl: " + reply.outcome + " at step " + std::to_string(reply.step) + ":");
+    for (const std::string& why : reasons) context.console.say("  " + printable(why));
+    return Exit::Refused;
+}
+
+}  // namespace
+
+void add_timing(CLI::App& command, Timing& timing)
+{
+    command.add_option("--at", timing.at, "take effect before this step; too late: refused")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("STEP");
+    command.add_option("--revision", timing.revision, "refuse unless the scene is at this revision")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N");
+}
+
+Exit send(Context& context, std::vector<link::Operation> operations, const Timing& timing)
+{
+    if (!context.is_connected())
+        if (const Exit e = context.connect(); e != Exit::Done) return e;
+    auto caller = link::Caller::make(context.session(), context.timeout(), context.stop());
+    if (!caller) return context.fail(Exit::NoServer, caller.errors());
+    const link::Request request{std::move(operations), timing.at, timing.revision};
+    auto reply = caller->call(request, context.timeout(), context.stop());
+    if (!reply && timing.at)
+        return context.fail(Exit::NoServer, reply.error().text() + "; step " + std::to_string(*timing.at) +
+                                                " may still be ahead: the request stands, --timeout waits longer");
+    if (!reply) return context.fail(Exit::NoServer, reply.error().text() + "; whether it was carried out is not known");
+    if (context.settings.json)
+    {
+        Json json{{"server", context.session().server()}};
+        json.update(json_of(*reply));
+        print(context.console, json);
+    }
+    else if (reply->done())
+        print_reply(context.console, request.operations, *reply);
+    if (!reply->done()) return refused(context, *reply);
+    return Exit::Done;
+}
+
+Result<std::string> read_text(const std::string& file)
+{
+    std::ifstream opened;
+    if (file != "-") opened.open(file, std::ios::binary);
+    if (file != "-" && !opened) return reason("cannot open '" + file + "'");
+    std::istream& in = file == "-" ? std::cin : opened;
+    std::string text(wire::kMostRequestBytes + 1, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (in.bad() || (!in.eof() && in.fail())) return reason("cannot read '" + file + "'");
+    if (text.size() > wire::kMostRequestBytes)
+        return reason("'" + file + "' is larger than a request may be: " + std::to_string(wire::kMostRequestBytes) + " bytes");
+    if (text.empty()) return reason("'" + file + "' is empty");
+    return text;
+}
+
+}  // namespace plab::control

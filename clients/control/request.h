@@ -1,0 +1,27 @@
+/// Sending a request and printing what came of it.
+#pragma once
+
+#include "control/context.h"
+#include "link/caller.h"
+
+namespace plab::control
+{
+
+/// --at and --revision, which every request may carry.
+struct Timing
+{
+    std::optional<std::int64_t> at;
+    std::optional<std::uint64_t> revision;
+};
+void add_timing(CLI::App& command, Timing& timing);
+
+/// Connects unless `context` is connected, sends, waits for the reply and prints it.
+Exit send(Context& context, std::vector<link::Operation> operations, const Timing& timing = {});
+
+/// The reply for people: what was done and when; of a swap everything that the server says.
+void print_reply(const Console& console, const std::vector<link::Operation>& operations, const link::Reply& reply);
+
+/// A file, or standard input for "-"; at most what a request may hold.
+Result<std::string> read_text(const std::string& file);
+
+}  // namespace plab::control

@@ -1,0 +1,121 @@
+#include "control/topics.h"
+
+#include "control/table.h"
+#include "link/json_text.h"
+
+namespace plab::control
+{
+namespace
+{
+
+constexpr double kQuiet = 0.3;  ///< s without news: what is there has shown itself
+
+constexpr const char* kExamples =
+    "  plabctl topics                                what is in the domain, pLab's or not\n"
+    "  plabctl topics rate plab/states -d 5          samples per second and their periods, a line each second\n"
+    "  plabctl topics bandwidth plab/states -n 3     bytes per second and sizes, three lines\n"
+    "  plabctl topics print plab/events --json       samples as lines of JSON\n"
+    "  plabctl topics print rt/chatter -n 1          a type of somebody else, fetched from its writer";
+
+std::string joined(const std::set<std::string>& words, const char* for_empty)
+{
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : "; ") + (word.empty() ? std::string(for_empty) : word);
+    return out;
+}
+
+const char* word_for(link::Origin origin)
+{
+    switch (origin)
+    {
+        case link::Origin::Plab:
+            return "yes";
+        case link::Origin::OtherVersion:
+            return "other version";
+        case link::Origin::Foreign:
+            return "no";
+    }
+    return "no";
+}
+
+std::string json_line(const std::vector<link::TopicInfo>& topics)
+{
+    link::JsonWriter json;
+    json.open('{').key("topics").open('[');
+    const auto list = [&](const char* key, const std::set<std::string>& words)
+    {
+        json.key(key).open('[');
+        for (const std::string& word : words) json.value(word);
+        json.close(']');
+    };
+    for (const link::TopicInfo& t : topics)
+    {
+        json.open('{').key("topic").value(t.name).key("type").value(t.type);
+        list("partitions", t.partitions);
+        json.key("writers").value(t.writers).key("readers").value(t.readers);
+        list("qos", t.qos);
+        json.key("plab").value(t.origin == link::Origin::Plab).key("origin").value(word_for(t.origin)).close('}');
+    }
+    return json.close(']').close('}').take() + "\n";
+}
+
+Exit run_topics(Context& context, const TopicsArguments& arguments)
+{
+    const bool is_list = arguments.what == "list";
+    if (is_list != arguments.topic.empty())
+        return context.fail(Exit::Usage, is_list ? "list takes no topic; print TOPIC shows its samples"
+                                                 : arguments.what + " needs a topic: plabctl topics " + arguments.what + " plab/states");
+    if (const Exit e = context.join(); e != Exit::Done) return e;
+    if (is_list) return list_topics(context, arguments);
+    if (arguments.what == "rate") return print_rate(context, arguments);
+    if (arguments.what == "bandwidth") return print_bandwidth(context, arguments);
+    return print_samples(context, arguments);
+}
+
+}  // namespace
+
+Exit list_topics(Context& context, const TopicsArguments& arguments)
+{
+    auto discovery = link::Discovery::make(context.session().participant());
+    if (!discovery) return context.fail(Exit::Failed, discovery.errors());
+    auto topics = discovery->topics(link::Seconds(kQuiet), context.timeout(), context.stop());
+    const std::string& only = arguments.partition.empty() ? context.settings.link.server : arguments.partition;
+    if (!only.empty()) std::erase_if(topics, [&](const link::TopicInfo& t) { return !t.partitions.contains(only); });
+    if (context.settings.json)
+        context.console.out(json_line(topics));
+    else if (topics.empty())
+        context.console.say("no topics in domain " + std::to_string(context.settings.link.domain.id) +
+                            (only.empty() ? "" : ", partition '" + only + "'"));
+    else
+    {
+        Table table({{"TOPIC"},
+                     {"TYPE", Align::Left, Shrink::Middle},
+                     {"PLAB"},
+                     {"PARTITION", Align::Left, Shrink::End},
+                     {"WRITERS", Align::Right},
+                     {"READERS", Align::Right},
+                     {"QOS", Align::Left, Shrink::End}});
+        for (const link::TopicInfo& t : topics)
+            table.add({t.name, t.type, word_for(t.origin), joined(t.partitions, "(default)"), std::to_string(t.writers),
+                       std::to_string(t.readers), joined(t.qos, "")},
+                      t.writers == 0 ? Style::Dim : Style::Plain);
+        table.print(context.console);
+    }
+    context.console.flush();
+    return Exit::Done;
+}
+
+void add_topics_command(CLI::App& app, Context& context)
+{
+    const auto arguments = std::make_shared<TopicsArguments>();
+    CLI::App& command = add_command(app, context, {"topics", "what is on the bus, pLab's or not: list, rate, bandwidth, print", kExamples},
+                                    [arguments](Context& c) { return run_topics(c, *arguments); });
+    command.add_option("what", arguments->what, "list, rate, bandwidth or print")
+        ->check(CLI::IsMember({"list", "rate", "bandwidth", "print"}))
+        ->capture_default_str();
+    command.add_option("topic", arguments->topic, "name of the topic, as list shows it");
+    command.add_option("--partition", arguments->partition, "only what is in this partition (of a server: its name)");
+    command.add_flag("--full", arguments->full, "print: do not cut long lists short");
+}
+
+}  // namespace plab::control

@@ -1,0 +1,158 @@
+#include <memory>
+
+#include "control/commands.h"
+#include "control/stream.h"
+#include "control/watch_print.h"
+#include "link/names.h"
+
+namespace plab::control
+{
+namespace
+{
+
+const std::vector<std::string> kStreams{"states", "collisions", "events", "metrics"};
+
+struct WatchOptions
+{
+    std::string stream;
+    std::vector<std::string> only;
+    double every = 0;  ///< s, simulated
+};
+
+/// Lets one sample through in each interval of simulated time; a new run begins anew.
+class Thinning
+{
+public:
+    explicit Thinning(double every) : every_(every) {}
+    bool takes(std::uint64_t run, double time)
+    {
+        // Half a nanosecond: times are multiples of dt, and rounding must not cost a sample.
+        if (run == run_ && time + 5e-10 < next_) return false;
+        next_ = run == run_ && next_ + every_ > time ? next_ + every_ : time + every_;
+        run_ = run;
+        return true;
+    }
+
+private:
+    double every_, next_ = 0;
+    std::uint64_t run_ = static_cast<std::uint64_t>(-1);
+};
+
+struct Watch
+{
+    Context& context;
+    link::Catalogue& catalogue;
+    WatchPrinter printer;
+    Limit limit;
+    Thinning thinning;
+    Numbers numbers;
+};
+
+/// Until a limit is reached, the server is gone or Ctrl-C: hands samples of T to `handle`.
+template <class T, class Handle>
+Exit stream(Watch& w, Handle handle)
+{
+    auto reader = w.context.session().reader<T>();
+    if (!reader) return w.context.fail(Exit::Failed, reader.errors());
+    while (!w.limit.is_reached())
+    {
+        if (w.context.stopped()) return Exit::Interrupted;
+        (void)w.catalogue.update();
+        (void)reader->take(
+            [&](const T& sample, const dds_sample_info_t& info)
+            {
+                if (info.valid_data && !w.limit.is_reached()) handle(sample);
+            });
+        if (!w.context.console.flush()) return Exit::Done;  // nobody reads on: `| head` has what it wanted
+        if (w.limit.is_reached()) break;
+        if (w.catalogue.server_is_gone()) return w.context.fail(Exit::NoServer, "server '" + w.context.session().server() + "' has gone");
+        (void)w.context.session().wait(*reader, w.limit.slice());
+    }
+    return Exit::Done;
+}
+
+Exit watch_states(Watch& w)
+{
+    const Exit e = stream<plab_v1_Frame>(w,
+                                         [&](const plab_v1_Frame& sample)
+                                         {
+                                             (void)w.numbers.missed_before(sample.sequence_number, 1);
+                                             if (!w.thinning.takes(sample.run, sample.time)) return;
+                                             w.printer.frame(frame_of(sample), w.catalogue);
+                                             w.limit.count();
+                                         });
+    // Who is slow misses frames; that is how states are delivered, and no failure.
+    if (w.numbers.missed() > 0) w.context.console.say("plabctl: " + std::to_string(w.numbers.missed()) + " frames were not delivered");
+    return e;
+}
+
+Exit watch_metrics(Watch& w)
+{
+    return stream<plab_v1_Metrics>(w,
+                                   [&](const plab_v1_Metrics& sample)
+                                   {
+                                       if (!w.thinning.takes(sample.run, sample.time)) return;
+                                       w.printer.metrics(link::metrics_of(sample));
+                                       w.limit.count();
+                                   });
+}
+
+template <class T, class Print>
+Exit watch_log(Watch& w, const char* what, Print print)
+{
+    return stream<T>(w,
+                     [&](const T& sample)
+                     {
+                         const std::uint32_t count = sample.entries._length;
+                         if (const auto missed = w.numbers.missed_before(sample.sequence_number, count); missed > 0)
+                             w.printer.gap(what, missed, sample.sequence_number);
+                         for (std::uint32_t i = 0; i < count && !w.limit.is_reached(); ++i)
+                             if (print(sample, i)) w.limit.count();
+                     });
+}
+
+Exit run_watch(Context& c, const WatchOptions& o)
+{
+    if (const Exit e = c.connect(); e != Exit::Done) return e;
+    auto catalogue = link::Catalogue::open(c.session(), o.stream == "states" ? static_cast<link::Parts>(link::Part::Objects) : 0);
+    if (!catalogue) return c.fail(Exit::Failed, catalogue.errors());
+    if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
+    const Selection selection{{o.only.begin(), o.only.end()}};
+    Watch w{c, *catalogue, WatchPrinter(c.console, c.settings.json, selection), Limit(c), Thinning(o.every), {}};
+    if (o.stream == "states") return watch_states(w);
+    if (o.stream == "metrics") return watch_metrics(w);
+    if (o.stream == "collisions")
+        return watch_log<plab_v1_Collisions>(w, "collisions",
+                                             [&](const auto& sample, std::uint32_t i) { return w.printer.collision(sample, i); });
+    return watch_log<plab_v1_Events>(w, "events", [&](const auto& sample, std::uint32_t i) { return w.printer.event(sample, i); });
+}
+
+std::string check_stream(const std::string& text)
+{
+    for (const std::string& known : kStreams)
+        if (text == known) return {};
+    return "no stream '" + text + "'" + link::did_you_mean(text, kStreams) + " There are states, collisions, events and metrics";
+}
+
+}  // namespace
+
+void add_watch_command(CLI::App& app, Context& context)
+{
+    auto o = std::make_shared<WatchOptions>();
+    CLI::App& command = add_command(app, context,
+                                    {"watch", "print states, collisions, events or metrics as they come",
+                                     "  plabctl watch events\n"
+                                     "  plabctl watch states --every 0.5 --only red -n 20\n"
+                                     "  plabctl watch collisions -d 60 --json > collisions.ndjson\n"},
+                                    [o](Context& c) { return run_watch(c, *o); });
+    command.add_option("stream", o->stream, "states, collisions, events or metrics")->required()->type_name("STREAM")->check(check_stream);
+    command.add_option("--only", o->only, "only what concerns this component (may be repeated)")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name("ID");
+    command.add_option("--every", o->every, "of states and metrics: one in so much simulated time")
+        ->check(CLI::PositiveNumber)
+        ->type_name("SECONDS");
+}
+
+}  // namespace plab::control

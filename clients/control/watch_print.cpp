@@ -1,0 +1,164 @@
+#include "control/watch_print.h"
+
+#include "control/table.h"
+
+namespace plab::control
+{
+namespace
+{
+
+std::string fixed(double value)
+{
+    char buffer[64];
+    return {buffer, static_cast<std::size_t>(std::snprintf(buffer, sizeof buffer, "%.4f", value))};
+}
+
+std::string padded(std::string text, std::size_t width)
+{
+    const std::size_t columns = columns_of(text);
+    return columns < width ? text + std::string(width - columns, ' ') : text;
+}
+
+Vec3 vector(const plab_v1_Vector& v) { return {v.x, v.y, v.z}; }
+
+std::string name_of(std::uint32_t handle, const link::Catalogue& catalogue)
+{
+    const link::Object* const object = catalogue.find_object(handle);
+    return object != nullptr ? object->id : "#" + std::to_string(handle);
+}
+
+Json frame_json(const Frame& f, const std::map<std::string, const Motion*>& motions)
+{
+    Json bodies = Json::object(), shafts = Json::object();
+    for (const auto& [id, motion] : motions) (motion->is_shaft ? shafts : bodies)[id] = json_of(*motion);
+    return {{"run", f.run},   {"revision", f.revision}, {"number", f.number}, {"step", f.step},
+            {"time", f.time}, {"stamp_ns", f.stamp_ns}, {"bodies", bodies},   {"shafts", shafts}};
+}
+
+Table motion_table(const std::map<std::string, const Motion*>& motions)
+{
+    Table table({{"object", Align::Left, Shrink::Middle},
+                 {"x", Align::Right},
+                 {"y", Align::Right},
+                 {"z", Align::Right},
+                 {"vx", Align::Right},
+                 {"vy", Align::Right},
+                 {"vz", Align::Right},
+                 {"angle", Align::Right},
+                 {"speed", Align::Right}});
+    for (const auto& [id, m] : motions)
+        if (m->is_shaft)
+            table.add({id, "", "", "", "", "", "", fixed(m->angle), fixed(m->speed)});
+        else
+            table.add({id, fixed(m->position.x), fixed(m->position.y), fixed(m->position.z), fixed(m->linear_velocity.x),
+                       fixed(m->linear_velocity.y), fixed(m->linear_velocity.z), "", ""});
+    return table;
+}
+
+std::string when(std::int64_t step, double time) { return "step " + std::to_string(step) + "  " + fixed(time) + " s"; }
+
+Style style_of(std::string_view severity)
+{
+    return severity == "failure" ? Style::Red : severity == "warning" ? Style::Yellow : Style::Plain;
+}
+
+}  // namespace
+
+void WatchPrinter::frame(const Frame& frame, const link::Catalogue& catalogue)
+{
+    std::map<std::string, const Motion*> motions;
+    for (const auto& [handle, motion] : frame.motions)
+        if (const std::string id = name_of(handle, catalogue); selection_.takes(id)) motions[id] = &motion;
+    if (json_) return print(console_, frame_json(frame, motions));
+    console_.out(console_.styled(Style::Bold, when(frame.step, frame.time)) + "\n");
+    motion_table(motions).print(console_, !has_title_);
+    has_title_ = true;
+}
+
+void WatchPrinter::metrics(const link::Metrics& metrics)
+{
+    link::Metrics m = metrics;
+    std::erase_if(m.interactions, [&](const link::InteractionMetrics& i) { return !selection_.takes(i.component); });
+    if (json_) return print(console_, json_of(m));
+    console_.out(console_.styled(Style::Bold, when(m.step, m.time)) + "  " + number(m.real_time_factor) + "x  " + duration_text(m.step_ns) +
+                 " a step  kinetic " + number(m.kinetic) + " J  stored " + number(m.stored) + " J  unexplained " + number(m.unexplained) +
+                 " J  " + std::to_string(m.contacts) + " contacts  deepest " + number(m.deepest) + " m\n");
+    Table table({{"interaction", Align::Left, Shrink::Middle},
+                 {"algorithm", Align::Left, Shrink::Middle},
+                 {"cost/step", Align::Right},
+                 {"error", Align::Right},
+                 {"work", Align::Right},
+                 {"state"}});
+    for (const link::InteractionMetrics& i : m.interactions)
+        table.add({i.component, i.resolved.empty() ? i.requested : i.resolved, duration_text(i.cost_ns), number(i.error),
+                   number(i.work) + " J", i.quarantined ? "quarantined" : ""},
+                  i.quarantined ? Style::Red : Style::Plain);
+    table.print(console_, !has_title_);
+    has_title_ = true;
+}
+
+bool WatchPrinter::collision(const plab_v1_Collisions& sample, std::uint32_t entry)
+{
+    const plab_v1_CollisionInfo& c = sample.entries._buffer[entry];
+    if (!selection_.takes(c.a) && !selection_.takes(c.b) && !selection_.takes(c.detector)) return false;
+    const Vec3 position = vector(c.position), impulse = vector(c.impulse);
+    if (json_)
+    {
+        print(console_, {{"run", sample.run},
+                         {"step", sample.step},
+                         {"number", sample.sequence_number + entry},
+                         {"kind", c.kind},
+                         {"time", c.time},
+                         {"detector", c.detector},
+                         {"a", c.a},
+                         {"b", c.b},
+                         {"position", json_of(position)},
+                         {"normal", json_of(vector(c.normal))},
+                         {"impulse", json_of(impulse)},
+                         {"depth", c.depth}});
+        return true;
+    }
+    std::string text = when(sample.step, c.time) + "  " + console_.styled(Style::Cyan, padded(printable(c.kind), 6)) + "  " +
+                       printable(c.a) + " - " + printable(c.b) + "  at " + number(position.x) + " " + number(position.y) + " " +
+                       number(position.z);
+    if (const double j = length(impulse); j > 0) text += "  impulse " + number(j) + " N s";
+    if (c.depth > 0) text += "  depth " + number(c.depth) + " m";
+    console_.out(text + "  (" + printable(c.detector) + ")\n");
+    return true;
+}
+
+bool WatchPrinter::event(const plab_v1_Events& sample, std::uint32_t entry)
+{
+    const plab_v1_EventInfo& e = sample.entries._buffer[entry];
+    if (!selection_.takes(e.component) && !selection_.takes(e.a) && !selection_.takes(e.b)) return false;
+    const std::vector<double> values(e.values._buffer, e.values._buffer + e.values._length);
+    if (json_)
+    {
+        print(console_, {{"run", sample.run},
+                         {"step", sample.step},
+                         {"number", sample.sequence_number + entry},
+                         {"kind", e.kind},
+                         {"severity", e.severity},
+                         {"time", e.time},
+                         {"component", e.component},
+                         {"a", e.a},
+                         {"b", e.b},
+                         {"message", e.message},
+                         {"values", values}});
+        return true;
+    }
+    std::string text = when(sample.step, e.time) + "  " + padded(printable(e.severity), 7) + "  " + printable(e.kind);
+    for (const char* id : {e.component, e.a, e.b})
+        if (*id != 0) text += "  " + printable(id);
+    if (*e.message != 0) text += ": " + printable(e.message);
+    for (const double value : values) text += " " + number(value);
+    console_.out(console_.styled(style_of(e.severity), text) + "\n");
+    return true;
+}
+
+void WatchPrinter::gap(const char* what, std::uint64_t missed, std::uint64_t before)
+{
+    console_.say("plabctl: missed " + std::to_string(missed) + " " + what + " before number " + std::to_string(before));
+}
+
+}  // namespace plab::control

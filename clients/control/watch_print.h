@@ -1,0 +1,39 @@
+/// How `watch` prints samples: lines for people, or one JSON object on each line.
+#pragma once
+
+#include <set>
+
+#include "control/context.h"
+#include "control/frames.h"
+
+namespace plab::control
+{
+
+/// What `watch` leaves out.
+struct Selection
+{
+    std::set<std::string> ids;  ///< empty: all
+    bool takes(const std::string& id) const { return ids.empty() || ids.count(id) != 0; }
+};
+
+class WatchPrinter
+{
+public:
+    WatchPrinter(const Console& console, bool json, const Selection& selection) : console_(console), json_(json), selection_(selection) {}
+
+    void frame(const Frame& frame, const link::Catalogue& catalogue);
+    void metrics(const link::Metrics& metrics);
+    /// Prints the entry, if it is selected; true if so.
+    bool collision(const plab_v1_Collisions& sample, std::uint32_t entry);
+    bool event(const plab_v1_Events& sample, std::uint32_t entry);
+    /// Numbers are missing: says so where it happened.
+    void gap(const char* what, std::uint64_t missed, std::uint64_t before);
+
+private:
+    const Console& console_;
+    bool json_;
+    const Selection& selection_;
+    bool has_title_ = false;
+};
+
+}  // namespace plab::control

@@ -1,0 +1,146 @@
+#include "logger/logger.h"
+
+#include <algorithm>
+
+namespace plab::logger
+{
+namespace
+{
+
+template <class T>
+Result<void> subscribe(const link::Session& session, const wire::Entity& waitset, wire::Reader<T>& out)
+{
+    auto reader = session.reader<T>();
+    if (!reader) return reader.errors();
+    out = reader.take();
+    (void)dds_set_status_mask(out.entity().get(), DDS_DATA_AVAILABLE_STATUS);
+    if (const auto code = dds_waitset_attach(waitset.get(), out.entity().get(), 0); code < 0)
+        return wire::failed(std::string("cannot wait for ") + wire::topic_of<T>().name, code);
+    return {};
+}
+
+}  // namespace
+
+Result<Logger> Logger::make(const link::Session& session, const Options& options, Output output)
+{
+    Logger out(std::move(output));
+    out.options_ = options;
+    out.lines_ = options.json ? make_json_lines() : make_human_lines();
+    out.waitset_ = wire::Entity(dds_create_waitset(session.participant().get()));
+    if (auto done = subscribe(session, out.waitset_, out.events_); !done) return done.errors();
+    if (auto done = subscribe(session, out.waitset_, out.collisions_); !done) return done.errors();
+    if (options.metrics)
+        if (auto done = subscribe(session, out.waitset_, out.metrics_); !done) return done.errors();
+    // Last: once it says that the server is there, the others listen already.
+    if (auto done = subscribe(session, out.waitset_, out.server_); !done) return done.errors();
+    return out;
+}
+
+Output::State Logger::step(link::Seconds longest)
+{
+    (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::Session::duration(longest));
+    take_server();
+    take_events();
+    take_collisions();
+    if (options_.metrics) take_metrics();
+    write_entries();
+    return output_.flush();
+}
+
+bool Logger::is_wanted(const std::string& kind, Severity severity) const
+{
+    return severity >= options_.severity && kind.starts_with(options_.kind);
+}
+
+void Logger::say_server(ServerChange change, const link::ServerInfo& info)
+{
+    // What the old one still brought comes before.
+    take_events();
+    take_collisions();
+    write_entries();
+    if (change != ServerChange::Gone) run_ = info.run;
+    output_.write(lines_->server(change, info));
+}
+
+void Logger::take_server()
+{
+    (void)server_.take(
+        [&](const plab_v1_Server& sample, const dds_sample_info_t& info)
+        {
+            if (!info.valid_data || info.instance_state != DDS_IST_ALIVE)
+            {
+                if (is_there_) say_server(ServerChange::Gone, last_);
+                is_there_ = false;
+                return;
+            }
+            const link::ServerInfo now = link::server_of(sample);
+            const bool is_another = was_there_ && now.started_ns != last_.started_ns;
+            // One that was killed is missed only when its lease is over; its successor may be there before.
+            if (is_there_ && is_another) say_server(ServerChange::Gone, last_);
+            if (!is_there_ || is_another) say_server(was_there_ ? ServerChange::Back : ServerChange::Found, now);
+            is_there_ = was_there_ = true;
+            last_ = now;
+            if (options_.status) entries_.push_back({sample.run, sample.step, true, lines_->status(sample)});
+        });
+}
+
+template <class Sample>
+void Logger::note_gap(const Sample& sample, const dds_sample_info_t& info, Numbers& numbers, const char* topic)
+{
+    const auto missing = numbers.note(info.publication_handle, sample.sequence_number, sample.entries._length);
+    if (missing.count == 0) return;
+    entries_.push_back({sample.run, sample.step, false, lines_->gap({topic, missing.first, missing.count})});
+}
+
+void Logger::take_events()
+{
+    (void)events_.take(
+        [&](const plab_v1_Events& sample, const dds_sample_info_t& info)
+        {
+            if (!info.valid_data) return;
+            note_gap(sample, info, event_numbers_, wire::topic_of<plab_v1_Events>().name);
+            for (std::uint32_t i = 0; i < sample.entries._length; ++i)
+                if (const auto& e = sample.entries._buffer[i]; is_wanted(e.kind, severity_of(e.severity)))
+                    entries_.push_back({sample.run, sample.step, true, lines_->event(sample, i)});
+        });
+}
+
+void Logger::take_collisions()
+{
+    (void)collisions_.take(
+        [&](const plab_v1_Collisions& sample, const dds_sample_info_t& info)
+        {
+            if (!info.valid_data) return;
+            note_gap(sample, info, collision_numbers_, wire::topic_of<plab_v1_Collisions>().name);
+            for (std::uint32_t i = 0; i < sample.entries._length; ++i)
+                if (is_wanted(std::string("collision.") + sample.entries._buffer[i].kind, Severity::Info))
+                    entries_.push_back({sample.run, sample.step, true, lines_->collision(sample, i)});
+        });
+}
+
+void Logger::take_metrics()
+{
+    (void)metrics_.take(
+        [&](const plab_v1_Metrics& sample, const dds_sample_info_t& info)
+        {
+            if (info.valid_data) entries_.push_back({sample.run, sample.step, true, lines_->metrics(sample)});
+        });
+}
+
+/// Topics arrive each for itself: what came at once is put into the order in which it happened.
+void Logger::write_entries()
+{
+    std::stable_sort(entries_.begin(), entries_.end(),
+                     [](const Entry& a, const Entry& b) { return a.run != b.run ? a.run < b.run : a.step < b.step; });
+    for (const Entry& entry : entries_)
+    {
+        if (is_full()) break;
+        if (run_ != 0 && entry.run > run_) output_.write(lines_->run(entry.run));
+        run_ = std::max(run_, entry.run);
+        output_.write(entry.text);
+        if (entry.counts) ++written_;
+    }
+    entries_.clear();
+}
+
+}  // namespace plab::logger

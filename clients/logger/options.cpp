@@ -1,0 +1,74 @@
+#include "logger/options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace plab::logger
+{
+namespace
+{
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  plab-log                                what happens, line by line, until Ctrl-C\n"
+    "  plab-log --json --out run.jsonl         as lines of JSON, appended to a file\n"
+    "  plab-log --kind collision.impact -n 10  the next ten impacts\n"
+    "  plab-log --severity warning             trouble only\n"
+    "  plab-log --metrics --status             cost, error and energy, and the server's state, as well\n"
+    "\n"
+    "Kinds are \"collision.begin\", \".impact\", \".rest\", \".end\", and those of events: \"script.print\", \"request.swap\", ...\n"
+    "A server that ends is waited for; what was missed has a line of its own. Exit codes: 0 done, 1 cannot write,\n"
+    "2 wrong use, 3 no server.";
+
+void add_options(CLI::App& app, Options& options, std::string& severity)
+{
+    app.add_option("--server", options.link.server, "name of the server; without it, the only one (PLAB_SERVER)");
+    app.add_option("--domain", options.link.domain.id, "DDS domain, 0 to 232 (PLAB_DOMAIN)")->check(CLI::Range(0, 232));
+    app.add_option("--interface", options.link.domain.network_interface, "network interface instead of loopback (PLAB_INTERFACE)");
+    app.add_option("--timeout", options.timeout, "seconds to wait for the server; 0: as long as it takes")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_flag("--json", options.json, "one JSON object per line");
+    app.add_option("--out", options.out, "file to append to instead of standard output");
+    app.add_flag("--metrics", options.metrics, "log metrics, too");
+    app.add_flag("--status", options.status, "log the server's state, too");
+    app.add_option("--kind", options.kind, "only kinds that begin so; \"collision\" for all collisions");
+    app.add_option("--severity", severity, "least severity: info, warning, failure; collisions are info")
+        ->check(CLI::IsMember({"info", "warning", "failure"}));
+    app.add_option("-n,--count", options.count, "end after so many entries")->check(CLI::PositiveNumber);
+    app.add_option("-d,--duration", options.duration, "end after so many seconds")->check(CLI::PositiveNumber);
+}
+
+}  // namespace
+
+Severity severity_of(std::string_view word)
+{
+    if (word == "info") return Severity::Info;
+    return word == "warning" ? Severity::Warning : Severity::Failure;
+}
+
+std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options& options)
+{
+    if (auto from_environment = link::options_from_environment(); from_environment)
+        options.link = from_environment.take();
+    else
+        return ParseEnd{2, "plab-log: " + from_environment.error().text() + "\n"};
+    std::string severity = "info";
+    CLI::App app("Logs what happens in a pLab server: events and collisions, as lines.", "plab-log");
+    app.footer(kExamples);
+    app.set_version_flag("--version", std::string("plab-log ") + PLAB_VERSION);
+    add_options(app, options, severity);
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError& e)
+    {
+        std::ostringstream text;
+        const int code = app.exit(e, text, text);
+        return ParseEnd{code == 0 ? 0 : 2, text.str()};
+    }
+    options.severity = severity_of(severity);
+    return {};
+}
+
+}  // namespace plab::logger

@@ -1,0 +1,38 @@
+/// Moments one after the other, or why there are no more.
+#pragma once
+
+#include "viewer/run.h"
+#include "viewer/source.h"
+
+namespace plab::view
+{
+
+class Feed
+{
+public:
+    Feed(Source& source, const Options& options, const Interrupt& interrupt)
+        : source_(source), interrupt_(interrupt), timeout_(options.timeout)
+    {
+    }
+
+    /// Waits for the next moment. None: end() says why.
+    std::optional<Moment> next();
+    /// What the catalogue shows, for a paused server that has sent no state yet; `stale` says whether objects may have
+    /// moved since. None: it is not paused, or has sent states.
+    std::optional<Moment> standing_still(bool& stale) const;
+
+    const Outcome& end() const { return end_; }
+    /// The server has gone, in order: what it will never send cannot be waited for.
+    bool server_has_gone() const { return gone_; }
+
+private:
+    Outcome timed_out() const;
+
+    Source& source_;
+    const Interrupt& interrupt_;
+    link::Seconds timeout_;
+    Outcome end_;
+    bool any_ = false, gone_ = false;
+};
+
+}  // namespace plab::view

@@ -1,0 +1,189 @@
+#include "viewer/run.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "viewer/feed.h"
+#include "viewer/film.h"
+#include "viewer/painter.h"
+#include "viewer/progress.h"
+#include "viewer/sequence.h"
+
+namespace plab::view
+{
+namespace
+{
+
+Outcome failed(const Error& error) { return {Exit::Failed, error.text()}; }
+
+std::string in_seconds(double value)
+{
+    char text[48];
+    std::snprintf(text, sizeof text, "%.3f s", value);
+    return text;
+}
+
+/// One picture; tells what it is of, because a state at or after a time may be later than that.
+Result<void> take_shot(const Shot& shot, const Moment& moment, Painter& painter)
+{
+    auto picture = painter.paint(moment, shot.camera);
+    if (!picture) return picture.errors();
+    if (auto written = render::write_png(shot.file, **picture); !written) return written;
+    std::printf("%s: t = %s, step %lld\n", shot.file.c_str(), in_seconds(moment.state.time).c_str(),
+                static_cast<long long>(moment.state.step));
+    std::fflush(stdout);
+    return {};
+}
+
+Outcome take_shots(const Options& options, Feed& feed, Painter& painter)
+{
+    Progress progress("pictures");
+    std::optional<Moment> moment;
+    std::uint64_t taken = 0;
+    for (const Shot& shot : options.shots)
+    {
+        while (!moment || (shot.at && moment->state.time < *shot.at - kSameTime))
+        {
+            moment = feed.next();
+            if (!moment) return {feed.end().exit, "'" + shot.file + "' cannot be had: " + feed.end().message};
+            progress.update(taken, options.shots.size(), moment->state.time);
+        }
+        if (auto done = take_shot(shot, *moment, painter); !done) return failed(done.error());
+        ++taken;
+    }
+    return {};
+}
+
+/// Where the frames of a sequence go.
+class FrameSink
+{
+public:
+    virtual ~FrameSink() = default;
+    virtual Result<void> add(std::uint64_t index, const render::Picture& picture) = 0;
+    virtual Result<void> finish() = 0;
+};
+
+class FolderSink : public FrameSink
+{
+public:
+    explicit FolderSink(std::string folder) : folder_(std::move(folder)) {}
+    Result<void> add(std::uint64_t index, const render::Picture& picture) override
+    {
+        char name[40];
+        std::snprintf(name, sizeof name, "/frame_%04llu.png", static_cast<unsigned long long>(index));
+        return render::write_png(folder_ + name, picture);
+    }
+    Result<void> finish() override { return {}; }
+
+private:
+    std::string folder_;
+};
+
+class FilmSink : public FrameSink
+{
+public:
+    explicit FilmSink(Film film) : film_(std::move(film)) {}
+    Result<void> add(std::uint64_t, const render::Picture& picture) override { return film_.add(picture); }
+    Result<void> finish() override { return film_.finish(); }
+
+private:
+    Film film_;
+};
+
+Result<std::unique_ptr<FrameSink>> open_sink(const Options& options)
+{
+    if (options.task == Task::Film)
+    {
+        auto ffmpeg = find_ffmpeg();
+        if (!ffmpeg) return ffmpeg.errors();
+        auto film = Film::open(*ffmpeg, options.target, options.width, options.height, options.frames_per_second);
+        if (!film) return film.errors();
+        return std::unique_ptr<FrameSink>(std::make_unique<FilmSink>(film.take()));
+    }
+    std::error_code error;
+    std::filesystem::create_directories(options.target, error);
+    if (error) return reason("cannot make the folder '" + options.target + "': " + error.message());
+    return std::unique_ptr<FrameSink>(std::make_unique<FolderSink>(options.target));
+}
+
+/// What the pictures do not show by themselves.
+void tell_doubts(const Options& options, const Sequence& sequence, std::uint64_t given_up, Progress& progress)
+{
+    if (sequence.runs() > 1) progress.say("the scene was loaded or reset meanwhile: times start anew in the frames");
+    if (given_up > 0)
+        progress.say(std::to_string(given_up) + " states were left out: drawing is slower than the simulation (try a lower --rate there)");
+    if (sequence.widest_gap() > 1.5 / options.frames_per_second)
+        progress.say("some frames are drawn between states that are up to " + in_seconds(sequence.widest_gap()) + " apart");
+}
+
+/// What is missing at the end, as an outcome.
+Outcome judge(const Sequence& sequence, const Feed& feed)
+{
+    const std::string lost = sequence.missing() > 0 ? "the first " + std::to_string(sequence.missing()) +
+                                                          " frames cannot be had: they are of before the first state that came"
+                                                    : "";
+    if (sequence.done()) return lost.empty() ? Outcome{} : Outcome{Exit::Failed, lost};
+    // Without an end, the server's going is the end.
+    if (feed.server_has_gone() && !sequence.total() && sequence.drawn() > 0) return {};
+    std::string why = feed.end().message;
+    if (const auto total = sequence.total(); total && feed.end().exit != Exit::Interrupted)
+        why += "; " + std::to_string(*total - sequence.drawn()) + " of " + std::to_string(*total) + " frames cannot be had" +
+               (sequence.drawn() > 0 ? ", the last state was of t = " + in_seconds(sequence.time()) : "");
+    return {feed.end().exit, why};
+}
+
+Outcome make_sequence(const Options& options, Source& source, Feed& feed, Painter& painter, FrameSink& sink)
+{
+    Progress progress("frames");
+    Sequence sequence({options.frames_per_second, options.at, options.duration, options.until});
+    const auto draw = [&](std::uint64_t index, const Moment& moment) -> Result<void>
+    {
+        auto picture = painter.paint(moment);
+        if (!picture) return picture.errors();
+        auto added = sink.add(index, **picture);
+        progress.update(sequence.drawn() + 1, sequence.total(), moment.state.time);
+        return added;
+    };
+    while (!sequence.done())
+    {
+        auto moment = feed.next();
+        if (!moment) break;
+        if (auto drawn = sequence.advance(std::move(*moment), draw); !drawn) return failed(drawn.error());
+    }
+    const Outcome outcome = judge(sequence, feed);
+    if (sequence.drawn() > 0)
+        if (auto finished = sink.finish(); !finished) return failed(finished.error());
+    tell_doubts(options, sequence, source.moments().given_up(), progress);
+    progress.finish(sequence.drawn());
+    return outcome;
+}
+
+}  // namespace
+
+Outcome run(const Options& options, const Interrupt& interrupt)
+{
+    // What can fail without a server fails before anybody waits for one.
+    if (options.task == Task::Film)
+        if (auto ffmpeg = find_ffmpeg(); !ffmpeg) return failed(ffmpeg.error());
+    auto painter = Painter::make(options);
+    if (!painter) return failed(painter.error());
+
+    const auto stop = [&interrupt] { return interrupt.pending(); };
+    const auto unreached = [&](const Error& error) -> Outcome {
+        return interrupt.pending() ? Outcome{Exit::Interrupted, "interrupted"} : Outcome{Exit::NoServer, error.text()};
+    };
+    auto session = link::Session::join(options.link);
+    if (!session) return failed(session.error());
+    if (auto found = session->find_server(options.link, options.timeout, stop); !found) return unreached(found.error());
+    const Grid grid{options.task == Task::Shots ? 0 : options.frames_per_second, options.at};
+    auto source = Source::open(*session, grid, options.timeout, stop);
+    if (!source) return unreached(source.error());
+
+    Feed feed(**source, options, interrupt);
+    if (options.task == Task::Shots) return take_shots(options, feed, *painter);
+    auto sink = open_sink(options);
+    if (!sink) return failed(sink.error());
+    return make_sequence(options, **source, feed, *painter, **sink);
+}
+
+}  // namespace plab::view

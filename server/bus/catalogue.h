@@ -1,0 +1,64 @@
+/// What the scene consists of, as keyed topics that late joiners receive too. Bus thread only.
+#pragma once
+
+#include <array>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bus/samples.h"
+#include "bus/trouble.h"
+#include "idl/entity.h"
+
+namespace plab::bus
+{
+
+/// One topic: an instance for each component. Key: the member of T that names it.
+template <class T, char* T::*Key, class Sample>
+class Shelf
+{
+public:
+    Result<void> open(const wire::Entity& participant, const wire::Entity& publisher);
+    template <class Record>
+    void put(const std::string& id, const std::string& type, const Record& record, Trouble& trouble);
+    void dispose(const std::string& id, Trouble& trouble);
+    /// Disposes of what is in none of `records`; id_of gives a record's id.
+    template <class Record, class IdOf>
+    void dispose_all_but(const std::vector<Record>& records, IdOf&& id_of, Trouble& trouble);
+    bool has_type_below(std::string_view prefix) const;
+    const wire::Entity& writer() const { return writer_.entity(); }
+
+private:
+    void dispose_key(const std::string& id, Trouble& trouble);
+
+    wire::Writer<T> writer_;
+    Sample sample_;
+    std::map<std::string, std::string> type_of_;  // id -> type, of what is there
+};
+
+class Catalogue
+{
+public:
+    explicit Catalogue(std::string server) : server_(std::move(server)) {}
+
+    Result<void> open(const wire::Entity& participant, const wire::Entity& publisher);
+    void apply(const publish::CatalogueChange& change, Trouble& trouble);
+    void dispose_all(Trouble& trouble);
+    /// Whether an interaction has a type like "Camera/...".
+    bool has_type_below(std::string_view prefix) const;
+    std::array<dds_entity_t, 5> writers() const;
+
+private:
+    void dispose_what_is_gone(const publish::CatalogueChange& change, Trouble& trouble);
+
+    std::string server_;
+    wire::Writer<plab_v1_Scene> scene_;
+    SceneSample scene_sample_;
+    Shelf<plab_v1_Object, &plab_v1_Object::component, ObjectSample> objects_;
+    Shelf<plab_v1_Shape, &plab_v1_Shape::component, ShapeSample> shapes_;
+    Shelf<plab_v1_Interaction, &plab_v1_Interaction::component, InteractionSample> interactions_;
+    Shelf<plab_v1_Type, &plab_v1_Type::type_name, TypeSample> types_;
+};
+
+}  // namespace plab::bus

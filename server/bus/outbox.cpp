@@ -1,0 +1,32 @@
+#include "bus/outbox.h"
+
+#include <algorithm>
+
+#include "idl/topics.h"
+
+namespace plab::bus
+{
+
+void Outbox::send(const publish::Answer& answer, bool repeated, Clock::time_point now)
+{
+    const dds_return_t code = write_(answer, repeated);
+    if (code == DDS_RETCODE_OK) return;
+    if (failed_.size() < kMost)
+        failed_.push_back({answer, repeated, now});
+    else
+        (void)trouble_->check(wire::topic_of<plab_v1_Reply>().name, code);
+}
+
+void Outbox::retry(Clock::time_point now)
+{
+    std::erase_if(failed_,
+                  [&](const Failed& f)
+                  {
+                      const dds_return_t code = write_(f.answer, f.repeated);
+                      if (code == DDS_RETCODE_OK) return true;
+                      if (now - f.since < kPatience) return false;
+                      return !trouble_->check(wire::topic_of<plab_v1_Reply>().name, code);
+                  });
+}
+
+}  // namespace plab::bus

@@ -1,0 +1,41 @@
+/// Replies on their way out. Written at once; one that cannot be written is tried again for a while.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+
+#include "bus/trouble.h"
+#include "publish/records.h"
+
+namespace plab::bus
+{
+
+class Outbox
+{
+public:
+    using Clock = std::chrono::steady_clock;
+    using Write = std::function<dds_return_t(const publish::Answer& answer, bool repeated)>;
+    static constexpr std::chrono::seconds kPatience{2};
+    static constexpr std::size_t kMost = 1024;  ///< that are tried again
+
+    Outbox(Write write, Trouble& trouble) : write_(std::move(write)), trouble_(&trouble) {}
+
+    void send(const publish::Answer& answer, bool repeated, Clock::time_point now);
+    /// Tries those that failed once more; gives up on the ones that failed for too long. Their clients may ask again.
+    void retry(Clock::time_point now);
+    bool empty() const { return failed_.empty(); }
+
+private:
+    struct Failed
+    {
+        publish::Answer answer;
+        bool repeated = false;
+        Clock::time_point since;
+    };
+    Write write_;
+    Trouble* trouble_;
+    std::deque<Failed> failed_;
+};
+
+}  // namespace plab::bus

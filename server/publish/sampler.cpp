@@ -1,0 +1,76 @@
+#include "publish/sampler.h"
+
+#include "publish/entries.h"
+#include "publish/figures.h"
+
+namespace plab::publish
+{
+namespace
+{
+
+/// A rate over less real time says more about the clock than about the run.
+constexpr Nanoseconds kShortestWindow = 100'000'000;
+
+void fill_ledger(const simulation::Simulation& s, Metrics& out)
+{
+    const simulation::Totals totals = s.totals();
+    out.kinetic = totals.kinetic, out.stored = totals.stored, out.work = totals.work;
+    out.of_requests = s.stepper().requests_work(), out.unexplained = unexplained(s, totals);
+    out.momentum = totals.momentum, out.angular_momentum = totals.angular_momentum;
+}
+
+InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, std::string resolved, double cost)
+{
+    const world::World& world = s.world();
+    InteractionMetrics out;
+    out.component = world.id_of(i), out.requested = world.type_of(i)->info.name, out.resolved = std::move(resolved);
+    out.cost_ns = cost, out.error = s.error_of(i);
+    out.work = i < s.stepper().work().size() ? s.stepper().work()[i] : 0.0;
+    out.quarantined = world.component(i).quarantined;
+    out.outputs = parameters_of(world, i, world::kind_bit(FieldKind::Output));
+    return out;
+}
+
+}  // namespace
+
+void Sampler::read_costs(const simulation::Simulation& s)
+{
+    const simulation::CostBook& book = s.stepper().cost();
+    if (run_ != s.run() || book.steps < since_.steps) since_ = {}, cost_of_rows_.clear(), step_ns_ = 0;
+    run_ = s.run();
+    // Between two steps nothing is known that was not known before.
+    if (book.steps == since_.steps) return;
+    cost_of_rows_ = cost_of_rows(s, since_);
+    step_ns_ = static_cast<double>(book.total - since_.total) / static_cast<double>(book.steps - since_.steps);
+    since_ = book;
+}
+
+void Sampler::read_rate(const simulation::Simulation& s, Nanoseconds now)
+{
+    const Nanoseconds passed = now - rate_since_;
+    if (rate_since_ != 0 && passed < kShortestWindow && s.time() >= rate_from_) return;
+    const bool known = rate_since_ != 0 && s.time() >= rate_from_;
+    real_time_factor_ = known ? (s.time() - rate_from_) * 1e9 / static_cast<double>(passed) : 0.0;
+    rate_since_ = now, rate_from_ = s.time();
+}
+
+Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
+{
+    read_costs(s);
+    read_rate(s, now);
+    Metrics out;
+    out.run = s.run(), out.revision = s.revision(), out.step = s.tick(), out.time = s.time();
+    out.step_ns = step_ns_, out.real_time_factor = real_time_factor_;
+    fill_ledger(s, out);
+    out.residual = s.stepper().report().worst_residual, out.deepest = s.stepper().report().deepest;
+    out.contacts = static_cast<std::uint32_t>(s.stepper().contacts().pairs().size());
+    std::vector<std::string> resolved = resolved_algorithms(s);
+    for (const std::uint32_t i : s.world().in_id_order())
+    {
+        const world::Component& c = s.world().component(i);
+        if (is_interaction(c)) out.interactions.push_back(metrics_of(s, i, std::move(resolved[i]), cost_of(cost_of_rows_, c)));
+    }
+    return out;
+}
+
+}  // namespace plab::publish

@@ -1,0 +1,37 @@
+/// Letters as strokes, drawn for this program: no font file is needed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace plab::render
+{
+
+/// A letter in pixels: how much ink, and how much of the seam around it, covers each.
+struct Glyph
+{
+    int left = 0, top = 0;  ///< of the first pixel, from the pen on the base line; top counts upwards
+    int width = 0, height = 0;
+    int advance = 0;                      ///< to the next letter
+    std::vector<std::uint8_t> ink, seam;  ///< 0 to 255, rows from the top
+};
+
+class Font
+{
+public:
+    /// `capital`: height of capitals, in pixels.
+    explicit Font(double capital);
+    /// What is not in ASCII is shown as a box.
+    const Glyph& glyph(char32_t letter) const;
+
+private:
+    static constexpr char32_t kFirst = 32, kLast = 126;
+    std::array<Glyph, kLast - kFirst + 2> glyphs_;  ///< the box last
+};
+
+/// Takes the first letter off UTF-8 text; a byte that begins none counts as a letter of its own.
+char32_t next_letter(std::string_view& text);
+
+}  // namespace plab::render

@@ -1,0 +1,189 @@
+// Requests over the bus against a real server: exactly once, at their step, for their client only.
+#include "server.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+struct Client
+{
+    explicit Client(const Server& server) : session(server.session()), caller(make(session)) {}
+    static link::Caller make(const link::Session& session)
+    {
+        auto caller = link::Caller::make(session, Seconds(5));
+        REQUIRE_MESSAGE(caller.ok(), caller.error().text());
+        return caller.take();
+    }
+    link::Session session;
+    link::Caller caller;
+};
+
+}  // namespace
+
+TEST_CASE("a swap takes effect at the step that it names, and the reply says what it did")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--rate", "max", "--paused"});
+    Client client(server);
+    link::Request swap{{{"swap", "gears", "Constraint/AngularVelocity/Impulse"}}, 100, {}};
+    auto number = client.caller.send(swap);
+    REQUIRE(number.ok());
+    Client other(server);
+    CHECK(ask(other.caller, {"step", "", "200"}).done());
+    bool answered = false;
+    for (int i = 0; i < 200 && !answered; ++i)
+    {
+        std::this_thread::sleep_for(Milliseconds(20));
+        client.caller.take(
+            [&](std::uint64_t of, link::Reply reply)
+            {
+                answered = true;
+                CHECK(of == *number);
+                CHECK_MESSAGE(reply.done(), reasons(reply));
+                CHECK(reply.step == 100);
+                CHECK(reply.revision == 1);
+                REQUIRE(reply.swaps.size() == 1);
+                CHECK(reply.swaps[0].from == "Constraint/AngularVelocity/Graph");
+                CHECK(reply.swaps[0].to == "Constraint/AngularVelocity/Impulse");
+                CHECK(reply.swaps[0].fields.size() > 3);
+                CHECK(reply.pause_ns > 0);
+                CHECK(reply.swaps[0].with_new.energy == doctest::Approx(reply.swaps[0].with_old.energy).epsilon(1e-3));
+            });
+    }
+    CHECK(answered);
+    // A step that has passed is refused as late, and so is another revision.
+    const link::Reply late = ask(client.caller, link::Request{{{"pause"}}, 5, {}});
+    CHECK(late.outcome == "late");
+    const link::Reply stale = ask(client.caller, link::Request{{{"remove", "gears"}}, {}, 0});
+    CHECK(stale.outcome == "refused");
+    CHECK(has(reasons(stale), "revision 1"));
+}
+
+TEST_CASE("a request that is sent again is carried out once, and its answer comes again")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
+    Client client(server);
+    const link::Request step{{{"step", "", "3"}}, {}, {}};
+    auto number = client.caller.send(step);
+    REQUIRE(number.ok());
+    std::this_thread::sleep_for(Milliseconds(200));
+    for (int i = 0; i < 4; ++i) REQUIRE(client.caller.send_again(step, *number).ok());
+    std::this_thread::sleep_for(Milliseconds(500));
+    int first = 0, repeated = 0;
+    client.caller.take(
+        [&](std::uint64_t of, link::Reply reply)
+        {
+            CHECK(of == *number);
+            CHECK(reply.done());
+            ++(reply.repeated ? repeated : first);
+        });
+    CHECK(first == 1);
+    CHECK(repeated == 4);
+    CHECK(ask(client.caller, {"pause"}).step == 3);
+}
+
+TEST_CASE("replies go to the client that asked")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
+    Client a(server), b(server);
+    for (int i = 0; i < 10; ++i) CHECK(ask(a.caller, {"step", "", "1"}).done());
+    int seen = 0;
+    b.caller.take([&](std::uint64_t, link::Reply) { ++seen; });
+    CHECK(seen == 0);
+    CHECK(ask(b.caller, {"pause"}).done());
+}
+
+TEST_CASE("several operations are one transaction: all or none")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
+    Client client(server);
+    const link::Reply refused =
+        ask(client.caller, link::Request{{{"set", "red", "", "", {{"mass", "0.05"}}}, {"remove", "no_such"}}, {}, {}});
+    CHECK(refused.outcome == "refused");
+    CHECK(has(reasons(refused), "no_such"));
+    auto objects = client.session.reader<plab_v1_Object>();
+    REQUIRE(client.session.wait_for_history(*objects, Seconds(5)));
+    double mass = 0;
+    const auto look = [&](const plab_v1_Object& o, const dds_sample_info_t& info)
+    {
+        if (info.valid_data && std::string(o.component) == "red") mass = o.mass;
+    };
+    (void)objects->take(look);
+    CHECK(mass == doctest::Approx(0.02));
+    CHECK(ask(client.caller, {"set", "red", "", "", {{"mass", "50 g"}}}).done());
+    for (int i = 0; i < 50 && mass < 0.03; ++i)
+    {
+        (void)client.session.wait(*objects, Seconds(0.1));
+        (void)objects->take(look);
+    }
+    CHECK(mass == doctest::Approx(0.05));
+}
+
+TEST_CASE("components come and go: the catalogue follows, and what refers to the lost is protected")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
+    Client client(server);
+    auto interactions = client.session.reader<plab_v1_Interaction>();
+    REQUIRE(client.session.wait_for_history(*interactions, Seconds(5)));
+    std::map<std::string, std::string> known;
+    const auto look = [&](const plab_v1_Interaction& i, const dds_sample_info_t& info)
+    {
+        if (info.valid_data && info.instance_state == DDS_IST_ALIVE)
+            known[i.component] = i.type_name;
+        else
+            known.erase(i.component);
+    };
+    const auto until = [&](auto condition)
+    {
+        for (int i = 0; i < 50 && !condition(); ++i)
+        {
+            (void)client.session.wait(*interactions, Seconds(0.1));
+            (void)interactions->take(look);
+        }
+        return condition();
+    };
+    CHECK(until([&] { return known.count("gears") == 1 && known.count("contact.response") == 1; }));
+    const link::Reply added =
+        ask(client.caller, {"add", "", "", "<component id=\"weight\" type=\"Field/Gravity\" between=\"*\" acceleration=\"0 0 -1\"/>"});
+    CHECK_MESSAGE(added.done(), reasons(added));
+    CHECK(until([&] { return known["weight"] == "Field/Gravity"; }));
+    CHECK(ask(client.caller, {"swap", "contact.response", "Response/None"}).done());
+    CHECK(until([&] { return known["contact.response"] == "Response/None"; }));
+    const link::Reply used = ask(client.caller, {"remove", "red"});
+    CHECK(used.outcome == "refused");
+    CHECK(has(reasons(used), "still used"));
+    CHECK(ask(client.caller, {"remove", "weight"}).done());
+    CHECK(until([&] { return known.count("weight") == 0; }));
+    // A fragment with an error changes nothing and says where it is.
+    const link::Reply bad = ask(client.caller, {"add", "", "more.xml", "<component id=\"w\" type=\"Field/Gravty\" between=\"*\"/>"});
+    CHECK(bad.outcome == "refused");
+    CHECK_MESSAGE(has(reasons(bad), "more.xml:1:"), reasons(bad));
+    CHECK(has(reasons(bad), "Field/Gravity"));
+}
+
+TEST_CASE("load, reset, dt and shutdown")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
+    Client client(server);
+    CHECK(ask(client.caller, {"step", "", "5"}).done());
+    std::this_thread::sleep_for(Milliseconds(200));
+    const link::Reply reset = ask(client.caller, {"reset"});
+    CHECK(reset.done());
+    CHECK(reset.run == 2);
+    CHECK(ask(client.caller, {"dt", "", "1/480"}).done());
+    const link::Reply load =
+        ask(client.caller, {"load", "", "small.xml",
+                            "<plab version=\"1\"><scene dt=\"1/100\"/><component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" "
+                            "inertia=\"1 1 1\"/></plab>"});
+    CHECK_MESSAGE(load.done(), reasons(load));
+    CHECK(load.run == 3);
+    const link::Reply bad =
+        ask(client.caller, {"load", "", "bad.xml", "<plab version=\"1\"><component id=\"a\" type=\"Nothing\"/></plab>"});
+    CHECK(bad.outcome == "refused");
+    CHECK(bad.run == 3);
+    CHECK(has(reasons(bad), "bad.xml:1:"));
+    CHECK(ask(client.caller, {"push", "ball", "", "", {{"impulse", "0 0 2"}}}).done());
+    CHECK(ask(client.caller, {"shutdown"}).done());
+    CHECK(server.process().wait(Milliseconds(5000)) == 0);
+}

@@ -1,0 +1,82 @@
+/// A real plabd on the loopback bus, for tests of what its clients see.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include "link/caller.h"
+#include "support/process.h"
+
+namespace plab::test
+{
+
+using link::Seconds;
+
+class Server
+{
+public:
+    explicit Server(const std::string& scene, std::vector<std::string> options = {}, const std::vector<std::string>& environment = {})
+        : name_(unique_name("test")), process_(command(scene, name_, std::move(options)), environment)
+    {
+        REQUIRE_MESSAGE(process_.wait_for("ready after", Milliseconds(10000)), process_.errors());
+    }
+
+    const std::string& name() const { return name_; }
+    Process& process() { return process_; }
+
+    /// SIGTERM; the exit code.
+    int end()
+    {
+        process_.signal(15);
+        return process_.wait(Milliseconds(5000));
+    }
+    link::Session session() const
+    {
+        link::Options options;
+        options.server = name_;
+        auto session = link::Session::find(options, Seconds(5));
+        REQUIRE_MESSAGE(session.ok(), session.error().text());
+        return session.take();
+    }
+
+private:
+    static std::vector<std::string> command(const std::string& scene, const std::string& name, std::vector<std::string> options)
+    {
+        std::vector<std::string> out{program("plabd"), scene, "--name", name};
+        out.insert(out.end(), options.begin(), options.end());
+        return out;
+    }
+
+    std::string name_;
+    Process process_;
+};
+
+/// The reply to one operation; the test fails if there is none.
+inline link::Reply ask(link::Caller& caller, link::Request request)
+{
+    auto reply = caller.call(request, Seconds(10));
+    REQUIRE_MESSAGE(reply.ok(), reply.error().text());
+    return reply.take();
+}
+inline link::Reply ask(link::Caller& caller, link::Operation operation)
+{
+    return ask(caller, link::Request{{std::move(operation)}, {}, {}});
+}
+
+/// plabctl against that server.
+inline Outcome control(const Server& server, std::vector<std::string> arguments)
+{
+    std::vector<std::string> command{program("plabctl"), "--server", server.name(), "--timeout", "5"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run(command);
+}
+
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+inline std::string reasons(const link::Reply& reply)
+{
+    std::string out;
+    for (const std::string& r : reply.reasons) out += r + "\n";
+    return out;
+}
+
+}  // namespace plab::test

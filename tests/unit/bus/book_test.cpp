@@ -1,0 +1,243 @@
+// Requests before and after the step loop: form, exactly once, replies that do not go out at once. No DDS here.
+#include "bus/outbox.h"
+#include "bus/request_book.h"
+#include "bus/request_check.h"
+#include "bus/wire_view.h"
+#include "doctest/doctest.h"
+#include "idl/topics.h"
+
+using namespace plab;
+using bus::RequestBook;
+using Verdict = bus::RequestBook::Verdict;
+
+namespace
+{
+
+publish::ClientId client(std::uint16_t n) { return {1, static_cast<std::uint8_t>(n), static_cast<std::uint8_t>(n >> 8)}; }
+
+publish::Answer answer(const publish::ClientId& id, std::uint64_t number, Tick step = 0)
+{
+    publish::Answer a;
+    a.client = id, a.number = number, a.reply.done = true, a.reply.step = step;
+    return a;
+}
+
+RequestBook::Decision open(RequestBook& book, std::uint16_t who, std::uint64_t number)
+{
+    return book.open(client(who), number, std::nullopt);
+}
+
+std::string why(const RequestBook::Decision& decision) { return decision.answer.reply.errors.at(0).text(); }
+
+/// A request with one operation and one value, whose texts are the caller's.
+struct RawRequest
+{
+    plab_v1_NamedText value{bus::text("name"), bus::text("1")};
+    plab_v1_Operation operation{bus::text("set"), bus::text("ball"), bus::text(""), bus::text(""), {1, 1, &value, false}};
+    plab_v1_Request wire{{1}, 1, -1, -1, {1, 1, &operation, false}};
+
+    std::string refusal() const
+    {
+        const auto read = bus::read_request(wire);
+        return read ? "" : read.error().text();
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a request is new once: under way it is waited for, answered it is answered again")
+{
+    RequestBook book({});
+    CHECK(open(book, 1, 1).verdict == Verdict::New);
+    CHECK(open(book, 1, 1).verdict == Verdict::Waiting);
+    CHECK(open(book, 2, 1).verdict == Verdict::New);  // another client's first
+    CHECK(book.waiting() == 2);
+    CHECK(book.close(answer(client(1), 1, 77)));
+    CHECK(book.waiting() == 1);
+    const auto again = open(book, 1, 1);
+    CHECK(again.verdict == Verdict::Answered);
+    CHECK(again.answer.reply.step == 77);
+    CHECK(again.answer.reply.done);
+    CHECK_FALSE(book.close(answer(client(1), 1)));  // answered already
+    CHECK_FALSE(book.close(answer(client(9), 1)));  // never asked
+}
+
+TEST_CASE("numbers may leave gaps but must rise")
+{
+    RequestBook book({});
+    CHECK(open(book, 1, 5).verdict == Verdict::New);
+    CHECK(open(book, 1, 9).verdict == Verdict::New);
+    const auto late = open(book, 1, 7);
+    CHECK(late.verdict == Verdict::Refused);
+    CHECK(why(late) == "request 7 came after request 9: numbers must rise");
+    CHECK(open(book, 1, 5).verdict == Verdict::Waiting);
+    CHECK(open(book, 1, 10).verdict == Verdict::New);
+}
+
+TEST_CASE("the last answers are kept, and a request whose answer is forgotten is not carried out again")
+{
+    RequestBook book({.answers = 3});
+    for (std::uint64_t n = 1; n <= 5; ++n)
+    {
+        CHECK(open(book, 1, n).verdict == Verdict::New);
+        CHECK(book.close(answer(client(1), n)));
+    }
+    CHECK(open(book, 1, 3).verdict == Verdict::Answered);
+    CHECK(open(book, 1, 5).verdict == Verdict::Answered);
+    const auto forgotten = open(book, 1, 2);
+    CHECK(forgotten.verdict == Verdict::Refused);
+    CHECK(why(forgotten).find("its answer is not kept any more") != std::string::npos);
+}
+
+TEST_CASE("a refusal is an answer like any other: the same request does not slip in later")
+{
+    RequestBook book({.waiting = 1});
+    CHECK(open(book, 1, 1).verdict == Verdict::New);
+    const auto full = open(book, 2, 1);
+    CHECK(full.verdict == Verdict::Refused);
+    CHECK(why(full).find("1 requests are waiting already") == 0);
+    CHECK(book.close(answer(client(1), 1)));
+    CHECK(open(book, 2, 1).verdict == Verdict::Answered);
+    CHECK(open(book, 2, 2).verdict == Verdict::New);
+    CHECK(book.open(client(3), 4, reason("bad")).verdict == Verdict::Refused);
+    const auto again = open(book, 3, 4);
+    CHECK(again.verdict == Verdict::Answered);
+    CHECK(why(again) == "bad");
+}
+
+TEST_CASE("without id or number a request is refused, and leaves nothing behind")
+{
+    RequestBook book({});
+    CHECK(book.open({}, 1, std::nullopt).verdict == Verdict::Refused);
+    CHECK(book.open(client(1), 0, std::nullopt).verdict == Verdict::Refused);
+    CHECK(book.clients() == 0);
+    CHECK(book.answer_bytes() == 0);
+}
+
+TEST_CASE("the client that was silent for longest is forgotten, but none that still waits")
+{
+    RequestBook book({.clients = 3});
+    CHECK(open(book, 1, 1).verdict == Verdict::New);  // stays open
+    for (std::uint16_t who = 2; who <= 4; ++who)
+    {
+        CHECK(open(book, who, 1).verdict == Verdict::New);
+        CHECK(book.close(answer(client(who), 1)));
+    }
+    CHECK(book.clients() == 3);
+    CHECK(open(book, 1, 1).verdict == Verdict::Waiting);
+    CHECK(open(book, 4, 1).verdict == Verdict::Answered);
+    CHECK(open(book, 2, 1).verdict == Verdict::New);  // nobody knows it any more
+}
+
+TEST_CASE("answers take a bounded amount of memory, however long they are")
+{
+    RequestBook book({.answer_bytes = 100000});
+    for (std::uint16_t who = 1; who <= 50; ++who)
+        for (std::uint64_t n = 1; n <= 10; ++n)
+        {
+            CHECK(open(book, who, n).verdict == Verdict::New);
+            publish::Answer long_one = answer(client(who), n);
+            long_one.reply.errors.push_back(reason(std::string(5000, 'x')));
+            CHECK(book.close(long_one));
+            CHECK(book.answer_bytes() <= 100000);
+        }
+    CHECK(open(book, 50, 10).verdict == Verdict::Answered);
+    CHECK(open(book, 50, 9).verdict == Verdict::Answered);
+    CHECK(book.clients() < 10);
+}
+
+TEST_CASE("the form of a request is checked")
+{
+    RawRequest good;
+    const auto read = bus::read_request(good.wire);
+    REQUIRE(read.ok());
+    REQUIRE(read->operations.size() == 1);
+    CHECK(read->operations[0].target == "ball");
+    CHECK(read->operations[0].values == std::vector<std::pair<std::string, std::string>>{{"name", "1"}});
+
+    RawRequest r;
+    r.wire.client[0] = 0;
+    CHECK(r.refusal() == "the request has no client id: 16 random bytes are right");
+    RawRequest zero;
+    zero.wire.number = 0;
+    CHECK(zero.refusal() == "the request has number 0: the first one of a client is 1");
+    RawRequest at;
+    at.wire.at = -2;
+    CHECK(at.refusal() == "the request is for step -2: steps count from 0, and -1 is the next one");
+    RawRequest revision;
+    revision.wire.revision = -7;
+    CHECK(revision.refusal() == "the request is for revision -7: revisions count from 0, and -1 is any");
+    RawRequest none;
+    none.wire.operations._length = 0;
+    CHECK(none.refusal() == "the request has no operation");
+    RawRequest many;
+    const std::vector<plab_v1_Operation> operations(wire::kMostOperations + 1, many.operation);
+    many.wire.operations = {257, 257, const_cast<plab_v1_Operation*>(operations.data()), false};
+    CHECK(many.refusal() == "the request has 257 operations: at most 256 may be asked for at once");
+    many.wire.operations._length = 256;
+    CHECK(many.refusal().empty());
+    RawRequest latin;
+    latin.operation.target = bus::text("b\xe4ll");
+    CHECK(latin.refusal() == "a target is not UTF-8");
+}
+
+TEST_CASE("the text of a request is limited, and so is the number of its values")
+{
+    RawRequest r;
+    const std::string below(wire::kMostRequestBytes - 100, 'x'), above(wire::kMostRequestBytes, 'x');
+    r.operation.blueprint = bus::text(below);
+    CHECK(r.refusal().empty());
+    r.operation.blueprint = bus::text(above);
+    CHECK(r.refusal() == "the request has more than 4194304 bytes of text");
+    RawRequest empties;
+    const std::vector<plab_v1_NamedText> values(wire::kMostRequestBytes / 2, {bus::text(""), bus::text("")});
+    const auto count = static_cast<std::uint32_t>(values.size());
+    empties.operation.values = {count, count, const_cast<plab_v1_NamedText*>(values.data()), false};
+    CHECK(empties.refusal() == "the request has more than 4194304 bytes of text");
+}
+
+TEST_CASE("UTF-8 is what RFC 3629 says")
+{
+    for (const char* good : {"", "a", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xf4\x8f\xbf\xbf", "\xed\x9f\xbf", "\xee\x80\x80"})
+        CHECK(bus::is_utf8(good));
+    for (const char* bad : {"\x80", "\xc0\x80", "\xc1\xbf", "\xc3", "\xc3(", "\xe0\x80\x80", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xe2\x82",
+                            "\xe2\x82(", "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xff", "ok\xfe"})
+        CHECK_FALSE(bus::is_utf8(bad));
+}
+
+TEST_CASE("a reply that cannot be written is tried again, and given up with a word after a while")
+{
+    std::vector<std::string> log;
+    bus::Trouble trouble([](void* to, const char* line) { static_cast<std::vector<std::string>*>(to)->emplace_back(line); }, &log);
+    dds_return_t code = DDS_RETCODE_OUT_OF_RESOURCES;
+    std::vector<std::uint64_t> written;
+    bus::Outbox outbox(
+        [&](const publish::Answer& a, bool)
+        {
+            if (code == DDS_RETCODE_OK) written.push_back(a.number);
+            return code;
+        },
+        trouble);
+    const auto begin = bus::Outbox::Clock::now();
+    outbox.send(answer(client(1), 1), false, begin);
+    outbox.send(answer(client(1), 2), false, begin);
+    outbox.retry(begin + std::chrono::seconds(1));
+    CHECK_FALSE(outbox.empty());
+    code = DDS_RETCODE_OK;
+    outbox.retry(begin + std::chrono::seconds(1));
+    CHECK(outbox.empty());
+    CHECK(written == std::vector<std::uint64_t>{1, 2});
+    trouble.report();
+    CHECK(log.empty());
+
+    code = DDS_RETCODE_OUT_OF_RESOURCES;
+    outbox.send(answer(client(1), 3), false, begin);
+    outbox.retry(begin + std::chrono::seconds(3));
+    CHECK(outbox.empty());
+    trouble.report();
+    REQUIRE(log.size() == 1);
+    CHECK(log[0] == "plab/replies: 1 samples could not be written: Out Of Resources");
+    CHECK(trouble.lost("plab/replies") == 1);
+    trouble.report();
+    CHECK(log.size() == 1);
+}

@@ -1,0 +1,293 @@
+// Requests and replies over DDS.
+#include <map>
+
+#include "bus/wire_view.h"
+#include "support.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+link::Caller caller_of(const link::Session& session)
+{
+    auto caller = link::Caller::make(session, 5s);
+    REQUIRE(caller.ok());
+    return caller.take();
+}
+
+link::Request a_pause() { return {{{"pause"}}, std::nullopt, std::nullopt}; }
+
+/// Waits for the next request.
+publish::RequestText next(TestBus& bus)
+{
+    publish::RequestText request;
+    REQUIRE(eventually([&] { return bus->take(request); }));
+    return request;
+}
+
+void answer(TestBus& bus, const publish::RequestText& request, Tick step)
+{
+    publish::Answer a;
+    a.client = request.client, a.number = request.number, a.reply.done = true, a.reply.step = step, a.reply.revision = 4;
+    simulation::SwapReport swap;
+    swap.id = "gear", swap.from = "G/A", swap.to = "G/B", swap.fields = {{"x", simulation::Fate::Kept}, {"y", simulation::Fate::Lost}};
+    swap.with_new.momentum = {1, 2, 3};
+    a.reply.swaps = {swap};
+    bus->answer(std::move(a));
+}
+
+/// Waits for one reply.
+std::pair<std::uint64_t, link::Reply> reply(link::Caller& caller, std::chrono::milliseconds longest = 5s)
+{
+    std::pair<std::uint64_t, link::Reply> out{0, {}};
+    (void)eventually(
+        [&]
+        {
+            caller.take([&](std::uint64_t number, link::Reply r) { out = {number, std::move(r)}; });
+            return out.first != 0;
+        },
+        longest);
+    return out;
+}
+
+/// Writes what no client of ours would, and hears all replies, to whomever they go.
+class Rogue
+{
+public:
+    explicit Rogue(const link::Session& session) : replies_(reader_of<plab_v1_Reply>(session))
+    {
+        auto writer = session.writer<plab_v1_Request>();
+        REQUIRE(writer.ok());
+        writer_ = writer.take();
+        REQUIRE(eventually([&] { return writer_.readers() > 0 && replies_.writers() > 0; }));
+    }
+    /// The reason of the refusal that came; empty if none did.
+    std::string refused(const plab_v1_Request& request)
+    {
+        REQUIRE(writer_.write(request) == DDS_RETCODE_OK);
+        std::string why;
+        (void)eventually(
+            [&]
+            {
+                (void)replies_.take(
+                    [&](const plab_v1_Reply& r, const dds_sample_info_t& info)
+                    {
+                        if (info.valid_data && std::string(r.outcome) == "refused") why = r.reasons._buffer[0];
+                    });
+                return !why.empty();
+            },
+            3s);
+        return why;
+    }
+
+private:
+    wire::Reader<plab_v1_Reply> replies_;
+    wire::Writer<plab_v1_Request> writer_;
+};
+
+}  // namespace
+
+TEST_CASE("a request arrives as it was sent, and its reply as it was given")
+{
+    TestBus bus;
+    const link::Session session = bus.session();
+    link::Caller caller = caller_of(session);
+    link::Request request{{{"set", "ball", "", "", {{"mass", "2 kg"}, {"x", "1"}}}, {"add", "", "", "<plab/>"}}, 90, 7};
+    const int before = bus.wakes();
+    REQUIRE(caller.send(request).ok());
+    const publish::RequestText got = next(bus);
+    CHECK(bus.wakes() > before);
+    CHECK(got.number == 1);
+    CHECK(got.at == 90);
+    CHECK(got.revision == 7);
+    CHECK(got.arrived_ns > 0);
+    REQUIRE(got.operations.size() == 2);
+    CHECK(got.operations[0].verb == "set");
+    CHECK(got.operations[0].target == "ball");
+    CHECK(got.operations[0].values == std::vector<std::pair<std::string, std::string>>{{"mass", "2 kg"}, {"x", "1"}});
+    CHECK(got.operations[1].blueprint == "<plab/>");
+    answer(bus, got, 90);
+    const auto [number, r] = reply(caller);
+    CHECK(number == 1);
+    CHECK(r.done());
+    CHECK_FALSE(r.repeated);
+    CHECK(r.step == 90);
+    CHECK(r.revision == 4);
+    REQUIRE(r.swaps.size() == 1);
+    CHECK(r.swaps[0].to == "G/B");
+    REQUIRE(r.swaps[0].fields.size() == 2);
+    CHECK(r.swaps[0].fields[1].fate == "lost");
+    CHECK(r.swaps[0].with_new.momentum[2] == 3);
+}
+
+TEST_CASE("a repeated request is handed out once; its answer comes again")
+{
+    TestBus bus;
+    const link::Session session = bus.session();
+    link::Caller caller = caller_of(session);
+    const auto number = caller.send(a_pause());
+    REQUIRE(number.ok());
+    for (int i = 0; i < 3; ++i) REQUIRE(caller.send_again(a_pause(), *number).ok());
+    const publish::RequestText got = next(bus);
+    publish::RequestText other;
+    std::this_thread::sleep_for(100ms);
+    CHECK_FALSE(bus->take(other));
+    answer(bus, got, 5);
+    CHECK_FALSE(reply(caller).second.repeated);
+    CHECK(reply(caller, 100ms).first == 0);  // one answer, however often it was sent while it waited
+    REQUIRE(caller.send_again(a_pause(), *number).ok());
+    const auto again = reply(caller);
+    CHECK(again.first == *number);
+    CHECK(again.second.repeated);
+    CHECK(again.second.done());
+    CHECK(again.second.step == 5);
+    CHECK_FALSE(bus->take(other));
+}
+
+TEST_CASE("call() repeats until there is an answer, and it is carried out once")
+{
+    TestBus bus;
+    const link::Session session = bus.session();
+    link::Caller caller = caller_of(session);
+    std::atomic<int> carried_out{0};
+    std::atomic<bool> stop{false};
+    std::thread loop(
+        [&]
+        {
+            publish::RequestText request;
+            const auto slow = std::chrono::steady_clock::now() + 2500ms;
+            while (!stop)
+            {
+                std::this_thread::sleep_for(1ms);
+                if (std::chrono::steady_clock::now() < slow || !bus->take(request)) continue;
+                ++carried_out;
+                answer(bus, request, 1);
+            }
+        });
+    const auto r = caller.call(a_pause(), 8s);
+    const auto second = caller.call(a_pause(), 8s);
+    stop = true;
+    loop.join();
+    REQUIRE(r.ok());
+    CHECK(r->done());
+    REQUIRE(second.ok());
+    CHECK(second->done());
+    CHECK(carried_out == 2);
+}
+
+TEST_CASE("clients do not see each other's replies")
+{
+    TestBus bus;
+    const link::Session session = bus.session(), elsewhere = bus.session();
+    link::Caller a = caller_of(session), b = caller_of(elsewhere);
+    REQUIRE(a.send(a_pause()).ok());
+    const publish::RequestText of_a = next(bus);
+    REQUIRE(b.send(a_pause()).ok());
+    REQUIRE(b.send(a_pause()).ok());
+    const publish::RequestText first = next(bus), second = next(bus);
+    answer(bus, second, 22), answer(bus, of_a, 10), answer(bus, first, 21);
+    std::map<std::uint64_t, Tick> to_a, to_b;
+    CHECK(eventually(
+        [&]
+        {
+            a.take([&](std::uint64_t n, const link::Reply& r) { to_a[n] = r.step; });
+            b.take([&](std::uint64_t n, const link::Reply& r) { to_b[n] = r.step; });
+            return to_a.size() + to_b.size() == 3;
+        }));
+    CHECK(to_a == std::map<std::uint64_t, Tick>{{1, 10}});
+    CHECK(to_b == std::map<std::uint64_t, Tick>{{1, 21}, {2, 22}});
+}
+
+TEST_CASE("garbage is refused with a reason, and never reaches the step loop")
+{
+    TestBus bus;
+    const link::Session session = bus.session();
+    Rogue rogue(session);
+    const std::string big(wire::kMostRequestBytes + 10, 'x'), latin = "b\xe4ll";
+    plab_v1_Operation operation{bus::text("pause"), nullptr, nullptr, nullptr, {}};
+    plab_v1_Request request{{9}, 1, -1, -1, {1, 1, &operation, false}};
+    const auto with = [&](auto&& change)
+    {
+        plab_v1_Request changed = request;
+        change(changed);
+        ++request.number;
+        return rogue.refused(changed);
+    };
+    CHECK(with([](auto& r) { r.client[0] = 0; }).find("no client id") != std::string::npos);
+    CHECK(with([](auto& r) { r.number = 0; }).find("number 0") != std::string::npos);
+    CHECK(with([](auto& r) { r.at = -3; }).find("step -3") != std::string::npos);
+    CHECK(with([](auto& r) { r.operations._length = 0; }).find("no operation") != std::string::npos);
+    CHECK(with([](auto& r) { r.number = 2; }).find("numbers must rise") != std::string::npos);
+    operation.target = bus::text(latin);
+    CHECK(rogue.refused(request).find("not UTF-8") != std::string::npos);
+    operation.target = bus::text(big), ++request.number;
+    CHECK(rogue.refused(request).find("more than 4194304 bytes") != std::string::npos);
+    publish::RequestText none;
+    CHECK_FALSE(bus->take(none));
+    // And who behaves is served.
+    link::Caller caller = caller_of(session);
+    REQUIRE(caller.send(a_pause()).ok());
+    CHECK(next(bus).operations[0].verb == "pause");
+}
+
+TEST_CASE("more requests than may wait are refused; none that was accepted is lost")
+{
+    TestBus bus;
+    const link::Session session = bus.session();
+    link::Caller caller = caller_of(session);
+    constexpr std::size_t kSent = wire::kMostRequestsWaiting + 200;
+    std::map<std::uint64_t, std::string> outcomes;
+    const auto listen = [&] { caller.take([&](std::uint64_t n, const link::Reply& r) { outcomes[n] = r.outcome; }); };
+    for (std::size_t i = 0; i < kSent; ++i)
+    {
+        REQUIRE(caller.send(a_pause()).ok());
+        if (i % 16 == 0) listen();
+    }
+    CHECK(eventually(
+        [&]
+        {
+            listen();
+            return outcomes.size() == kSent - wire::kMostRequestsWaiting;
+        }));
+    for (const auto& [n, outcome] : outcomes) CHECK(outcome == "refused");
+    std::uint64_t expected = 0;
+    publish::RequestText request;
+    while (bus->take(request))
+    {
+        CHECK(request.number == ++expected);
+        answer(bus, request, 1);
+        if (expected % 16 == 0) std::this_thread::sleep_for(1ms), listen();
+    }
+    CHECK(expected == wire::kMostRequestsWaiting);
+    CHECK(eventually(
+        [&]
+        {
+            listen();
+            return outcomes.size() == kSent;
+        }));
+}
+
+TEST_CASE("whoever has the reply finds in the catalogue what the request did")
+{
+    TestBus bus;
+    const link::Session session = bus.session();
+    link::Caller caller = caller_of(session);
+    for (int i = 0; i < 100; ++i)
+    {
+        REQUIRE(caller.send(a_pause()).ok());
+        const publish::RequestText request = next(bus);
+        publish::CatalogueChange change;
+        const std::string id = "o" + std::to_string(i);
+        change.objects.emplace_back().component = id;
+        REQUIRE(bus->catalogue(std::move(change)));
+        answer(bus, request, i);
+        REQUIRE(reply(caller).second.done());
+        auto objects = reader_of<plab_v1_Object>(session);
+        REQUIRE(session.wait_for_history(objects, 5s));
+        bool found = false;
+        (void)objects.take([&](const plab_v1_Object& o, const dds_sample_info_t&) { found = found || o.component == id; });
+        REQUIRE(found);
+    }
+}

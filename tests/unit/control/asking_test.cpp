@@ -1,0 +1,151 @@
+// What plabctl prints of a server: lists, show, wait.
+#include "plabctl.h"
+
+using namespace plab::test;
+
+TEST_CASE("servers lists those of the domain, and it is an error if there are none")
+{
+    const Outcome nobody = plabctl("servers --json");
+    CHECK(nobody.code == 3);
+    CHECK(nobody.json()["servers"].empty());
+    CHECK(has(nobody.err, "no server was found in domain " + std::to_string(test_domain())));
+    FakeServer one(test_domain(), "one"), two(test_domain(), "two");
+    const Outcome both = plabctl("servers --json");
+    CHECK(both.code == 0);
+    REQUIRE(both.json()["servers"].size() == 2);
+    CHECK(both.json()["servers"][0]["name"] == "one");
+    CHECK(both.json()["servers"][1]["process"] == 42);
+    CHECK(has(plabctl("servers").out, "scene.xml"));
+}
+
+TEST_CASE("a server is found by name, or if it is the only one")
+{
+    FakeServer lab(test_domain(), "lab");
+    CHECK(plabctl("objects").code == 0);
+    CHECK(plabctl("objects", "PLAB_SERVER=lab").code == 0);
+    const Outcome wrong = plabctl("objects --server lap --timeout 0.5");
+    CHECK(wrong.code == 3);
+    CHECK(has(wrong.err, "no server 'lap' was found"));
+    CHECK(has(wrong.err, "there are: lab"));
+    FakeServer other(test_domain(), "other");
+    const Outcome unclear = plabctl("objects");
+    CHECK(unclear.code == 3);
+    CHECK(has(unclear.err, "several servers are there (lab, other)"));
+    CHECK(plabctl("objects -s other").code == 0);
+}
+
+TEST_CASE("objects shows where things are now")
+{
+    FakeServer server(test_domain(), "lab");
+    const Json json = plabctl("objects --json").json();
+    CHECK(json["server"] == "lab");
+    REQUIRE(json["objects"].size() == 2);
+    CHECK(json["objects"][1]["id"] == "red");
+    CHECK(json["objects"][1]["kind"] == "body");
+    CHECK(json["objects"][1]["position"] == Json({1.4, 0.3, 1.0}));
+    CHECK(json["objects"][1]["state"]["position"] == Json({1.5, 0.25, 1.0}));
+    CHECK(json["objects"][0]["inertia"] == 0.005);
+    CHECK(json["objects"][0]["state"]["angle"] == 3.25);
+    CHECK(json["objects"][0]["color"].is_null());
+    const Outcome table = plabctl("objects");
+    REQUIRE(table.lines().size() == 3);
+    CHECK(table.lines()[0].starts_with("object"));
+    CHECK(has(table.lines()[1], "a_fan_with_a_very_long_name"));
+    CHECK(has(table.lines()[1], "40 rad/s"));
+    CHECK(has(table.lines()[2], "0.5 m/s"));
+    CHECK(table.err.empty());
+}
+
+TEST_CASE("a table fits the terminal, and elsewhere nothing is cut")
+{
+    FakeServer server(test_domain(), "lab");
+    const std::string command = std::string(PLAB_BINARY_DIR) + "/bin/plabctl --domain " + std::to_string(test_domain());
+    const std::string file = temporary("pty");
+    const auto on_terminal = [&](const std::string& environment, const std::string& arguments)
+    {
+        const std::string inner = "stty cols 72 rows 20; " + environment + " timeout 30 " + command + " " + arguments;
+        REQUIRE(std::system(("script -qec '" + inner + "' /dev/null >" + file + " </dev/null").c_str()) == 0);
+        return Outcome{0, take_text(file), ""};
+    };
+    const Outcome plain = on_terminal("NO_COLOR=1 TERM=xterm", "interactions");
+    for (const std::string& line : plain.lines()) CHECK_MESSAGE(line.size() <= 73, line);  // and a carriage return
+    CHECK_FALSE(has(plain.out, "\x1b"));
+    const Outcome objects = on_terminal("TERM=dumb", "objects");
+    CHECK_FALSE(has(objects.out, "a_fan_with_a_very_long_name"));
+    CHECK(has(objects.out, "a_f"));
+    CHECK(has(objects.out, "ame"));
+    CHECK_FALSE(has(objects.out, "\x1b"));
+    CHECK(has(on_terminal("TERM=xterm", "interactions").out, "\x1b[1m"));
+    CHECK(has(plabctl("interactions", "COLUMNS=20").out, "between red a_fan_with_a_very_long_name"));
+    CHECK(has(plabctl("interactions --color always").out, "\x1b[31m"));
+}
+
+TEST_CASE("interactions joins the catalogue with the metrics")
+{
+    FakeServer server(test_domain(), "lab");
+    const Json json = plabctl("interactions --json").json();
+    REQUIRE(json["interactions"].size() == 2);
+    const Json& response = json["interactions"][1];
+    CHECK(response["id"] == "contact.response");
+    CHECK(response["metrics"]["cost_ns"] == 250);
+    CHECK(response["metrics"]["work"] == -0.5);
+    CHECK(response["quarantined"] == true);
+    CHECK(json["interactions"][0]["roles"]["between"][0] == "red");
+    const Outcome table = plabctl("interactions");
+    CHECK(has(table.out, "1.2 us"));
+    CHECK(has(table.out, "quarantined"));
+}
+
+TEST_CASE("types: part of a name, a family, or what can replace a component")
+{
+    FakeServer server(test_domain(), "lab");
+    CHECK(plabctl("types --json").json()["types"].size() == 6);
+    CHECK(plabctl("types response --json").json()["types"].size() == 2);
+    CHECK(plabctl("types --family State --json").json()["types"].size() == 2);
+    const Json rivals = plabctl("types --for contact.response --json").json()["types"];
+    REQUIRE(rivals.size() == 2);
+    CHECK(rivals[1]["name"] == "Response/None");
+    CHECK(rivals[1]["roles"][0]["most"].is_null());
+    const Outcome unknown = plabctl("types --for contact.respond");
+    CHECK(unknown.code == 1);
+    CHECK(has(unknown.err, "did you mean 'contact.response'?"));
+}
+
+TEST_CASE("show prints everything known of a thing")
+{
+    FakeServer server(test_domain(), "lab");
+    const Outcome red = plabctl("show red");
+    CHECK(has(red.out, "red  body, State/RigidBody"));
+    CHECK(has(red.out, "1.5 0.25 1 m"));
+    CHECK(has(red.out, "balloon"));
+    CHECK(has(plabctl("show balloon").out, "0.15 m"));
+    const Outcome response = plabctl("show contact.response");
+    CHECK(has(response.out, "how much it bounces"));
+    CHECK(has(response.out, "must be from 0 to 1"));
+    CHECK(has(response.out, "  function f()\n  end\n"));
+    CHECK_FALSE(has(response.out, "\x1b"));  // it came with the name
+    CHECK(has(plabctl("show Response/None").out, "2 or more"));
+    const Json json = plabctl("show contact.response --json").json();
+    CHECK(json["kind"] == "interaction");
+    CHECK(json["parameters"]["restitution"]["text"] == "0.8");
+    CHECK(json["type_info"]["fields"][0]["fallback"] == "0.5");
+    const Outcome unknown = plabctl("show rad");
+    CHECK(unknown.code == 1);
+    CHECK(has(unknown.err, "no object, shape, interaction or type 'rad', did you mean 'red'?"));
+}
+
+TEST_CASE("wait: for readiness, for a step, and not for ever")
+{
+    CHECK(plabctl("wait --timeout 0.5").code == 3);
+    FakeServer server(test_domain(), "lab");
+    const Outcome ready = plabctl("wait --json");
+    CHECK(ready.code == 0);
+    const auto step = ready.json()["step"].get<std::int64_t>();
+    const Outcome later = plabctl("wait --json --step " + std::to_string(step + 200));
+    CHECK(later.code == 0);
+    CHECK(later.json()["step"].get<std::int64_t>() >= step + 200);
+    CHECK(plabctl("wait --time 0.5").code == 0);
+    const Outcome never = plabctl("wait --step 1000000000 --timeout 0.7");
+    CHECK(never.code == 3);
+    CHECK(has(never.err, "did not get there within the time-out"));
+}

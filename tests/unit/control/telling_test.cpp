@@ -1,0 +1,150 @@
+// What plabctl sends, and what it makes of the reply.
+#include "plabctl.h"
+
+using namespace plab::test;
+
+namespace
+{
+
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+}  // namespace
+
+TEST_CASE("a swap says what it did")
+{
+    FakeServer server(test_domain(), "lab");
+    const Outcome human = plabctl("swap contact.response --to Response/None --param restitution=0.5 --param note=a=b");
+    CHECK(human.code == 0);
+    const Asked asked = server.last();
+    REQUIRE(asked.parts.size() == 1);
+    CHECK(asked.parts[0].verb == "swap");
+    CHECK(asked.parts[0].target == "contact.response");
+    CHECK(asked.parts[0].argument == "Response/None");
+    CHECK(asked.parts[0].values == Values{{"restitution", "0.5"}, {"note", "a=b"}});
+    CHECK(asked.at == -1);
+    CHECK(asked.revision == -1);
+    CHECK(has(human.out, "revision 4"));
+    CHECK(has(human.out, "pause 243.1 us"));
+    CHECK(has(human.out, "Response/Impulse -> Response/None"));
+    CHECK(has(human.out, "kept      restitution"));
+    CHECK(has(human.out, "fresh     softness"));
+    CHECK(has(human.out, "lost      friction"));
+    CHECK(has(human.out, "converted -"));
+    CHECK(has(human.out, "8.6 us"));
+    CHECK(has(human.out, "17.1 us"));
+    CHECK(has(human.out, "1 0 0.5"));
+    const Json json = plabctl("--json swap contact.response --to Response/None --at 999999999 --revision 3").json();
+    CHECK(server.last().at == 999999999);
+    CHECK(json["outcome"] == "done");
+    CHECK(json["server"] == "lab");
+    CHECK(json["pause_ns"] == 243100);
+    CHECK(json["swaps"][0]["fields"]["friction"] == "lost");
+    CHECK(json["swaps"][0]["with_new"]["momentum"] == Json({1.0, 0.0, 0.5}));
+    CHECK(json["swaps"][0]["with_old"]["cost_ns"] == 8600);
+    CHECK(json["swaps"][0]["energy_before"] == 5.125);
+}
+
+TEST_CASE("a refused request prints all reasons and ends with 4")
+{
+    FakeServer server(test_domain(), "lab");
+    const Outcome refused = plabctl("remove nobody");
+    CHECK(refused.code == 4);
+    CHECK(refused.out.empty());
+    CHECK(has(refused.err, "did you mean 'red'?"));
+    CHECK(has(refused.err, "nothing was changed"));
+    const Outcome json = plabctl("remove nobody --json");
+    CHECK(json.code == 4);
+    CHECK(json.json()["outcome"] == "refused");
+    CHECK(json.json()["reasons"].size() == 2);
+    const Outcome late = plabctl("pause --at 3");
+    CHECK(late.code == 4);
+    CHECK(has(late.err, "late at step"));
+    CHECK(has(late.err, "step 3 has passed"));
+}
+
+TEST_CASE("a file keeps its name in messages")
+{
+    FakeServer server(test_domain(), "lab");
+    const std::string file = temporary("ball.xml");
+    std::ofstream(file) << "<plab version=\"1\">\n\n    <bad/>\n</plab>\n";
+    const Outcome refused = plabctl("add " + file);
+    CHECK(refused.code == 4);
+    CHECK(has(refused.err, file + ":3:5: <bad>"));
+    CHECK(plabctl("load " + file).code == 4);
+    const Outcome piped = plabctl("add -", "echo '<component/>' |");
+    CHECK(piped.code == 0);
+    CHECK(server.last().parts.at(0).blueprint == "<component/>\n");
+    const Outcome missing = plabctl("add /no/such/file.xml");
+    CHECK(missing.code == 1);
+    CHECK(has(missing.err, "cannot open '/no/such/file.xml'"));
+    std::remove(file.c_str());
+}
+
+TEST_CASE("set: ids with dots, names with dots, several at once")
+{
+    FakeServer server(test_domain(), "lab");
+    CHECK(plabctl("set red.mass=0.03 red.position='1 2 3' contact.response.restitution=0.5 --at 999999999").code == 0);
+    const Asked asked = server.last();
+    REQUIRE(asked.parts.size() == 2);
+    CHECK(asked.parts[0].target == "red");
+    CHECK(asked.parts[0].values == Values{{"mass", "0.03"}, {"position", "1 2 3"}});
+    CHECK(asked.parts[1].target == "contact.response");
+    CHECK(asked.parts[1].values == Values{{"restitution", "0.5"}});
+    CHECK(plabctl("set contact.state.count=3").code == 0);
+    const Asked script = server.last();
+    CHECK(script.parts.at(0).target == "contact");
+    CHECK(script.parts.at(0).values == Values{{"state.count", "3"}});
+    CHECK(plabctl("set red=3").code == 2);
+    CHECK(plabctl("set red.mass").code == 2);
+}
+
+TEST_CASE("every command sends what the contract says and nothing else")
+{
+    FakeServer server(test_domain(), "lab");
+    struct Case
+    {
+        const char* arguments;
+        Asked::Part part;
+    };
+    const Case cases[] = {
+        {"push red --impulse '-1 0 0.5'", {"push", "red", "", "", {{"impulse", "-1 0 0.5"}}}},
+        {"push red --impulse '1 0 0' --point '0 -1 0'", {"push", "red", "", "", {{"impulse", "1 0 0"}, {"point", "0 -1 0"}}}},
+        {"pause", {"pause", "", "", "", {}}},
+        {"resume", {"resume", "", "", "", {}}},
+        {"step", {"step", "", "1", "", {}}},
+        {"step 10", {"step", "", "10", "", {}}},
+        {"rate max", {"rate", "", "max", "", {}}},
+        {"dt 1/480", {"dt", "", "1/480", "", {}}},
+        {"reset", {"reset", "", "", "", {}}},
+    };
+    for (const Case& c : cases)
+    {
+        CAPTURE(c.arguments);
+        CHECK(plabctl(c.arguments).code == 0);
+        const Asked asked = server.last();
+        REQUIRE(asked.parts.size() == 1);
+        CHECK(asked.parts[0].verb == c.part.verb);
+        CHECK(asked.parts[0].target == c.part.target);
+        CHECK(asked.parts[0].argument == c.part.argument);
+        CHECK(asked.parts[0].blueprint == c.part.blueprint);
+        CHECK(asked.parts[0].values == c.part.values);
+    }
+    CHECK(has(plabctl("rate").out, "rate real, reached 0.998"));
+    CHECK(has(plabctl("dt").out, "(1/240)"));
+}
+
+TEST_CASE("no reply is a time-out")
+{
+    FakeServer server(test_domain(), "lab");
+    const Outcome silent = plabctl("remove silent --timeout 0.6");
+    CHECK(silent.code == 3);
+    CHECK(has(silent.err, "no reply from server 'lab'"));
+    CHECK(has(silent.err, "whether it was carried out is not known"));
+}
+
+TEST_CASE("shutdown waits until the server is gone")
+{
+    FakeServer server(test_domain(), "lab");
+    CHECK(plabctl("shutdown").code == 0);
+    CHECK(plabctl("servers").code == 3);
+}

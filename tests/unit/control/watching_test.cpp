@@ -1,0 +1,113 @@
+// Streams, help and the command line itself.
+#include "plabctl.h"
+
+using namespace plab::test;
+
+TEST_CASE("watch prints one JSON object on each line and ends by count")
+{
+    FakeServer server(test_domain(), "lab");
+    const Outcome events = plabctl("watch events -n 3 --json");
+    CHECK(events.code == 0);
+    REQUIRE(events.lines().size() == 3);
+    const Json first = Json::parse(events.lines()[0]), second = Json::parse(events.lines()[1]);
+    CHECK(first["kind"] == "script.print");
+    CHECK(second["number"] == first["number"].get<std::uint64_t>() + 1);
+    const Outcome collisions = plabctl("watch collisions -n 1 --json");
+    CHECK(collisions.json()["impulse"] == Json({0.0, 0.0, 0.002}));
+    const Outcome states = plabctl("watch states -n 2 --json");
+    REQUIRE(states.lines().size() == 2);
+    CHECK(Json::parse(states.lines()[0])["bodies"]["red"]["position"][0] == 1.5);
+    CHECK(Json::parse(states.lines()[0])["shafts"]["a_fan_with_a_very_long_name"]["speed"] == 40);
+    const Outcome metrics = plabctl("watch metrics -n 1 --json");
+    CHECK(metrics.json()["energy"]["kinetic"] == 5);
+    CHECK(metrics.json()["interactions"]["contact"]["cost_ns"] == 1234);
+}
+
+TEST_CASE("watch for people, thinned out and selected")
+{
+    FakeServer server(test_domain(), "lab");
+    CHECK(has(plabctl("watch events -n 1").out, "warning  script.print  wind: it blows"));
+    CHECK(has(plabctl("watch collisions -n 1").out, "red - green"));
+    CHECK(has(plabctl("watch metrics -n 1").out, "8.6 us a step"));
+    const Outcome clutch = plabctl("watch events -n 3 --only clutch --json");
+    for (const std::string& line : clutch.lines()) CHECK(Json::parse(line)["component"] == "clutch");
+    CHECK(clutch.lines().size() == 3);
+    const Outcome states = plabctl("watch states -n 3 --every 0.5 --only red --json");
+    REQUIRE(states.lines().size() == 3);
+    const double a = Json::parse(states.lines()[0])["time"], b = Json::parse(states.lines()[1])["time"];
+    CHECK(b - a > 0.4);
+    CHECK(Json::parse(states.lines()[0])["shafts"].empty());
+}
+
+TEST_CASE("watch ends by duration with 0, by Ctrl-C with 130, and when the server goes with 3")
+{
+    auto server = std::make_unique<FakeServer>(test_domain(), "lab");
+    CHECK(plabctl("watch events -d 0.3 --json").code == 0);
+    CHECK(plabctl("watch events", "timeout --preserve-status -s INT 1").code == 130);
+    std::thread ends(
+        [&]
+        {
+            std::this_thread::sleep_for(std::chrono::milliseconds(900));
+            server.reset();
+        });
+    const Outcome gone = plabctl("watch events");
+    ends.join();
+    CHECK(gone.code == 3);
+    CHECK(has(gone.err, "server 'lab' has gone"));
+}
+
+TEST_CASE("missed numbers are told")
+{
+    FakeServer server(test_domain(), "lab");
+    std::thread skips(
+        [&]
+        {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+            server.skip_numbers(5);
+        });
+    const Outcome events = plabctl("watch events -d 1.5 --json");
+    skips.join();
+    CHECK(events.code == 0);
+    CHECK(has(events.err, "missed 5 events before number"));
+}
+
+TEST_CASE("wrong use ends with 2 and says what would be right")
+{
+    CHECK(plabctl("").code == 2);
+    const Outcome command = plabctl("objcts");
+    CHECK(command.code == 2);
+    CHECK(has(command.err, "no command 'objcts', did you mean 'objects'?"));
+    const Outcome option = plabctl("objects --jsn");
+    CHECK(option.code == 2);
+    CHECK(has(option.err, "did you mean '--json'?"));
+    const Outcome stream = plabctl("watch event");
+    CHECK(stream.code == 2);
+    CHECK(has(stream.err, "did you mean 'events'?"));
+    CHECK(plabctl("swap contact").code == 2);
+    CHECK(plabctl("swap contact --to T --param x").code == 2);
+    CHECK(plabctl("push red").code == 2);
+    CHECK(plabctl("step 0").code == 2);
+    CHECK(plabctl("objects --timeout -1").code == 2);
+    CHECK(plabctl("objects --server 'a b'").code == 2);
+    CHECK(plabctl("objects --color red").code == 2);
+    CHECK(shell("PLAB_DOMAIN=many", "objects").code == 2);
+}
+
+TEST_CASE("help shows examples before options")
+{
+    const Outcome help = plabctl("--help");
+    CHECK(help.code == 0);
+    CHECK(help.out.find("plabctl swap contact.response") < help.out.find("--timeout"));
+    CHECK(has(help.out, "Exit codes: 0 done"));
+    for (const char* command :
+         {"servers", "objects", "interactions", "types", "show",  "watch", "add", "remove", "swap",     "set",   "push",
+          "pause",   "resume",  "step",         "rate",  "reset", "load",  "dt",  "wait",   "shutdown", "topics"})
+    {
+        CAPTURE(command);
+        CHECK(has(help.out, std::string("\n  ") + command + " "));
+        const Outcome own = plabctl(std::string(command) + " --help");
+        CHECK(own.code == 0);
+        CHECK(has(own.out, std::string("plabctl ") + command));
+    }
+    CHECK(has(plabctl("--version").out, "plabctl "));
+}
