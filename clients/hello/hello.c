@@ -7,7 +7,7 @@
 int main(int argc, char** argv)
 {
     if (argc != 2) return fprintf(stderr, "usage: hello SERVER\n"), 2;
-    const dds_entity_t participant = dds_create_participant(0, NULL, NULL);
+    const dds_entity_t participant = dds_create_participant(DDS_DOMAIN_DEFAULT, NULL, NULL);
     if (participant < 0) return fprintf(stderr, "hello: %s\n", dds_strretcode(participant)), 1;
     const dds_entity_t topic = dds_create_topic(participant, &plab_v1_Frame_desc, "plab/states", NULL, NULL);
     dds_qos_t* qos = dds_create_qos();

@@ -11,7 +11,8 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-// Types have no count on the bus: when no more have come for this long, they are all there. They come in one burst.
+// Types have no count on the bus: they come in one burst, and when no more have come for this long, they are all
+// there. Metrics may be there or not.
 constexpr Seconds kQuiet(0.05);
 constexpr Seconds kSlice(0.05);
 
@@ -100,11 +101,13 @@ Result<void> Catalogue::fetch(Seconds timeout, const Stop& stop)
     auto last = Clock::now();
     while (true)
     {
-        if (update()) last = Clock::now();
+        // The server's state and metrics go on changing for ever: they do not count as a part of the burst.
+        const std::uint64_t before = version_;
+        (void)update();
+        if (version_ != before) last = Clock::now();
         const std::string gap = missing();
-        // Shapes and types have no count of their own: their burst must have ended.
-        const bool counted = !has(parts_, Part::Types) && !has(parts_, Part::Metrics);
-        if (gap.empty() && (counted || Clock::now() - last >= kQuiet)) return {};
+        const bool is_counted = !has(parts_, Part::Types) && (!has(parts_, Part::Metrics) || now_.metrics);
+        if (gap.empty() && (is_counted || Clock::now() - last >= kQuiet)) return {};
         if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not tell everything; missing: " + gap);
         if (stop && stop()) return reason("interrupted");
         const Seconds left = std::min(kSlice, Seconds(end - Clock::now()));

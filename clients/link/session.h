@@ -77,14 +77,6 @@ public:
     {
         return wait_for(reader.entity(), DDS_DATA_AVAILABLE_STATUS, timeout);
     }
-    /// Until the server's writer is there and has delivered what it keeps for late joiners.
-    template <class T>
-    bool wait_for_history(const wire::Reader<T>& reader, Seconds timeout) const
-    {
-        return wait_for(reader.entity(), DDS_SUBSCRIPTION_MATCHED_STATUS, timeout) &&
-               dds_reader_wait_for_historical_data(reader.entity().get(), duration(timeout)) == DDS_RETCODE_OK;
-    }
-
     const std::string& server() const { return server_; }
     const wire::Entity& participant() const { return participant_; }
 

@@ -55,9 +55,12 @@ bool Logger::is_wanted(const std::string& kind, Severity severity) const
 void Logger::say_server(ServerChange change, const link::ServerInfo& info)
 {
     // What the old one still brought comes before.
-    take_events();
-    take_collisions();
-    write_entries();
+    if (change != ServerChange::Found)
+    {
+        take_events();
+        take_collisions();
+        write_entries();
+    }
     if (change != ServerChange::Gone) run_ = info.run;
     output_.write(lines_->server(change, info));
 }

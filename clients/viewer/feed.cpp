@@ -37,6 +37,11 @@ std::optional<Moment> Feed::next()
     const auto start = Clock::now();
     while (true)
     {
+        if (interrupt_.pending())
+        {
+            end_ = {Exit::Interrupted, "interrupted"};
+            return {};
+        }
         if (auto moment = source_.moments().pop(kSlice))
         {
             any_ = true;
@@ -45,11 +50,6 @@ std::optional<Moment> Feed::next()
         if (const auto why = source_.moments().closed())
         {
             gone_ = true, end_ = {Exit::Failed, *why};
-            return {};
-        }
-        if (interrupt_.pending())
-        {
-            end_ = {Exit::Interrupted, "interrupted"};
             return {};
         }
         const link::Seconds waited = Clock::now() - start;

@@ -197,6 +197,7 @@ int Run::go()
         {
             pacer_.stand_still();
             table_.show(s_);
+            service_.idle();
             (void)wake_.wait_until(now + kHeartbeat);
             continue;
         }

@@ -52,7 +52,6 @@ Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& lib
     : simulation_(&simulation),
       library_(&library),
       scene_file_(options.scene),
-      states_per_second_(options.states_per_second),
       threads_(static_cast<std::uint32_t>(options.threads)),
       collector_(collector_options(options), options.bus ? library.summaries() : std::vector<model::TypeSummary>{})
 {
@@ -206,10 +205,9 @@ void Service::publish_status(double rate_reached, double slipped, bool slipping)
     s.scene_file = scene_file_, s.run = simulation_->run(), s.revision = simulation_->revision();
     s.step = simulation_->tick(), s.time = simulation_->time(), s.dt = simulation_->dt();
     s.paused = simulation_->paused(), s.rate_asked = simulation_->rate(), s.rate_reached = rate_reached;
-    s.slipped = slipped, s.slipping = slipping, s.states_per_second = states_per_second_, s.threads = threads_;
-    s.last_event = collector_.last_event(), s.last_collision = collector_.last_collision();
+    s.slipped = slipped, s.slipping = slipping, s.threads = threads_;
     s.requests_done = done_, s.requests_refused = refused_;
-    collector_.status(std::move(s));
+    collector_.status(s);
 }
 
 void Service::show(std::uint32_t component, std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba)

@@ -31,6 +31,8 @@ public:
     bool answer();
     /// Records for observers: after a step, or (`stepped` false) after requests between steps.
     void publish(bool stepped);
+    /// While paused: what observers that have just come must see.
+    void idle() { collector_.idle(*simulation_); }
     void publish_status(double rate_reached, double slipped, bool slipping);
 
     bool shutdown_wanted() const { return shutdown_; }
@@ -59,7 +61,6 @@ private:
     simulation::Simulation* simulation_;
     plugins::PluginLibrary* library_;
     std::string scene_file_;
-    double states_per_second_;
     std::uint32_t threads_;
     plugins::Module module_;  // goes after bus_
     std::unique_ptr<bus::Bus> bus_;

@@ -59,7 +59,8 @@ void Collector::collect(const simulation::Simulation& s, const simulation::Chang
         catalogue_.follow(s, changes, stepped ? s.tick() - 1 : s.tick());
         if (scripted_.due(now)) catalogue_.release_scripted(s);
         tell_catalogue(s, now);
-        tell_states(s, now, stepped ? When::InTurn : When::Now);
+        // What stands still must be seen as it stands, however soon after the last frame.
+        tell_states(s, now, s.paused() ? When::Now : When::InTurn);
         tell_events(s, counts);
         tell_metrics(s, now, requested ? When::Now : When::InTurn);
     }

@@ -29,7 +29,8 @@ public:
     void attach(Observer& observer);
 
     /// After each step, and after requests that took effect between steps (then `stepped` is false: events are not
-    /// collected again). `changes` says what requests did to the structure since the last call.
+    /// collected again). `changes` says what requests did to the structure since the last call. Frames go out in turn,
+    /// and always while the simulation is paused; metrics in turn, and soon after requests.
     void collect(const simulation::Simulation& simulation, const simulation::Changes& changes, bool stepped);
     /// Now and then while paused: what newcomers must see, and what found no room before. Nothing else has happened.
     void idle(const simulation::Simulation& simulation);
@@ -53,7 +54,7 @@ private:
     {
         Observer* observer = nullptr;
         bool needs_everything = true;
-        Pace retry{2};
+        Pace retry{1};
         Wish states, metrics;
     };
     enum class When

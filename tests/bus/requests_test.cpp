@@ -102,59 +102,39 @@ TEST_CASE("several operations are one transaction: all or none")
         ask(client.caller, link::Request{{{"set", "red", "", "", {{"mass", "0.05"}}}, {"remove", "no_such"}}, {}, {}});
     CHECK(refused.outcome == "refused");
     CHECK(has(reasons(refused), "no_such"));
-    auto objects = client.session.reader<plab_v1_Object>();
-    REQUIRE(client.session.wait_for_history(*objects, Seconds(5)));
-    double mass = 0;
-    const auto look = [&](const plab_v1_Object& o, const dds_sample_info_t& info)
-    {
-        if (info.valid_data && std::string(o.component) == "red") mass = o.mass;
-    };
-    (void)objects->take(look);
-    CHECK(mass == doctest::Approx(0.02));
+    link::Catalogue known = catalogue(client.session);
+    CHECK(known.now().objects.at("red").mass == doctest::Approx(0.02));
     CHECK(ask(client.caller, {"set", "red", "", "", {{"mass", "50 g"}}}).done());
-    for (int i = 0; i < 50 && mass < 0.03; ++i)
-    {
-        (void)client.session.wait(*objects, Seconds(0.1));
-        (void)objects->take(look);
-    }
-    CHECK(mass == doctest::Approx(0.05));
+    CHECK(shows(known, [](const link::Snapshot& now) { return now.objects.at("red").mass == doctest::Approx(0.05); }));
 }
 
 TEST_CASE("components come and go: the catalogue follows, and what refers to the lost is protected")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     Client client(server);
-    auto interactions = client.session.reader<plab_v1_Interaction>();
-    REQUIRE(client.session.wait_for_history(*interactions, Seconds(5)));
-    std::map<std::string, std::string> known;
-    const auto look = [&](const plab_v1_Interaction& i, const dds_sample_info_t& info)
+    link::Catalogue known = catalogue(client.session);
+    const auto type_is = [&](const std::string& id, const std::string& type)
     {
-        if (info.valid_data && info.instance_state == DDS_IST_ALIVE)
-            known[i.component] = i.type_name;
-        else
-            known.erase(i.component);
+        return shows(known,
+                     [&](const link::Snapshot& now)
+                     {
+                         const auto found = now.interactions.find(id);
+                         return type.empty() ? found == now.interactions.end()
+                                             : found != now.interactions.end() && found->second.type == type;
+                     });
     };
-    const auto until = [&](auto condition)
-    {
-        for (int i = 0; i < 50 && !condition(); ++i)
-        {
-            (void)client.session.wait(*interactions, Seconds(0.1));
-            (void)interactions->take(look);
-        }
-        return condition();
-    };
-    CHECK(until([&] { return known.count("gears") == 1 && known.count("contact.response") == 1; }));
+    CHECK(type_is("contact.response", "Response/Impulse"));
     const link::Reply added =
         ask(client.caller, {"add", "", "", "<component id=\"weight\" type=\"Field/Gravity\" between=\"*\" acceleration=\"0 0 -1\"/>"});
     CHECK_MESSAGE(added.done(), reasons(added));
-    CHECK(until([&] { return known["weight"] == "Field/Gravity"; }));
+    CHECK(type_is("weight", "Field/Gravity"));
     CHECK(ask(client.caller, {"swap", "contact.response", "Response/None"}).done());
-    CHECK(until([&] { return known["contact.response"] == "Response/None"; }));
+    CHECK(type_is("contact.response", "Response/None"));
     const link::Reply used = ask(client.caller, {"remove", "red"});
     CHECK(used.outcome == "refused");
     CHECK(has(reasons(used), "still used"));
     CHECK(ask(client.caller, {"remove", "weight"}).done());
-    CHECK(until([&] { return known.count("weight") == 0; }));
+    CHECK(type_is("weight", ""));
     // A fragment with an error changes nothing and says where it is.
     const link::Reply bad = ask(client.caller, {"add", "", "more.xml", "<component id=\"w\" type=\"Field/Gravty\" between=\"*\"/>"});
     CHECK(bad.outcome == "refused");

@@ -3,7 +3,12 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <map>
+#include <thread>
+
 #include "link/caller.h"
+#include "link/catalogue.h"
 #include "support/process.h"
 
 namespace plab::test
@@ -49,6 +54,23 @@ private:
     std::string name_;
     Process process_;
 };
+
+/// What the server keeps for late joiners, all of it.
+inline link::Catalogue catalogue(const link::Session& session)
+{
+    auto out = link::Catalogue::open(session);
+    REQUIRE_MESSAGE(out.ok(), out.error().text());
+    const auto fetched = out->fetch(Seconds(5));
+    REQUIRE_MESSAGE(fetched.ok(), fetched.error().text());
+    return out.take();
+}
+/// Until the catalogue shows it; false after five seconds.
+template <class Condition>
+bool shows(link::Catalogue& catalogue, Condition condition)
+{
+    for (int i = 0; i < 50 && !condition(catalogue.now()); ++i) (void)catalogue.wait(Seconds(0.1));
+    return condition(catalogue.now());
+}
 
 /// The reply to one operation; the test fails if there is none.
 inline link::Reply ask(link::Caller& caller, link::Request request)

@@ -1,13 +1,13 @@
+# shellcheck shell=bash disable=SC2154
 # Podman with a storage of its own, and containers that end with the test. Read by run.sh, which sets $work.
 
 store=$work/storage
-containers=()  # to be removed in the end
-volumes=()
+volumes=()  # to be removed in the end
 
 # What every container gets: nothing to write to, no rights, little memory. The health check is run by hand: its timer needs
-# systemd. Limits as they are here: podman's own may be above what it may set.
+# systemd. The two limits: podman's own may be above what it may set.
 sealed=(--read-only --read-only-tmpfs=false --cap-drop ALL --security-opt no-new-privileges --memory 512m --pids-limit 64
-    --ulimit host)
+    --ulimit nofile=1024:1024 --ulimit nproc=4096:4096)
 
 require_engine() {
     command -v podman >/dev/null || skip "podman is not installed (docker/install.sh container installs it)"

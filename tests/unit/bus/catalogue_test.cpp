@@ -63,6 +63,8 @@ public:
             [&](const T& sample, const dds_sample_info_t& info)
             {
                 if (info.instance_state == DDS_IST_ALIVE) ids_.insert(sample.*Key);
+                else
+                    ++dead_;
                 if (info.instance_state == DDS_IST_NOT_ALIVE_DISPOSED) disposed_ += ids_.erase(sample.*Key);
             });
         return ids_;
@@ -72,11 +74,13 @@ public:
         return eventually([&] { return look() == expected; });
     }
     std::size_t disposed() const { return disposed_; }
+    /// Samples of instances that are not alive.
+    std::size_t dead() const { return dead_; }
 
 private:
     wire::Reader<T> reader_;
     Ids ids_;
-    std::size_t disposed_ = 0;
+    std::size_t disposed_ = 0, dead_ = 0;
 };
 using LiveObjects = Alive<plab_v1_Object, &plab_v1_Object::component>;
 using LiveShapes = Alive<plab_v1_Shape, &plab_v1_Shape::component>;
@@ -103,7 +107,7 @@ TEST_CASE("who comes late finds the whole catalogue, and nothing of what was rem
     CHECK(LiveInteractions(late).becomes({"gear"}));
     CHECK(LiveTypes(late).becomes({"G/A"}));
     CHECK(LiveScenes(late).becomes({bus.options().name}));
-    CHECK(objects.disposed() == 0);
+    CHECK(objects.dead() == 0);
 }
 
 TEST_CASE("catalogue samples carry what was recorded")

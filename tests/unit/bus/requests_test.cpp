@@ -285,7 +285,7 @@ TEST_CASE("whoever has the reply finds in the catalogue what the request did")
         answer(bus, request, i);
         REQUIRE(reply(caller).second.done());
         auto objects = reader_of<plab_v1_Object>(session);
-        REQUIRE(session.wait_for_history(objects, 5s));
+        REQUIRE(session.wait(objects, 5s));
         bool found = false;
         (void)objects.take([&](const plab_v1_Object& o, const dds_sample_info_t&) { found = found || o.component == id; });
         REQUIRE(found);

@@ -286,12 +286,13 @@ TEST_CASE("where plugins are looked for")
 TEST_CASE("manifests are written sorted, whole or not at all, and read back with whatever text they hold")
 {
     const Folder folder("write");
-    model::TypeSummary odd{"B/C", "B", "a tab\t, a line\nbreak, a back\\slash, \x7f and \xc3\xa9", "sample"};
+    model::TypeSummary odd, plain;
+    plain.name = "A/B", plain.family = "A", plain.plugin = odd.plugin = "sample";
+    odd.name = "B/C", odd.family = "B", odd.doc = "a tab\t, a line\nbreak, a back\\slash, \x7f and \xc3\xa9";
     odd.order = -3, odd.cost = "\\x41", odd.limits = " ", odd.source = "|";
     odd.roles = {{"between", "body or shaft", "who\r", 0, 4294967295}};
     odd.fields = {{"code", "param", "text", "", "x = 1\n\ty = 2", "", "", false},
                   {"mass", "param", "real", "kg", "", "positive", "", true}};
-    const model::TypeSummary plain{"A/B", "A", "", "sample"};
     REQUIRE(plugins::write_manifest(folder.file("m.manifest"), "sample", {odd, plain}).ok());
     const auto back = plugins::read_manifest(folder.file("m.manifest"));
     REQUIRE_MESSAGE(back.ok(), (back.ok() ? "" : back.error().text()));

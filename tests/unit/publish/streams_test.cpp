@@ -95,27 +95,35 @@ TEST_CASE("a frame holds what the scene says of the frame that its author sees")
     CHECK(frame.shafts[0].speed == 4);
 }
 
-TEST_CASE("frames: in turn, after requests, for newcomers, and for nobody else")
+TEST_CASE("frames: in turn, of what stands still, for newcomers, and for nobody else")
 {
     Scene scene(kDrop);
     Watched run(scene, kRarely);
     run.step(5);
     CHECK(run.watcher.frames == 1);
     run.ask(simulation::PushOperation{"ball", {0, 0, 1}, {}});
+    CHECK(run.watcher.frames == 1);  // the next one comes in its turn
+    run.ask(simulation::PauseOperation{});
     CHECK(run.watcher.frames == 2);
-    run.collector.idle(scene.simulation());
-    CHECK(run.watcher.frames == 2);
-    run.watcher.joined = 1;
-    run.collector.idle(scene.simulation());
+    CHECK(run.watcher.frame.step == 5);
+    run.ask(simulation::PushOperation{"ball", {0, 0, 1}, {}});
     CHECK(run.watcher.frames == 3);
-    run.watcher.wanted.erase(Stream::States);
-    run.settle();
+    run.ask(simulation::StepOperation{3});
     run.step(3);
-    CHECK(run.watcher.frames == 3);
-    run.watcher.wanted.insert(Stream::States);
+    CHECK(run.watcher.frames == 4);  // of the last of the three
+    CHECK(run.watcher.frame.step == 8);
     run.collector.idle(scene.simulation());
     CHECK(run.watcher.frames == 4);
-    CHECK(run.watcher.frame.number == 4);
+    run.watcher.joined = 1;
+    run.collector.idle(scene.simulation());
+    CHECK(run.watcher.frames == 5);
+    run.watcher.wanted.erase(Stream::States);
+    run.settle();
+    CHECK(run.watcher.frames == 5);
+    run.watcher.wanted.insert(Stream::States);
+    run.collector.idle(scene.simulation());
+    CHECK(run.watcher.frames == 6);
+    CHECK(run.watcher.frame.number == 6);
 }
 
 TEST_CASE("collisions carry point, normal, impulse and depth, and have a stream of their own")

@@ -12,7 +12,7 @@ namespace plab::test
 
 struct Script
 {
-    double rate = 10;            ///< of real time
+    double rate = 1;             ///< of real time; states come 60 times per simulated second
     double first_time = 0;       ///< s
     double until = 0.5;          ///< s; then it stands still
     bool leaves = false;         ///< or ends, in order

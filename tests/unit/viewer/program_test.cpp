@@ -127,6 +127,15 @@ double row_of_height(double z, int height)
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+/// The time that the program says this picture is of, s.
+double time_of(const std::string& text, const std::string& picture)
+{
+    const std::string lead = picture + ": t = ";
+    const std::size_t at = text.find(lead);
+    REQUIRE_MESSAGE(at != std::string::npos, text);
+    return std::atof(text.c_str() + at + lead.size());
+}
+
 }  // namespace
 
 TEST_CASE("pictures at named times show the ball where it falls")
@@ -137,11 +146,14 @@ TEST_CASE("pictures at named times show the ball where it falls")
                                      " --shot 0.2@behind=" + folder / "c.png");
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(has(run.text, "a.png: t = 0.000 s, step 0\n"));
-    CHECK(has(run.text, "b.png: t = 0.400 s, step 96\n"));
+    // The first state at or after 0.4 s; on a busy machine that may be a later one, and then it says so.
+    const double later = time_of(run.text, "b.png");
+    CHECK(later >= 0.4);
+    CHECK(later < 0.5);
     const Pixels a = read_png(folder / "a.png"), b = read_png(folder / "b.png"), c = read_png(folder / "c.png");
     CHECK(a.width == 320);
     CHECK(a.height == 240);
-    for (const auto& [picture, time] : {std::pair(&a, 0.0), std::pair(&b, 0.4), std::pair(&c, 0.2)})
+    for (const auto& [picture, time] : {std::pair(&a, 0.0), std::pair(&b, later), std::pair(&c, time_of(run.text, "c.png"))})
     {
         const Patch ball = find_colour(*picture, 0);
         CHECK(ball.count > 300);
@@ -181,14 +193,17 @@ TEST_CASE("frames that cannot be had are told, and the exit code says so")
         FakeServer server({.until = 0.3, .leaves = true});
         const Run run = view(server, "--at 0 --fps 10 --duration 0.5 --frames " + folder / "late");
         CHECK(run.code == 1);
-        CHECK_MESSAGE(has(run.text, "the server has gone; 1 of 5 frames cannot be had"), run.text);
-        CHECK(std::filesystem::exists(folder / "late/frame_0003.png"));
+        const bool told =
+            has(run.text, "the server has gone; ") && has(run.text, " of 5 frames cannot be had, the last state was of t = 0.");
+        CHECK_MESSAGE(told, run.text);
+        CHECK(std::filesystem::exists(folder / "late/frame_0000.png"));
+        CHECK_FALSE(std::filesystem::exists(folder / "late/frame_0004.png"));
     }
 }
 
 TEST_CASE("an object that the states have before the catalogue is skipped, then seen")
 {
-    FakeServer server({.rate = 1, .until = 1, .late_at = 24});
+    FakeServer server({.until = 1, .late_at = 24});
     Folder folder("late");
     const Run run = view(server, "--no-captions --shot 0.12=" + folder / "before.png" + " --shot 0.9=" + folder / "after.png");
     REQUIRE_MESSAGE(run.code == 0, run.text);
@@ -201,7 +216,7 @@ TEST_CASE("a swap changes the caption at its step")
     // One step is one frame: the picture of step 48 differs from that of 44 in the caption alone, all else hidden.
     const auto caption_changes = [](std::int64_t swap_at)
     {
-        FakeServer server({.rate = 1, .until = 0.6, .swap_at = swap_at});
+        FakeServer server({.until = 0.6, .swap_at = swap_at});
         Folder folder("swap" + std::to_string(swap_at));
         const std::string nothing = " --no-ground --from '0 0 100' --look-at '0 0 200' --up '0 1 0'";
         const Run run = view(server, "--at 0 --fps 60 --duration 0.3 --frames " + folder / "out" + nothing);
@@ -258,7 +273,7 @@ TEST_CASE("exit codes: no server 3, wrong use 2, what the scene does not have 1,
     CHECK_MESSAGE(has(no_camera.text, "the scene has no camera 'top'; it has: behind, front"), no_camera.text);
     CHECK(view(server, "--track nobody --png " + folder / "a.png").code == 1);
     const Run interrupted =
-        view("--frames " + folder / "out" + " --timeout 30 --server " + server.name(), "timeout --preserve-status -s INT 2");
+        view("--frames " + folder / "out" + " --timeout 30 --server " + server.name(), "timeout --preserve-status -k 8 -s INT 2");
     CHECK(interrupted.code == 130);
     CHECK_MESSAGE(has(interrupted.text, "interrupted"), interrupted.text);
     CHECK(folder.files() == 1);
@@ -273,7 +288,8 @@ TEST_CASE("a film has the frames that were asked for")
     }
     FakeServer server({});
     Folder folder("film");
-    const Run run = view(server, "--at 0 --fps 20 --until 0.45 --width 321 --orbit 8 --mp4 " + folder / "a.mp4");
+    const Run run =
+        view("--at 0 --fps 20 --until 0.45 --width 321 --height 240 --orbit 8 --mp4 " + folder / "a.mp4" + " --server " + server.name());
     REQUIRE_MESSAGE(run.code == 0, run.text);
     CHECK(has(run.text, "10 frames, "));
     const std::string probe =
@@ -284,7 +300,7 @@ TEST_CASE("a film has the frames that were asked for")
 
 TEST_CASE("a reset while it films goes on with the new run, and is told")
 {
-    FakeServer server({.rate = 2, .until = 0.6, .reset_at = 48});
+    FakeServer server({.until = 0.6, .reset_at = 48});
     Folder folder("reset");
     const Run run = view(server, "--no-captions --at 0 --fps 20 --duration 0.5 --frames " + folder / "out");
     REQUIRE_MESSAGE(run.code == 0, run.text);

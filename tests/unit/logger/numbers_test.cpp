@@ -1,0 +1,18 @@
+#include "logger/numbers.h"
+
+#include <doctest/doctest.h>
+
+using plab::logger::Numbers;
+
+TEST_CASE("a jump is missing entries, of that writer alone")
+{
+    Numbers numbers;
+    CHECK(numbers.note(1, 100, 3).count == 0);  // before the reader came: no loss
+    CHECK(numbers.note(1, 103, 1).count == 0);
+    const auto missing = numbers.note(1, 116, 1);
+    CHECK(missing.first == 104);
+    CHECK(missing.count == 12);
+    CHECK(numbers.note(2, 1, 1).count == 0);  // a server that was started again
+    CHECK(numbers.note(2, 3, 1).count == 1);
+    CHECK(numbers.note(1, 117, 1).count == 0);
+}

@@ -1,0 +1,262 @@
+// plabctl in processes of its own, against writers in this one.
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "foreign.h"
+#include "idl/domain.h"
+#include "support/process.h"
+
+using namespace plab;
+using namespace plab::test;
+using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
+
+namespace
+{
+
+std::uint32_t domain() { return 10 + static_cast<std::uint32_t>(getpid()) % 50; }
+
+std::vector<std::string> topics_command(std::vector<std::string> arguments)
+{
+    std::vector<std::string> all{program("plabctl"), "--domain", std::to_string(domain()), "topics"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return all;
+}
+Outcome topics(std::vector<std::string> arguments) { return run(topics_command(std::move(arguments)), 30s); }
+
+std::vector<Json> lines(const std::string& text)
+{
+    std::vector<Json> out;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) out.push_back(Json::parse(line));
+    return out;
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A participant with writers, pLab's and a stranger's.
+class Bus
+{
+public:
+    Bus()
+    {
+        auto joined = wire::join({domain(), {}});
+        REQUIRE(joined);
+        participant_ = joined.take();
+    }
+    const wire::Entity& participant() const { return participant_; }
+
+    /// A writer of a foreign type in the default partition.
+    wire::Entity foreign(const dds_topic_descriptor_t& type, const char* name, bool keeps)
+    {
+        const wire::Qos qos(dds_create_qos());
+        dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+        if (keeps) dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+        const dds_entity_t topic = dds_create_topic(participant_.get(), &type, name, nullptr, nullptr);
+        REQUIRE(topic > 0);
+        wire::Entity writer(dds_create_writer(participant_.get(), topic, qos.get(), nullptr));
+        REQUIRE(writer.valid());
+        return writer;
+    }
+
+private:
+    wire::Entity participant_;
+};
+
+/// Writes `sample` every `period` until the end of its scope.
+template <class Write>
+class Ticker
+{
+public:
+    Ticker(std::chrono::microseconds period, Write write)
+        : thread_(
+              [this, period, write]
+              {
+                  for (auto next = std::chrono::steady_clock::now(); !done_; next += period)
+                      write(), std::this_thread::sleep_until(next + period);
+              })
+    {
+    }
+    ~Ticker()
+    {
+        done_ = true;
+        thread_.join();
+    }
+
+private:
+    std::atomic<bool> done_{false};
+    std::thread thread_;
+};
+
+struct Scene
+{
+    Bus bus;
+    std::string server = unique_name("topics");
+    wire::Entity publisher = wire::make_publisher(bus.participant(), server).take();
+    wire::Writer<plab_v1_Frame> frames = wire::Writer<plab_v1_Frame>::make(bus.participant(), publisher).take();
+    wire::Writer<plab_v1_Object> objects = wire::Writer<plab_v1_Object>::make(bus.participant(), publisher).take();
+};
+
+plab_v1_Object object(const char* id)
+{
+    plab_v1_Object o{};
+    o.component = const_cast<char*>(id);
+    o.mass = 0.5;
+    return o;
+}
+
+stranger_Reading reading()
+{
+    static stranger_Point points[2]{{{7}, 0.5f, -1.0f}, {{8}, 2.0f, 0.1f}};
+    static std::int16_t numbers[3]{1, -2, 3};
+    static dds_sequence_short rows[2]{{2, 2, numbers, false}, {1, 1, numbers + 2, false}};
+    stranger_Reading r{};
+    std::snprintf(r.sensor, sizeof r.sensor, "%s", "north");
+    r.color = stranger_BLUE;
+    for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 3; ++k) r.matrix[i][k] = 10 * i + k;
+    r.points._length = r.points._maximum = 2, r.points._buffer = points;
+    r.rows._length = r.rows._maximum = 2;
+    r.rows._buffer = reinterpret_cast<decltype(r.rows._buffer)>(rows);
+    for (std::uint8_t i = 0; i < 4; ++i) r.raw[i] = static_cast<std::uint8_t>(250 + i);
+    r.letter = 'z', r.valid = true, r.count = 1ull << 63;
+    return r;
+}
+
+}  // namespace
+
+TEST_CASE("list shows pLab's topics and those of strangers")
+{
+    Scene scene;
+    const wire::Entity writer = scene.bus.foreign(stranger_Reading_desc, "readings", true);
+    const auto reader = wire::make_subscriber(scene.bus.participant(), scene.server);
+    const Outcome out = topics({"--json"});
+    REQUIRE_MESSAGE(out.code == 0, out.errors);
+    Json frames, readings;
+    for (const Json& topic : Json::parse(out.output)["topics"])
+    {
+        if (topic["topic"] == "plab/states" && topic["partitions"][0] == scene.server) frames = topic;
+        if (topic["topic"] == "readings") readings = topic;
+    }
+    CHECK(frames["type"] == "plab::v1::Frame");
+    CHECK(frames["plab"] == true);
+    CHECK(frames["writers"] == 1);
+    CHECK(has(frames["qos"][0].get<std::string>(), "reliable"));
+    CHECK(readings["type"] == "stranger::Reading");
+    CHECK(readings["plab"] == false);
+    CHECK(readings["partitions"] == Json::array({""}));
+    CHECK(has(readings["qos"][0].get<std::string>(), "transient local"));
+    const Outcome table = topics({"list"});
+    CHECK(has(table.output, "plab/states"));
+    CHECK(has(table.output, "(default)"));
+}
+
+TEST_CASE("a stranger's sample is printed with its names, as a tree and as JSON")
+{
+    Bus bus;
+    const wire::Entity writer = bus.foreign(stranger_Reading_desc, "readings", true);
+    const stranger_Reading sample = reading();
+    REQUIRE(dds_write(writer.get(), &sample) == 0);
+    const Outcome out = topics({"print", "readings", "-n", "1", "--json"});
+    REQUIRE_MESSAGE(out.code == 0, out.errors);
+    CHECK(Json::parse(out.output)["sample"].dump() ==
+          R"({"sensor":"north","color":"BLUE","matrix":[[0,1,2],[10,11,12]],)"
+          R"("points":[{"id_number":7,"x":0.5,"y":-1},{"id_number":8,"x":2,"y":0.1}],)"
+          R"("rows":[[1,-2],[3]],"raw":[250,251,252,253],"letter":"z","valid":true,"count":9223372036854775808})");
+    const Outcome tree = topics({"print", "readings", "-n", "1"});
+    CHECK(has(tree.output, "sensor: \"north\"\n"));
+    CHECK(has(tree.output, "points:\n  - {id_number: 7, x: 0.5, y: -1}\n"));
+}
+
+TEST_CASE("an appendable type, which only XCDR2 carries, is read as well")
+{
+    Bus bus;
+    const wire::Entity writer = bus.foreign(stranger_Growing_desc, "growing", true);
+    char* words[2]{const_cast<char*>("one"), const_cast<char*>("three")};
+    stranger_Growing sample{};
+    sample.number = -5, sample.value = 0.25, sample.color = stranger_RED;
+    sample.words._length = sample.words._maximum = 2, sample.words._buffer = words;
+    REQUIRE(dds_write(writer.get(), &sample) == 0);
+    const Outcome out = topics({"print", "growing", "-n", "1", "--json"});
+    REQUIRE_MESSAGE(out.code == 0, out.errors);
+    CHECK(Json::parse(out.output)["sample"].dump() == R"({"number":-5,"words":["one","three"],"color":"RED","value":0.25})");
+}
+
+TEST_CASE("what is not understood is said by name, and is measured all the same")
+{
+    Bus bus;
+    const wire::Entity writer = bus.foreign(stranger_Undecided_desc, "undecided", false);
+    stranger_Undecided sample{};
+    sample.choice._d = 1;
+    const Ticker ticker(20ms, [&] { (void)dds_write(writer.get(), &sample); });
+    const Outcome out = topics({"print", "undecided", "-n", "1"});
+    CHECK(out.code == 1);
+    CHECK(has(out.errors, "'choice' is a union, which is not understood"));
+    CHECK(topics({"rate", "undecided", "-n", "1"}).code == 0);
+}
+
+TEST_CASE("instances that have gone are told by their key")
+{
+    Scene scene;
+    const plab_v1_Object red = object("red"), blue = object("blue");
+    Process process(topics_command({"print", "plab/objects", "--partition", scene.server, "--json", "-n", "3"}));
+    REQUIRE(scene.objects.write(red) == 0);
+    REQUIRE(scene.objects.write(blue) == 0);
+    REQUIRE(process.wait_for("\"red\"", 10s));
+    REQUIRE(scene.objects.dispose(red) == 0);
+    REQUIRE(process.wait(10s) == 0);
+    const auto all = lines(process.output());
+    REQUIRE(all.size() == 3);
+    CHECK(all[0]["sample"]["mass"] == 0.5);
+    CHECK(all[2]["gone"] == true);
+    CHECK(all[2]["key"].dump() == R"({"component":"red"})");
+}
+
+TEST_CASE("rate and bandwidth measure what is written")
+{
+    Scene scene;
+    std::vector<plab_v1_BodyState> bodies(100);
+    plab_v1_Frame frame{};
+    frame.bodies._length = frame.bodies._maximum = 100, frame.bodies._buffer = bodies.data();
+    const Ticker ticker(10ms, [&] { (void)scene.frames.write(frame); });
+    const Outcome rate = topics({"rate", "plab/states", "--partition", scene.server, "-n", "2", "--json"});
+    REQUIRE_MESSAGE(rate.code == 0, rate.errors);
+    const auto reports = lines(rate.output);
+    REQUIRE(reports.size() == 2);
+    CHECK(reports[1]["rate"].get<double>() == doctest::Approx(100).epsilon(0.2));
+    CHECK(reports[1]["period"]["mean"].get<double>() == doctest::Approx(0.01).epsilon(0.2));
+    CHECK(reports[1]["period"]["min"] <= reports[1]["period"]["mean"]);
+    CHECK(reports[1]["period"]["max"] >= reports[1]["period"]["mean"]);
+    const Outcome bytes = topics({"bandwidth", "plab/states", "--partition", scene.server, "-n", "1", "--json"});
+    REQUIRE(bytes.code == 0);
+    const Json report = lines(bytes.output).at(0);
+    // 48 bytes of numbers, two counts with their gap, 100 bodies of 112 bytes, and 4 that name the encoding.
+    CHECK(report["size"]["mean"] == 4 + 48 + 8 + 100 * 112 + 4);
+    CHECK(report["size"]["stddev"] == 0);
+    const Outcome human = topics({"rate", "plab/states", "--partition", scene.server, "-d", "1.2"});
+    CHECK(has(human.output, " /s "));
+    CHECK(has(human.output, "stddev"));
+}
+
+TEST_CASE("a topic that nobody writes is 3, with the nearest name; wrong use is 2; Ctrl-C is a normal end")
+{
+    Scene scene;
+    const Outcome none = topics({"print", "plab/stats", "--timeout", "0.5"});
+    CHECK(none.code == 3);
+    CHECK(has(none.errors, "nobody writes 'plab/stats'"));
+    CHECK(has(none.errors, "plab/states"));
+    CHECK(topics({"rate", "plab/states", "-d", "0.5"}).code == 3);
+    CHECK(topics({"print"}).code == 2);
+    CHECK(topics({"list", "plab/states"}).code == 2);
+    CHECK(topics({"dance"}).code == 2);
+    Process process(topics_command({"rate", "plab/states"}));
+    REQUIRE(process.wait_for("/s", 10s));
+    process.signal(SIGINT);
+    CHECK(process.wait(5s) == 0);
+}
