@@ -44,7 +44,7 @@ std::string configuration_of(const DomainOptions& options)
         general = "<Interfaces><NetworkInterface name=\"" + options.network_interface + "\"/></Interfaces>";
     return "<CycloneDDS><Domain><General>" + general +
            "</General><Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>120</MaxAutoParticipantIndex>" +
-           discovery + "</Discovery></Domain></CycloneDDS>";
+           discovery + "</Discovery><Internal><WriterLingerDuration>100ms</WriterLingerDuration></Internal></Domain></CycloneDDS>";
 }
 
 Result<Entity> join(const DomainOptions& options)

@@ -85,14 +85,9 @@ public:
     }
     /// DDS_RETCODE_OK or what went wrong; reliable topics other than requests never block.
     dds_return_t write(const T& sample) { return dds_write(writer_.get(), &sample); }
-    /// The instance with the key of `sample` is gone. Disposed of and then unregistered: disposal alone is kept for ever
-    /// and told to late joiners; unregistering alone loses 300 bytes where there is no reader (Cyclone DDS 0.10.2).
-    dds_return_t dispose(const T& sample)
-    {
-        const dds_return_t disposed = dds_dispose(writer_.get(), &sample);
-        const dds_return_t unregistered = dds_unregister_instance(writer_.get(), &sample);
-        return disposed != DDS_RETCODE_OK ? disposed : unregistered;
-    }
+    /// The instance with the key of `sample` is gone. Unregistering disposes of it as well (autodispose, the default).
+    /// Disposal alone would be kept for ever, and told to late joiners.
+    dds_return_t dispose(const T& sample) { return dds_unregister_instance(writer_.get(), &sample); }
     /// Readers that are matched now.
     std::uint32_t readers() const
     {

@@ -148,8 +148,9 @@ std::string members_text(const link::Interaction& i)
 std::string note_of(const link::Interaction& i, const link::InteractionMetrics* m)
 {
     if (i.quarantined || (m != nullptr && m->quarantined)) return "quarantined";
-    if (m != nullptr && !m->resolved.empty() && m->resolved != i.type) return "works as " + m->resolved;
-    return {};
+    if (m == nullptr || m->resolved.empty() || m->resolved == i.type) return {};
+    // "TYPE: what about it", or another type that does the work.
+    return m->resolved.starts_with(i.type + ": ") ? m->resolved.substr(i.type.size() + 2) : "works as " + m->resolved;
 }
 
 Exit run_interactions(Context& c)
@@ -165,8 +166,8 @@ Exit run_interactions(Context& c)
                  {"error", Align::Right},
                  {"work", Align::Right},
                  {"since", Align::Right},
-                 {"state", Align::Left, Shrink::End},
-                 {"participants", Align::Left, Shrink::End}});
+                 {"participants", Align::Left, Shrink::End},
+                 {"note", Align::Left, Shrink::End}});
     for (const auto& [id, i] : now.interactions)
     {
         const link::InteractionMetrics* const m = now.metrics ? now.metrics->find(id) : nullptr;

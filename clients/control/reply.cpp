@@ -22,7 +22,7 @@ std::string past_of(const link::Operation& op)
         {"push", "pushed"},
         {"pause", "paused"},
         {"resume", "resumed"},
-        {"step", "steps granted:"},
+        {"step", "granted steps:"},
         {"rate", "rate is now"},
         {"reset", "reset"},
         {"load", "loaded"},
@@ -32,9 +32,10 @@ std::string past_of(const link::Operation& op)
     std::string out = op.verb;
     for (const auto& [verb, past] : kWords)
         if (op.verb == verb) out = past;
-    if (!op.target.empty()) out += " " + op.target;
     if (op.verb == "set")
-        for (const auto& [name, value] : op.values) out += " " + name + "=" + value;
+        for (const auto& [name, value] : op.values) out += " " + op.target + "." + name + "=" + value;
+    else if (!op.target.empty())
+        out += " " + op.target;
     if (!op.argument.empty() && op.verb != "swap") out += " " + op.argument;
     return printable(out);
 }

@@ -60,7 +60,7 @@ void print_parameters(const Console& console, const std::vector<link::Parameter>
         if (!is_block(p.text)) continue;
         console.out("\n" + console.styled(Style::Bold, printable(p.name)) + "\n");
         std::string line;
-        for (std::size_t begin = 0; begin < p.text.size(); begin += line.size() + 1)
+        for (std::size_t begin = p.text.find_first_not_of('\n'); begin < p.text.size(); begin += line.size() + 1)
         {
             line = p.text.substr(begin, p.text.find('\n', begin) - begin);
             console.out("  " + printable(line) + "\n");
@@ -114,7 +114,7 @@ void print_interaction(Context& c, const link::Interaction& i, const link::Inter
     if (m != nullptr)
     {
         lines.add("asked for", m->requested);
-        lines.add("works as", m->resolved == m->requested ? "" : m->resolved);
+        lines.add("resolved", m->resolved == m->requested ? "" : m->resolved);
         lines.add("cost", duration_text(m->cost_ns) + " per step");
         lines.add("error", number(m->error));
         lines.add("work", number(m->work) + " J");

@@ -38,8 +38,10 @@ Opened open(Context& context, const TopicsArguments& arguments, bool wants_histo
 {
     auto discovery = link::Discovery::make(context.session().participant());
     if (!discovery) return {context.fail(Exit::Failed, discovery.errors()), {}};
-    auto reader = discovery->open(arguments.topic, {partition_of(context, arguments), wants_history}, context.timeout(), context.stop());
-    if (!reader) return {context.fail(Exit::NoServer, reader.errors()), {}};
+    const link::RawOptions options{partition_of(context, arguments), wants_history};
+    const bool is_there = discovery->wait_for_writer(arguments.topic, options, context.timeout(), context.stop());
+    auto reader = discovery->open(arguments.topic, options);
+    if (!reader) return {context.fail(is_there ? Exit::Failed : Exit::NoServer, reader.errors()), {}};
     return {Exit::Done, reader.take()};
 }
 

@@ -57,6 +57,12 @@ Table motion_table(const std::map<std::string, const Motion*>& motions)
 
 std::string when(std::int64_t step, double time) { return "step " + std::to_string(step) + "  " + fixed(time) + " s"; }
 
+/// The algorithm that does the work; what the server has to say about it is in `interactions` and in JSON.
+std::string algorithm_of(const link::InteractionMetrics& i)
+{
+    return i.resolved.empty() || i.resolved.starts_with(i.requested) ? i.requested : i.resolved;
+}
+
 Style style_of(std::string_view severity)
 {
     return severity == "failure" ? Style::Red : severity == "warning" ? Style::Yellow : Style::Plain;
@@ -90,8 +96,8 @@ void WatchPrinter::metrics(const link::Metrics& metrics)
                  {"work", Align::Right},
                  {"state"}});
     for (const link::InteractionMetrics& i : m.interactions)
-        table.add({i.component, i.resolved.empty() ? i.requested : i.resolved, duration_text(i.cost_ns), number(i.error),
-                   number(i.work) + " J", i.quarantined ? "quarantined" : ""},
+        table.add({i.component, algorithm_of(i), duration_text(i.cost_ns), number(i.error), number(i.work) + " J",
+                   i.quarantined ? "quarantined" : ""},
                   i.quarantined ? Style::Red : Style::Plain);
     table.print(console_, !has_title_);
     has_title_ = true;

@@ -157,14 +157,18 @@ void Discovery::update()
 
 std::vector<TopicInfo> Discovery::topics(Seconds quiet, Seconds longest, const Stop& stop)
 {
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(longest);
-    auto settled = Clock::now() + std::chrono::duration_cast<Clock::duration>(quiet);
+    // Under load the first answer may take longer than those that follow it.
+    constexpr Seconds kFirst(1);
+    const auto begin = Clock::now();
+    const auto end_of = [](Clock::time_point from, Seconds length) { return from + std::chrono::duration_cast<Clock::duration>(length); };
     update();
-    for (std::uint64_t changes = known_->changes; Clock::now() < std::min(settled, end) && !(stop && stop()); changes = known_->changes)
+    auto settled = end_of(begin, known_->endpoints.empty() ? std::max(kFirst, quiet) : quiet);
+    while (Clock::now() < std::min(settled, end_of(begin, longest)) && !(stop && stop()))
     {
+        const std::uint64_t changes = known_->changes;
         (void)dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_MSECS(50));
         update();
-        if (known_->changes != changes) settled = Clock::now() + std::chrono::duration_cast<Clock::duration>(quiet);
+        if (known_->changes != changes && !known_->endpoints.empty()) settled = end_of(Clock::now(), quiet);
     }
     std::map<std::pair<std::string, std::string>, TopicInfo> found;
     const auto has_writer = [&](const Endpoint& e)
@@ -188,21 +192,28 @@ std::vector<TopicInfo> Discovery::topics(Seconds quiet, Seconds longest, const S
     return out;
 }
 
-Result<void> Discovery::find_writers(const std::string& topic, const RawOptions& options, std::vector<const Endpoint*>& out) const
+std::vector<const Discovery::Endpoint*> Discovery::writers_of(const std::string& topic, const RawOptions& options) const
 {
-    out.clear();
-    std::set<std::string> types;
+    std::vector<const Endpoint*> out;
     for (const auto& [guid, endpoint] : known_->endpoints)
+        if (endpoint.is_writer && endpoint.topic == topic && (options.partition.empty() || endpoint.partitions.contains(options.partition)))
+            out.push_back(&endpoint);
+    return out;
+}
+
+bool Discovery::wait_for_writer(const std::string& topic, const RawOptions& options, Seconds timeout, const Stop& stop)
+{
+    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    update();
+    while (writers_of(topic, options).empty() && Clock::now() < end && !(stop && stop()))
     {
-        if (!endpoint.is_writer || endpoint.topic != topic) continue;
-        if (!options.partition.empty() && !endpoint.partitions.contains(options.partition)) continue;
-        types.insert(endpoint.type);
-        out.push_back(&endpoint);
+        (void)dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_MSECS(50));
+        update();
     }
-    if (types.size() <= 1) return {};
-    std::string names;
-    for (const std::string& type : types) names += (names.empty() ? "" : ", ") + type;
-    return reason("'" + topic + "' is written with several types (" + names + "): name a partition that has one");
+    if (writers_of(topic, options).empty()) return false;
+    // One more look: the other writers of a program that was just found come within milliseconds.
+    (void)topics(Seconds(0.05), Seconds(0.3), stop);
+    return true;
 }
 
 namespace
@@ -257,6 +268,9 @@ Result<RawReader> Discovery::read(const std::vector<const Endpoint*>& writers, c
     const std::string& name = described.topic;
     dds_topic_descriptor_t* made = nullptr;
     auto code = dds_create_topic_descriptor(DDS_FIND_SCOPE_GLOBAL, participant_, described.info.get(), DDS_SECS(2), &made);
+    if (code == DDS_RETCODE_UNSUPPORTED)
+        return reason(described.type +
+                      " has what this Cyclone DDS cannot put together from a description, a bounded string in its key maybe");
     if (code < 0) return wire::failed("cannot fetch the type of '" + name + "' from its writer", code);
     const std::unique_ptr<dds_topic_descriptor_t, DescriptorDeleter> descriptor(made);
     RawReader out;
@@ -283,28 +297,23 @@ Result<RawReader> Discovery::read(const std::vector<const Endpoint*>& writers, c
     return out;
 }
 
-Result<RawReader> Discovery::open(const std::string& topic, const RawOptions& options, Seconds timeout, const Stop& stop)
+Result<RawReader> Discovery::open(const std::string& topic, const RawOptions& options)
 {
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
-    std::vector<const Endpoint*> writers;
-    while (true)
-    {
-        update();
-        if (auto found = find_writers(topic, options, writers); !found) return found.errors();
-        if (!writers.empty() || Clock::now() >= end || (stop && stop())) break;
-        (void)dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_MSECS(50));
-    }
+    update();
+    const auto writers = writers_of(topic, options);
+    std::vector<std::string> names;
+    std::set<std::string> types;
+    for (const auto& [guid, endpoint] : known_->endpoints)
+        if (endpoint.is_writer) names.push_back(endpoint.topic);
+    for (const Endpoint* writer : writers) types.insert(writer->type);
     if (writers.empty())
     {
-        std::vector<std::string> names;
-        for (const auto& [guid, endpoint] : known_->endpoints)
-            if (endpoint.is_writer) names.push_back(endpoint.topic);
         const std::string where = options.partition.empty() ? "" : " in partition '" + options.partition + "'";
         return reason("nobody writes '" + topic + "'" + where + did_you_mean(topic, names));
     }
-    // One more look: the other writers of a program that was just found come within milliseconds.
-    (void)topics(Seconds(0.05), Seconds(0.3), stop);
-    if (auto found = find_writers(topic, options, writers); !found) return found.errors();
+    if (types.size() > 1)
+        return reason("'" + topic + "' is written with several types, " + *types.begin() + " and " + *types.rbegin() +
+                      " among them: name a partition that has one");
     const auto described = std::find_if(writers.begin(), writers.end(), [](const Endpoint* e) { return e->info != nullptr; });
     if (described == writers.end())
         return reason("the writers of '" + topic + "' do not describe its type: it cannot be read without its IDL");

@@ -71,10 +71,12 @@ class Discovery
 public:
     static Result<Discovery> make(const wire::Entity& participant);
 
-    /// What shows itself until nothing new came for `quiet`, at the most for `longest`.
+    /// What shows itself until nothing new came for `quiet`, at the most for `longest`. On an empty bus that is a second.
     std::vector<TopicInfo> topics(Seconds quiet, Seconds longest, const Stop& stop = {});
-    /// Waits for a writer of the topic, and reads it.
-    Result<RawReader> open(const std::string& topic, const RawOptions& options, Seconds timeout, const Stop& stop = {});
+    /// False: nobody writes it (in that partition) until `timeout`.
+    bool wait_for_writer(const std::string& topic, const RawOptions& options, Seconds timeout, const Stop& stop = {});
+    /// Reads what its writers that are known now write, and those that come later with the same type.
+    Result<RawReader> open(const std::string& topic, const RawOptions& options);
 
 private:
     struct Endpoint;
@@ -85,7 +87,7 @@ private:
     };
 
     void update();
-    Result<void> find_writers(const std::string& topic, const RawOptions& options, std::vector<const Endpoint*>& out) const;
+    std::vector<const Endpoint*> writers_of(const std::string& topic, const RawOptions& options) const;
     Result<RawReader> read(const std::vector<const Endpoint*>& writers, const Endpoint& described, const RawOptions& options) const;
 
     dds_entity_t participant_ = 0;

@@ -107,7 +107,7 @@ Result<void> Film::start(const std::vector<std::string>& command)
     for (std::string& text : texts) arguments.push_back(text.data());
     arguments.push_back(nullptr);
     const int error = SpawnSettings(ends[0]).spawn(process_, arguments);
-    (void)close(ends[0]);
+    (void)::close(ends[0]);
     if (error == 0) return {};
     process_ = -1;
     return reason(std::string("cannot start ffmpeg: ") + std::strerror(error));
@@ -138,7 +138,7 @@ Result<void> Film::add(const render::Picture& picture)
     std::size_t left = picture.rgba.size();
     while (left > 0)
     {
-        const ssize_t written = write(pipe_, data, left);
+        const ssize_t written = ::write(pipe_, data, left);
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) return reason(std::string("ffmpeg takes no more pictures: ") + std::strerror(errno));
         data += written, left -= static_cast<std::size_t>(written);
@@ -148,7 +148,7 @@ Result<void> Film::add(const render::Picture& picture)
 
 void Film::close_pipe()
 {
-    if (pipe_ >= 0) (void)close(pipe_);
+    if (pipe_ >= 0) (void)::close(pipe_);
     pipe_ = -1;
 }
 
@@ -164,7 +164,7 @@ std::optional<int> Film::wait()
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
             continue;
         }
-        (void)kill(process_, SIGKILL);
+        (void)::kill(process_, SIGKILL);
         (void)waitpid(process_, &status, 0);
         break;
     }

@@ -1,10 +1,10 @@
 #include "viewer/run.h"
 
 #include <cstdio>
-#include <filesystem>
 
 #include "viewer/feed.h"
 #include "viewer/film.h"
+#include "viewer/frame_sink.h"
 #include "viewer/painter.h"
 #include "viewer/progress.h"
 #include "viewer/sequence.h"
@@ -52,58 +52,6 @@ Outcome take_shots(const Options& options, Feed& feed, Painter& painter)
         ++taken;
     }
     return {};
-}
-
-/// Where the frames of a sequence go.
-class FrameSink
-{
-public:
-    virtual ~FrameSink() = default;
-    virtual Result<void> add(std::uint64_t index, const render::Picture& picture) = 0;
-    virtual Result<void> finish() = 0;
-};
-
-class FolderSink : public FrameSink
-{
-public:
-    explicit FolderSink(std::string folder) : folder_(std::move(folder)) {}
-    Result<void> add(std::uint64_t index, const render::Picture& picture) override
-    {
-        char name[40];
-        std::snprintf(name, sizeof name, "/frame_%04llu.png", static_cast<unsigned long long>(index));
-        return render::write_png(folder_ + name, picture);
-    }
-    Result<void> finish() override { return {}; }
-
-private:
-    std::string folder_;
-};
-
-class FilmSink : public FrameSink
-{
-public:
-    explicit FilmSink(Film film) : film_(std::move(film)) {}
-    Result<void> add(std::uint64_t, const render::Picture& picture) override { return film_.add(picture); }
-    Result<void> finish() override { return film_.finish(); }
-
-private:
-    Film film_;
-};
-
-Result<std::unique_ptr<FrameSink>> open_sink(const Options& options)
-{
-    if (options.task == Task::Film)
-    {
-        auto ffmpeg = find_ffmpeg();
-        if (!ffmpeg) return ffmpeg.errors();
-        auto film = Film::open(*ffmpeg, options.target, options.width, options.height, options.frames_per_second);
-        if (!film) return film.errors();
-        return std::unique_ptr<FrameSink>(std::make_unique<FilmSink>(film.take()));
-    }
-    std::error_code error;
-    std::filesystem::create_directories(options.target, error);
-    if (error) return reason("cannot make the folder '" + options.target + "': " + error.message());
-    return std::unique_ptr<FrameSink>(std::make_unique<FolderSink>(options.target));
 }
 
 /// What the pictures do not show by themselves.
@@ -181,7 +129,7 @@ Outcome run(const Options& options, const Interrupt& interrupt)
 
     Feed feed(**source, options, interrupt);
     if (options.task == Task::Shots) return take_shots(options, feed, *painter);
-    auto sink = open_sink(options);
+    auto sink = open_frame_sink(options);
     if (!sink) return failed(sink.error());
     return make_sequence(options, **source, feed, *painter, **sink);
 }

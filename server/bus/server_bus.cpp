@@ -108,6 +108,9 @@ void ServerBus::start()
     thread_ = std::thread([this] { run(); });
     (void)pthread_sigmask(SIG_SETMASK, &before, nullptr);
     (void)pthread_setname_np(thread_.native_handle(), "plab-bus");
+    // Batch: it does not push the step thread aside when it is woken on the same core.
+    const sched_param priority{};
+    (void)pthread_setschedparam(thread_.native_handle(), SCHED_BATCH, &priority);
 }
 
 ServerBus::~ServerBus()

@@ -133,8 +133,9 @@ bool Run::serve()
 {
     service_.take_requests();
     if (!s_.apply_due()) return false;
-    fine_ = service_.answer() && fine_;
+    // The catalogue goes first: who has the reply can rely on it.
     service_.publish(false);
+    fine_ = service_.answer() && fine_;
     return true;
 }
 

@@ -64,6 +64,7 @@ Result<void> Service::open_bus(const Options& options, const Wake& wake)
     bus::BusOptions bus;
     bus.name = options.name, bus.version = PLAB_VERSION, bus.domain = options.domain;
     bus.network_interface = options.network_interface;
+    bus.log = [](void*, const char* line) { spdlog::warn("bus: {}", line); };
     bus.wake = &wake_up, bus.wake_argument = const_cast<Wake*>(&wake);
     Error error;
     auto opened = reinterpret_cast<bus::Open>(module->entry)(bus, error);

@@ -35,7 +35,7 @@ void paint_layer(const Glyph& glyph, bool ink, int left, int baseline, Picture& 
         }
 }
 
-double capital_height(std::uint32_t picture_height) { return std::clamp(picture_height / 50.0, 7.0, 120.0); }
+double capital_height(std::uint32_t picture_height) { return std::clamp(picture_height / 54.0, 7.0, 120.0); }
 
 }  // namespace
 

@@ -19,8 +19,8 @@ constexpr std::uint32_t kLeastSize = 16, kMostSize = 8192;
 /// Texels of the shadow map for each pixel of the picture's longer side, rounded up to a power of two.
 constexpr std::uint32_t kLeastShadow = 512, kMostShadow = 4096;
 /// Radius of the half shadow, in texels.
-constexpr double kSoftness = 2;
-const Vec3 kGroundColor{0.86, 0.875, 0.89};
+constexpr double kSoftness = 2.5;
+const Vec3 kGroundColor{0.885, 0.895, 0.905};
 /// The ground is thin: what lies below it can be seen.
 constexpr double kGroundOpacity = 0.6;
 

@@ -88,7 +88,7 @@ vec3 look(vec3 albedo, vec3 point, vec3 n)
     float sun = max(cosine, 0.0) * open;
 
     // Key light, a weak one from the eye, and the surroundings; then what a clear coat mirrors (Schlick's law).
-    vec3 color = albedo * (sun * vec3(1.02, 0.98, 0.92) + 0.12 * facing + 0.42 * surroundings(n.z));
+    vec3 color = albedo * (sun * vec3(1.10, 1.05, 0.97) + 0.15 * facing + 0.46 * surroundings(n.z));
     float rim = 1.0 - facing, rim2 = rim * rim;
     float fresnel = 0.04 + 0.96 * rim2 * rim2 * rim;
     float g = max(dot(n, h), 0.0);
@@ -203,7 +203,7 @@ void main()
 {
     float fade = 1.0 - smoothstep(0.15, 1.0, length(local));
     vec2 cell = local * cells + phase, pixel = max(fwidth(cell), 1e-6);
-    float line = 0.5 * max(0.55 * lines(cell, pixel, 0.010), lines(cell * 0.2, pixel * 0.2, 0.0035));
+    float line = 0.42 * max(0.55 * lines(cell, pixel, 0.010), lines(cell * 0.2, pixel * 0.2, 0.0035));
     // Two layers: what shines through is what neither hides.
     float opaque = 1.0 - (1.0 - opacity) * (1.0 - line);
     result = vec4(color * (opacity * (1.0 - line) / max(opaque, 1e-4)), opaque * fade);
@@ -219,7 +219,7 @@ out vec4 result;
 void main()
 {
     float fade = 1.0 - smoothstep(0.15, 1.0, distance(point, focus) / reach);
-    result = vec4(0.02, 0.03, 0.05, 0.42 * fade * (1.0 - lit(point, normal, false)));
+    result = vec4(0.02, 0.03, 0.05, 0.34 * fade * (1.0 - lit(point, normal, false)));
 }
 )";
 

@@ -51,6 +51,7 @@ std::optional<Home> home_of(std::string_view path)
 
 std::optional<std::string> resolve(const std::string& from, const Home& home, const std::string& include, const Paths& known)
 {
+    if (std::ranges::find(generated_files(), include) != generated_files().end()) return include;
     std::vector<std::string> roots{folder_of(from), home.root};
     roots.insert(roots.end(), include_roots().begin(), include_roots().end());
     for (const std::string& root : roots)

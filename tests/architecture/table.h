@@ -31,14 +31,13 @@ inline const std::vector<Layer>& layers()
         {"server/control", {"server/sdk", "server/model", "server/world", "server/simulation", "server/blueprint", "server/publish"}, {}},
         {"server/bus",
          {"server/sdk", "server/model", "server/simulation", "server/publish", "idl"},
-         {"dds/", "sys/", "unistd.h", "semaphore.h", "pthread.h", "time.h"},
-         false},
+         {"dds/", "sys/", "unistd.h", "semaphore.h", "pthread.h", "time.h"}},
         {"server/daemon",
          {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation", "server/publish",
           "server/control", "server/bus"},
          {"spdlog/", "CLI/", "unistd.h", "poll.h", "sys/eventfd.h"},
          false},
-        {"server/render", {"server/sdk"}, {"GL/", "png.h"}, false},
+        {"server/render", {"server/sdk"}, {"GL/", "png.h"}},
         {"server/objects/cameras", {"server/sdk", "server/render"}, {}},
         {"server/objects/*", {"server/sdk"}, {}},
         {"interactions/detection", {"server/sdk"}, {"ode/"}},
@@ -48,9 +47,18 @@ inline const std::vector<Layer>& layers()
         {"clients/link", {"server/sdk", "idl"}, {"dds/", "nlohmann/"}},
         {"clients/viewer", {"server/sdk", "server/render", "idl", "clients/link"}, {"CLI/", "unistd.h", "sys/", "fcntl.h", "signal.h"}},
         {"clients/*", {"server/sdk", "idl", "clients/link"}, {"CLI/", "nlohmann/", "unistd.h", "sys/", "signal.h"}},
-        {"tests", {"server", "interactions", "clients", "idl"}, {"doctest/", "nlohmann/", "unistd.h", "sys/wait.h"}},
+        {"tests",
+         {"server", "interactions", "clients", "idl"},
+         {"doctest/", "nlohmann/", "dds/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/"}},
     };
     return table;
+}
+
+/// Files that the build makes.
+inline const Words& generated_files()
+{
+    static const Words files{"idl/plab.h"};
+    return files;
 }
 
 /// Folders that includes are relative to, beside the file's own folder and the root of its layer.

@@ -133,6 +133,8 @@ TEST_CASE("manifest and plugin name the same types, and the stamp fits")
         if (entry.path().extension() == ".so") libraries.insert(entry.path().stem().string());
         if (entry.path().extension() == ".manifest") manifests.insert(entry.path().stem().string());
     }
+    // A part of the server that is loaded when wanted; no plugin.
+    CHECK(libraries.erase("bus") == 1);
     CHECK(!libraries.empty());
     CHECK(libraries == manifests);
     for (const std::string& name : libraries)

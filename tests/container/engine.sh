@@ -71,11 +71,16 @@ within() {
 now() { date +%s%3N; }
 since() { echo $(($(now) - $1)); }
 
+remove_container() {
+    engine rm --force --time 0 "$1" >/dev/null 2>&1 || echo "container: could not remove container $1"
+}
+
 clean_up() {
     local id
-    [[ ! -e $work/containers ]] || while read -r id; do
-        engine rm --force --time 0 "$id" >/dev/null 2>&1 || echo "container: could not remove container $id"
-    done <"$work/containers"
+    # The last one first: it may share the network of one before. Then what a build that failed has left.
+    for id in $(tac "$work/containers" 2>/dev/null) $(engine ps --all --external --quiet 2>/dev/null); do
+        ! engine container exists --external "$id" || remove_container "$id"
+    done
     rm -f "$work/containers"
     for id in "${volumes[@]}"; do
         engine volume rm "$id" >/dev/null 2>&1 || echo "container: could not remove volume $id"

@@ -1,5 +1,6 @@
 #include "osmesa_camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -91,12 +92,23 @@ Result<render::View> view_of(Row row, const CameraRows& cameras, const Sight& si
     return *studio.overview;
 }
 
+/// A line for each interaction; its parts ("contact.response") stand in the line of their owner.
 std::vector<render::Caption> captions_of(double time, const Sight& sight)
 {
     char text[48];
     std::snprintf(text, sizeof text, "t = %.3f s", time);
     std::vector<render::Caption> out{{text, false}};
-    for (const std::string& line : sight.algorithms) out.push_back({line, true});
+    for (const std::string& line : sight.algorithms)
+    {
+        const std::size_t colon = line.find(": "), dot = line.rfind('.', colon);
+        const std::string owner = dot < colon ? line.substr(0, dot) + ": " : std::string();
+        const auto above =
+            std::find_if(out.begin() + 1, out.end(), [&](const render::Caption& c) { return !owner.empty() && c.text.starts_with(owner); });
+        if (above != out.end() && colon != std::string::npos)
+            above->text += ", " + line.substr(colon + 2);
+        else
+            out.push_back({line, true});
+    }
     return out;
 }
 

@@ -12,8 +12,8 @@ namespace
 
 constexpr double kFlank = 20 * std::numbers::pi / 180;  ///< rad, from the tooth's middle line
 constexpr double kDedendum = 1.25;                      ///< of the module
-/// A tooth is this much thinner than its gap, so that wheels that mesh do not touch on both sides.
-constexpr double kPlay = 0.96;
+/// A tooth is this much of half a pitch: straight flanks need more room than involutes to pass one another.
+constexpr double kPlay = 0.88;
 
 double module_of(double pitch_radius, std::int64_t teeth) { return 2 * pitch_radius / static_cast<double>(teeth); }
 

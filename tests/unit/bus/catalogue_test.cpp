@@ -62,7 +62,8 @@ public:
         (void)reader_.take(
             [&](const T& sample, const dds_sample_info_t& info)
             {
-                if (info.instance_state == DDS_IST_ALIVE) ids_.insert(sample.*Key);
+                if (info.instance_state == DDS_IST_ALIVE)
+                    ids_.insert(sample.*Key);
                 else
                     ++dead_;
                 if (info.instance_state == DDS_IST_NOT_ALIVE_DISPOSED) disposed_ += ids_.erase(sample.*Key);

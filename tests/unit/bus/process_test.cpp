@@ -51,7 +51,7 @@ TEST_CASE("a reader that is stopped holds up neither the step thread nor other r
     const auto stopped = push_many(bus, number, 1000);
     MESSAGE("handing over, reader awake: median " << at(awake, 0.5) << " us, 99 % " << at(awake, 0.99) << " us");
     MESSAGE("handing over, reader stopped: median " << at(stopped, 0.5) << " us, 99 % " << at(stopped, 0.99) << " us");
-    CHECK(at(stopped, 0.99) < 1000);
+    CHECK(at(stopped, 0.99) < 20000);  // who waited for it would wait for seconds
 
     auto other = reader_of<plab_v1_Frame>(session);
     REQUIRE(eventually([&] { return other.writers() > 0; }));

@@ -37,7 +37,7 @@ TEST_CASE("a server is found by name, or if it is the only one")
 TEST_CASE("objects shows where things are now")
 {
     FakeServer server(test_domain(), "lab");
-    const Json json = plabctl("objects --json").json();
+    const Json json = lab("objects --json").json();
     CHECK(json["server"] == "lab");
     REQUIRE(json["objects"].size() == 2);
     CHECK(json["objects"][1]["id"] == "red");
@@ -47,7 +47,7 @@ TEST_CASE("objects shows where things are now")
     CHECK(json["objects"][0]["inertia"] == 0.005);
     CHECK(json["objects"][0]["state"]["angle"] == 3.25);
     CHECK(json["objects"][0]["color"].is_null());
-    const Outcome table = plabctl("objects");
+    const Outcome table = lab("objects");
     REQUIRE(table.lines().size() == 3);
     CHECK(table.lines()[0].starts_with("object"));
     CHECK(has(table.lines()[1], "a_fan_with_a_very_long_name"));
@@ -76,14 +76,14 @@ TEST_CASE("a table fits the terminal, and elsewhere nothing is cut")
     CHECK(has(objects.out, "ame"));
     CHECK_FALSE(has(objects.out, "\x1b"));
     CHECK(has(on_terminal("TERM=xterm", "interactions").out, "\x1b[1m"));
-    CHECK(has(plabctl("interactions", "COLUMNS=20").out, "between red a_fan_with_a_very_long_name"));
-    CHECK(has(plabctl("interactions --color always").out, "\x1b[31m"));
+    CHECK(has(lab("interactions", "COLUMNS=20").out, "between red a_fan_with_a_very_long_name"));
+    CHECK(has(lab("interactions --color always").out, "\x1b[31m"));
 }
 
 TEST_CASE("interactions joins the catalogue with the metrics")
 {
     FakeServer server(test_domain(), "lab");
-    const Json json = plabctl("interactions --json").json();
+    const Json json = lab("interactions --json").json();
     REQUIRE(json["interactions"].size() == 2);
     const Json& response = json["interactions"][1];
     CHECK(response["id"] == "contact.response");
@@ -91,7 +91,7 @@ TEST_CASE("interactions joins the catalogue with the metrics")
     CHECK(response["metrics"]["work"] == -0.5);
     CHECK(response["quarantined"] == true);
     CHECK(json["interactions"][0]["roles"]["between"][0] == "red");
-    const Outcome table = plabctl("interactions");
+    const Outcome table = lab("interactions");
     CHECK(has(table.out, "1.2 us"));
     CHECK(has(table.out, "quarantined"));
 }
@@ -99,14 +99,14 @@ TEST_CASE("interactions joins the catalogue with the metrics")
 TEST_CASE("types: part of a name, a family, or what can replace a component")
 {
     FakeServer server(test_domain(), "lab");
-    CHECK(plabctl("types --json").json()["types"].size() == 6);
-    CHECK(plabctl("types response --json").json()["types"].size() == 2);
-    CHECK(plabctl("types --family State --json").json()["types"].size() == 2);
-    const Json rivals = plabctl("types --for contact.response --json").json()["types"];
+    CHECK(lab("types --json").json()["types"].size() == 6);
+    CHECK(lab("types response --json").json()["types"].size() == 2);
+    CHECK(lab("types --family State --json").json()["types"].size() == 2);
+    const Json rivals = lab("types --for contact.response --json").json()["types"];
     REQUIRE(rivals.size() == 2);
     CHECK(rivals[1]["name"] == "Response/None");
     CHECK(rivals[1]["roles"][0]["most"].is_null());
-    const Outcome unknown = plabctl("types --for contact.respond");
+    const Outcome unknown = lab("types --for contact.respond");
     CHECK(unknown.code == 1);
     CHECK(has(unknown.err, "did you mean 'contact.response'?"));
 }
@@ -114,22 +114,22 @@ TEST_CASE("types: part of a name, a family, or what can replace a component")
 TEST_CASE("show prints everything known of a thing")
 {
     FakeServer server(test_domain(), "lab");
-    const Outcome red = plabctl("show red");
+    const Outcome red = lab("show red");
     CHECK(has(red.out, "red  body, State/RigidBody"));
     CHECK(has(red.out, "1.5 0.25 1 m"));
     CHECK(has(red.out, "balloon"));
-    CHECK(has(plabctl("show balloon").out, "0.15 m"));
-    const Outcome response = plabctl("show contact.response");
+    CHECK(has(lab("show balloon").out, "0.15 m"));
+    const Outcome response = lab("show contact.response");
     CHECK(has(response.out, "how much it bounces"));
     CHECK(has(response.out, "must be from 0 to 1"));
     CHECK(has(response.out, "  function f()\n  end\n"));
     CHECK_FALSE(has(response.out, "\x1b"));  // it came with the name
-    CHECK(has(plabctl("show Response/None").out, "2 or more"));
-    const Json json = plabctl("show contact.response --json").json();
+    CHECK(has(lab("show Response/None").out, "2 or more"));
+    const Json json = lab("show contact.response --json").json();
     CHECK(json["kind"] == "interaction");
     CHECK(json["parameters"]["restitution"]["text"] == "0.8");
     CHECK(json["type_info"]["fields"][0]["fallback"] == "0.5");
-    const Outcome unknown = plabctl("show rad");
+    const Outcome unknown = lab("show rad");
     CHECK(unknown.code == 1);
     CHECK(has(unknown.err, "no object, shape, interaction or type 'rad', did you mean 'red'?"));
 }

@@ -64,6 +64,9 @@ inline Outcome plabctl(const std::string& arguments, const std::string& before =
     return shell(before, "--domain " + std::to_string(test_domain()) + " " + arguments);
 }
 
+/// For the server "lab": found at once, where without a name others get the time to show themselves.
+inline Outcome lab(const std::string& arguments, const std::string& before = "") { return plabctl("--server lab " + arguments, before); }
+
 inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace plab::test

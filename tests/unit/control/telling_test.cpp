@@ -13,7 +13,7 @@ using Values = std::vector<std::pair<std::string, std::string>>;
 TEST_CASE("a swap says what it did")
 {
     FakeServer server(test_domain(), "lab");
-    const Outcome human = plabctl("swap contact.response --to Response/None --param restitution=0.5 --param note=a=b");
+    const Outcome human = lab("swap contact.response --to Response/None --param restitution=0.5 --param note=a=b");
     CHECK(human.code == 0);
     const Asked asked = server.last();
     REQUIRE(asked.parts.size() == 1);
@@ -33,7 +33,7 @@ TEST_CASE("a swap says what it did")
     CHECK(has(human.out, "8.6 us"));
     CHECK(has(human.out, "17.1 us"));
     CHECK(has(human.out, "1 0 0.5"));
-    const Json json = plabctl("--json swap contact.response --to Response/None --at 999999999 --revision 3").json();
+    const Json json = lab("--json swap contact.response --to Response/None --at 999999999 --revision 3").json();
     CHECK(server.last().at == 999999999);
     CHECK(json["outcome"] == "done");
     CHECK(json["server"] == "lab");
@@ -47,16 +47,16 @@ TEST_CASE("a swap says what it did")
 TEST_CASE("a refused request prints all reasons and ends with 4")
 {
     FakeServer server(test_domain(), "lab");
-    const Outcome refused = plabctl("remove nobody");
+    const Outcome refused = lab("remove nobody");
     CHECK(refused.code == 4);
     CHECK(refused.out.empty());
     CHECK(has(refused.err, "did you mean 'red'?"));
     CHECK(has(refused.err, "nothing was changed"));
-    const Outcome json = plabctl("remove nobody --json");
+    const Outcome json = lab("remove nobody --json");
     CHECK(json.code == 4);
     CHECK(json.json()["outcome"] == "refused");
     CHECK(json.json()["reasons"].size() == 2);
-    const Outcome late = plabctl("pause --at 3");
+    const Outcome late = lab("pause --at 3");
     CHECK(late.code == 4);
     CHECK(has(late.err, "late at step"));
     CHECK(has(late.err, "step 3 has passed"));
@@ -67,14 +67,14 @@ TEST_CASE("a file keeps its name in messages")
     FakeServer server(test_domain(), "lab");
     const std::string file = temporary("ball.xml");
     std::ofstream(file) << "<plab version=\"1\">\n\n    <bad/>\n</plab>\n";
-    const Outcome refused = plabctl("add " + file);
+    const Outcome refused = lab("add " + file);
     CHECK(refused.code == 4);
     CHECK(has(refused.err, file + ":3:5: <bad>"));
-    CHECK(plabctl("load " + file).code == 4);
-    const Outcome piped = plabctl("add -", "echo '<component/>' |");
+    CHECK(lab("load " + file).code == 4);
+    const Outcome piped = lab("add -", "echo '<component/>' |");
     CHECK(piped.code == 0);
     CHECK(server.last().parts.at(0).blueprint == "<component/>\n");
-    const Outcome missing = plabctl("add /no/such/file.xml");
+    const Outcome missing = lab("add /no/such/file.xml");
     CHECK(missing.code == 1);
     CHECK(has(missing.err, "cannot open '/no/such/file.xml'"));
     std::remove(file.c_str());
@@ -83,19 +83,19 @@ TEST_CASE("a file keeps its name in messages")
 TEST_CASE("set: ids with dots, names with dots, several at once")
 {
     FakeServer server(test_domain(), "lab");
-    CHECK(plabctl("set red.mass=0.03 red.position='1 2 3' contact.response.restitution=0.5 --at 999999999").code == 0);
+    CHECK(lab("set red.mass=0.03 red.position='1 2 3' contact.response.restitution=0.5 --at 999999999").code == 0);
     const Asked asked = server.last();
     REQUIRE(asked.parts.size() == 2);
     CHECK(asked.parts[0].target == "red");
     CHECK(asked.parts[0].values == Values{{"mass", "0.03"}, {"position", "1 2 3"}});
     CHECK(asked.parts[1].target == "contact.response");
     CHECK(asked.parts[1].values == Values{{"restitution", "0.5"}});
-    CHECK(plabctl("set contact.state.count=3").code == 0);
+    CHECK(lab("set contact.state.count=3").code == 0);
     const Asked script = server.last();
     CHECK(script.parts.at(0).target == "contact");
     CHECK(script.parts.at(0).values == Values{{"state.count", "3"}});
-    CHECK(plabctl("set red=3").code == 2);
-    CHECK(plabctl("set red.mass").code == 2);
+    CHECK(lab("set red=3").code == 2);
+    CHECK(lab("set red.mass").code == 2);
 }
 
 TEST_CASE("every command sends what the contract says and nothing else")
@@ -120,7 +120,7 @@ TEST_CASE("every command sends what the contract says and nothing else")
     for (const Case& c : cases)
     {
         CAPTURE(c.arguments);
-        CHECK(plabctl(c.arguments).code == 0);
+        CHECK(lab(c.arguments).code == 0);
         const Asked asked = server.last();
         REQUIRE(asked.parts.size() == 1);
         CHECK(asked.parts[0].verb == c.part.verb);
@@ -129,14 +129,14 @@ TEST_CASE("every command sends what the contract says and nothing else")
         CHECK(asked.parts[0].blueprint == c.part.blueprint);
         CHECK(asked.parts[0].values == c.part.values);
     }
-    CHECK(has(plabctl("rate").out, "rate real, reached 0.998"));
-    CHECK(has(plabctl("dt").out, "(1/240)"));
+    CHECK(has(lab("rate").out, "rate real, reached 0.998"));
+    CHECK(has(lab("dt").out, "(1/240)"));
 }
 
 TEST_CASE("no reply is a time-out")
 {
     FakeServer server(test_domain(), "lab");
-    const Outcome silent = plabctl("remove silent --timeout 0.6");
+    const Outcome silent = lab("remove silent --timeout 0.6");
     CHECK(silent.code == 3);
     CHECK(has(silent.err, "no reply from server 'lab'"));
     CHECK(has(silent.err, "whether it was carried out is not known"));

@@ -6,19 +6,19 @@ using namespace plab::test;
 TEST_CASE("watch prints one JSON object on each line and ends by count")
 {
     FakeServer server(test_domain(), "lab");
-    const Outcome events = plabctl("watch events -n 3 --json");
+    const Outcome events = lab("watch events -n 3 --json");
     CHECK(events.code == 0);
     REQUIRE(events.lines().size() == 3);
     const Json first = Json::parse(events.lines()[0]), second = Json::parse(events.lines()[1]);
     CHECK(first["kind"] == "script.print");
     CHECK(second["number"] == first["number"].get<std::uint64_t>() + 1);
-    const Outcome collisions = plabctl("watch collisions -n 1 --json");
+    const Outcome collisions = lab("watch collisions -n 1 --json");
     CHECK(collisions.json()["impulse"] == Json({0.0, 0.0, 0.002}));
-    const Outcome states = plabctl("watch states -n 2 --json");
+    const Outcome states = lab("watch states -n 2 --json");
     REQUIRE(states.lines().size() == 2);
     CHECK(Json::parse(states.lines()[0])["bodies"]["red"]["position"][0] == 1.5);
     CHECK(Json::parse(states.lines()[0])["shafts"]["a_fan_with_a_very_long_name"]["speed"] == 40);
-    const Outcome metrics = plabctl("watch metrics -n 1 --json");
+    const Outcome metrics = lab("watch metrics -n 1 --json");
     CHECK(metrics.json()["energy"]["kinetic"] == 5);
     CHECK(metrics.json()["interactions"]["contact"]["cost_ns"] == 1234);
 }
@@ -26,13 +26,13 @@ TEST_CASE("watch prints one JSON object on each line and ends by count")
 TEST_CASE("watch for people, thinned out and selected")
 {
     FakeServer server(test_domain(), "lab");
-    CHECK(has(plabctl("watch events -n 1").out, "warning  script.print  wind: it blows"));
-    CHECK(has(plabctl("watch collisions -n 1").out, "red - green"));
-    CHECK(has(plabctl("watch metrics -n 1").out, "8.6 us a step"));
-    const Outcome clutch = plabctl("watch events -n 3 --only clutch --json");
+    CHECK(has(lab("watch events -n 1").out, "warning  script.print  wind: it blows"));
+    CHECK(has(lab("watch collisions -n 1").out, "red - green"));
+    CHECK(has(lab("watch metrics -n 1").out, "8.6 us a step"));
+    const Outcome clutch = lab("watch events -n 3 --only clutch --json");
     for (const std::string& line : clutch.lines()) CHECK(Json::parse(line)["component"] == "clutch");
     CHECK(clutch.lines().size() == 3);
-    const Outcome states = plabctl("watch states -n 3 --every 0.5 --only red --json");
+    const Outcome states = lab("watch states -n 3 --every 0.5 --only red --json");
     REQUIRE(states.lines().size() == 3);
     const double a = Json::parse(states.lines()[0])["time"], b = Json::parse(states.lines()[1])["time"];
     CHECK(b - a > 0.4);
@@ -42,15 +42,15 @@ TEST_CASE("watch for people, thinned out and selected")
 TEST_CASE("watch ends by duration with 0, by Ctrl-C with 130, and when the server goes with 3")
 {
     auto server = std::make_unique<FakeServer>(test_domain(), "lab");
-    CHECK(plabctl("watch events -d 0.3 --json").code == 0);
-    CHECK(plabctl("watch events", "timeout --preserve-status -s INT 1").code == 130);
+    CHECK(lab("watch events -d 0.3 --json").code == 0);
+    CHECK(lab("watch events", "timeout --preserve-status -s INT 1").code == 130);
     std::thread ends(
         [&]
         {
             std::this_thread::sleep_for(std::chrono::milliseconds(900));
             server.reset();
         });
-    const Outcome gone = plabctl("watch events");
+    const Outcome gone = lab("watch events");
     ends.join();
     CHECK(gone.code == 3);
     CHECK(has(gone.err, "server 'lab' has gone"));
@@ -65,7 +65,7 @@ TEST_CASE("missed numbers are told")
             std::this_thread::sleep_for(std::chrono::milliseconds(1000));
             server.skip_numbers(5);
         });
-    const Outcome events = plabctl("watch events -d 1.5 --json");
+    const Outcome events = lab("watch events -d 1.5 --json");
     skips.join();
     CHECK(events.code == 0);
     CHECK(has(events.err, "missed 5 events before number"));

@@ -173,7 +173,13 @@ TEST_CASE("no room: then everything, when there is some")
     run.watcher.has_room = false;
     run.step();
     CHECK(run.watcher.changes.empty());
-    run.ask(simulation::SetOperation{"gravity", "acceleration", std::string("0 0 -1")});
+    std::string acceleration = "0 0 -9.81";
+    SUBCASE("at first") {}
+    SUBCASE("at a change")
+    {
+        acceleration = "0 0 -1";
+        run.ask(simulation::SetOperation{"gravity", "acceleration", acceleration});
+    }
     run.watcher.has_room = true;
     for (int i = 0; i < 200 && run.watcher.changes.empty(); ++i)
     {
@@ -182,7 +188,9 @@ TEST_CASE("no room: then everything, when there is some")
     }
     REQUIRE(run.watcher.changes.size() == 1);
     CHECK(run.watcher.changes[0].everything);
-    CHECK(parameter(find_entry(run.watcher.changes[0].interactions, "gravity")->parameters, "acceleration") == "0 0 -1");
+    CHECK(parameter(find_entry(run.watcher.changes[0].interactions, "gravity")->parameters, "acceleration") == acceleration);
+    run.step();
+    CHECK(run.watcher.changes.size() == 1);
 }
 
 TEST_CASE("a type whose plugin came later is told as loaded")

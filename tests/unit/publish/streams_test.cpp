@@ -222,8 +222,10 @@ TEST_CASE("metrics in turn, at once after a request, for newcomers")
     std::this_thread::sleep_for(std::chrono::milliseconds(60));
     run.ask(simulation::SetOperation{"gravity", "acceleration", std::string("0 0 -1")});
     CHECK(run.watcher.samples.size() == 2);
+    const std::int64_t begin = publish::monotonic_now();
     for (int i = 0; i < 10; ++i) run.ask(simulation::SetOperation{"gravity", "acceleration", std::string("0 0 -2")});
-    CHECK(run.watcher.samples.size() <= 3);
+    const auto fits = static_cast<std::size_t>((publish::monotonic_now() - begin) / 50'000'000);
+    CHECK(run.watcher.samples.size() <= 3 + fits);
     std::this_thread::sleep_for(std::chrono::milliseconds(60));
     run.collector.idle(scene.simulation());
     const std::size_t now = run.watcher.samples.size();

@@ -117,7 +117,8 @@ stranger_Reading reading()
     static std::int16_t numbers[3]{1, -2, 3};
     static dds_sequence_short rows[2]{{2, 2, numbers, false}, {1, 1, numbers + 2, false}};
     stranger_Reading r{};
-    std::snprintf(r.sensor, sizeof r.sensor, "%s", "north");
+    r.sensor = const_cast<char*>("north");
+    std::snprintf(r.place, sizeof r.place, "%s", "on the roof");
     r.color = stranger_BLUE;
     for (int i = 0; i < 2; ++i)
         for (int k = 0; k < 3; ++k) r.matrix[i][k] = 10 * i + k;
@@ -166,7 +167,7 @@ TEST_CASE("a stranger's sample is printed with its names, as a tree and as JSON"
     const Outcome out = topics({"print", "readings", "-n", "1", "--json"});
     REQUIRE_MESSAGE(out.code == 0, out.errors);
     CHECK(Json::parse(out.output)["sample"].dump() ==
-          R"({"sensor":"north","color":"BLUE","matrix":[[0,1,2],[10,11,12]],)"
+          R"({"sensor":"north","place":"on the roof","color":"BLUE","matrix":[[0,1,2],[10,11,12]],)"
           R"("points":[{"id_number":7,"x":0.5,"y":-1},{"id_number":8,"x":2,"y":0.1}],)"
           R"("rows":[[1,-2],[3]],"raw":[250,251,252,253],"letter":"z","valid":true,"count":9223372036854775808})");
     const Outcome tree = topics({"print", "readings", "-n", "1"});
@@ -199,6 +200,10 @@ TEST_CASE("what is not understood is said by name, and is measured all the same"
     CHECK(out.code == 1);
     CHECK(has(out.errors, "'choice' is a union, which is not understood"));
     CHECK(topics({"rate", "undecided", "-n", "1"}).code == 0);
+    const wire::Entity labels = bus.foreign(stranger_Labelled_desc, "labelled", false);
+    const Outcome labelled = topics({"rate", "labelled", "-n", "1"});
+    CHECK(labelled.code == 1);
+    CHECK(has(labelled.errors, "a bounded string in its key"));
 }
 
 TEST_CASE("instances that have gone are told by their key")
@@ -236,8 +241,8 @@ TEST_CASE("rate and bandwidth measure what is written")
     const Outcome bytes = topics({"bandwidth", "plab/states", "--partition", scene.server, "-n", "1", "--json"});
     REQUIRE(bytes.code == 0);
     const Json report = lines(bytes.output).at(0);
-    // 48 bytes of numbers, two counts with their gap, 100 bodies of 112 bytes, and 4 that name the encoding.
-    CHECK(report["size"]["mean"] == 4 + 48 + 8 + 100 * 112 + 4);
+    // Encoding, six numbers, count, 100 bodies of a handle and 13 numbers (the first is aligned as it is), count.
+    CHECK(report["size"]["mean"] == 4 + 48 + 4 + 108 + 99 * 112 + 4);
     CHECK(report["size"]["stddev"] == 0);
     const Outcome human = topics({"rate", "plab/states", "--partition", scene.server, "-d", "1.2"});
     CHECK(has(human.output, " /s "));
