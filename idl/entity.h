@@ -67,6 +67,13 @@ inline Result<Entity> make_subscriber(const Entity& participant, const std::stri
     return Entity(e);
 }
 
+/// Readers of a writer.
+struct Matched
+{
+    std::uint32_t now = 0;
+    std::uint32_t ever = 0;
+};
+
 template <class T>
 class Writer
 {
@@ -88,12 +95,14 @@ public:
     /// The instance with the key of `sample` is gone. Unregistering disposes of it as well (autodispose, the default).
     /// Disposal alone would be kept for ever, and told to late joiners.
     dds_return_t dispose(const T& sample) { return dds_unregister_instance(writer_.get(), &sample); }
-    /// Readers that are matched now.
-    std::uint32_t readers() const
+    Matched matched() const
     {
         dds_publication_matched_status_t status{};
-        return dds_get_publication_matched_status(writer_.get(), &status) < 0 ? 0 : status.current_count;
+        if (dds_get_publication_matched_status(writer_.get(), &status) < 0) return {};
+        return {status.current_count, status.total_count};
     }
+    /// Readers that are matched now.
+    std::uint32_t readers() const { return matched().now; }
     const Entity& entity() const { return writer_; }
 
 private:

@@ -29,7 +29,7 @@ _plabctl()
                 ((++i))
                 ;;
             --timeout | --color | -n | --count | -d | --duration | --to | --param | --at | --revision | --impulse | --point | \
-                --every | --only | --family | --for | --step | --time)
+                --every | --only | --family | --for | --step | --time | --partition)
                 ((++i))
                 ;;
             -*) ;;
@@ -46,7 +46,7 @@ _plabctl()
         --only) words=$(_plabctl_ids objects interactions) ;;
         --interface) words=$(ls /sys/class/net 2>/dev/null) ;;
         --domain | --timeout | -n | --count | -d | --duration | --param | --at | --revision | --impulse | --point | --every | \
-            --family | --step | --time) return ;;
+            --family | --step | --time | --partition) return ;;
         *)
             case $command in
                 "") words="$commands $globals" ;;
@@ -56,7 +56,7 @@ _plabctl()
                 push) words="$(_plabctl_ids objects) --impulse --point --at --revision $globals" ;;
                 set) words="$(_plabctl_ids objects interactions) --at --revision $globals" ;;
                 watch) words="states collisions events metrics --only --every $globals" ;;
-                topics) words="list rate bandwidth print $globals" ;;
+                topics) words="list rate bandwidth print --partition --full $globals" ;;
                 types) words="--family --for $globals" ;;
                 rate) words="real max $globals" ;;
                 wait) words="--step --time $globals" ;;

@@ -40,7 +40,7 @@ std::string past_of(const link::Operation& op)
     return printable(out);
 }
 
-/// "kept a b; fresh c": the fates in the order of the brief's words, unknown ones last.
+/// A line for each fate, in the order of plab.idl; ones that this version does not know come last.
 void print_fields(const Console& console, const link::SwapReport& swap)
 {
     std::vector<std::pair<std::string, Style>> fates{

@@ -120,22 +120,33 @@ ServerBus::~ServerBus()
     if (thread_.joinable()) thread_.join();
 }
 
-bool ServerBus::wants(publish::Stream stream) const
+template <class Function>
+auto ServerBus::of(publish::Stream stream, Function function) const
 {
     switch (stream)
     {
-        case publish::Stream::States:
-            return states_.wanted();
         case publish::Stream::Collisions:
-            return collisions_.wanted();
+            return function(collisions_);
         case publish::Stream::Events:
-            return events_.wanted();
+            return function(events_);
         case publish::Stream::Metrics:
-            return metrics_.wanted();
+            return function(metrics_);
         case publish::Stream::Images:
-            return images_.wanted();
+            return function(images_);
+        case publish::Stream::States:
+            break;
     }
-    return false;
+    return function(states_);
+}
+
+bool ServerBus::wants(publish::Stream stream) const
+{
+    return of(stream, [](const auto& s) { return s.wanted(); });
+}
+
+std::uint64_t ServerBus::joins(publish::Stream stream) const
+{
+    return of(stream, [](const auto& s) { return s.joins(); });
 }
 
 void ServerBus::end_frame()

@@ -24,6 +24,7 @@ public:
     ~ServerBus() override;
 
     bool wants(publish::Stream stream) const override;
+    std::uint64_t joins(publish::Stream stream) const override;
     publish::Frame& begin_frame() override { return states_.begin_push(); }
     void end_frame() override;
     void collisions(publish::Batch<publish::CollisionRecord>&& batch) override;
@@ -44,6 +45,8 @@ private:
     void start();
     // Bus thread ------------------------------------------------------------------------------------------------------
     void run();
+    template <class Function>
+    auto of(publish::Stream stream, Function function) const;
     /// Does what there is to do, a little of everything. True if there is more.
     bool pass();
     bool receive(Clock::time_point now);

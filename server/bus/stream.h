@@ -22,6 +22,7 @@ public:
 
     // Step thread ------------------------------------------------------------------------------------------------------
     bool wanted() const { return wanted_.load(std::memory_order_relaxed); }
+    std::uint64_t joins() const { return joins_.load(std::memory_order_relaxed); }
     Record& begin_push() { return ring_.begin_push(); }
     void end_push() { ring_.end_push(); }
 
@@ -31,18 +32,22 @@ public:
     {
         if (there == writer_.entity().valid()) return {};
         wanted_.store(false, std::memory_order_relaxed);
-        writer_ = {};
+        writer_ = {}, seen_ = 0;
         if (!there) return {};
         auto writer = wire::Writer<T>::make(participant, publisher);
         if (!writer) return writer.errors();
         writer_ = writer.take();
         return {};
     }
-    /// Looks for readers. True if the first one has come.
+    /// Looks for readers. True if one has come since the last look.
     bool look()
     {
-        const bool read = writer_.entity().valid() && writer_.readers() > 0;
-        return !wanted_.exchange(read, std::memory_order_relaxed) && read;
+        const wire::Matched readers = writer_.entity().valid() ? writer_.matched() : wire::Matched{};
+        const bool came = readers.ever > seen_ && readers.now > 0;
+        seen_ = readers.ever;
+        wanted_.store(readers.now > 0, std::memory_order_relaxed);
+        if (came) joins_.fetch_add(1, std::memory_order_relaxed);
+        return came;
     }
     /// Writes at most `most` records. True if there are more.
     bool send(std::size_t most, Trouble& trouble)
@@ -67,6 +72,8 @@ private:
     Sample sample_;
     wire::Writer<T> writer_;
     std::atomic<bool> wanted_{false};
+    std::atomic<std::uint64_t> joins_{0};
+    std::uint32_t seen_ = 0;  ///< readers of this writer, ever, at the last look
 };
 
 }  // namespace plab::bus

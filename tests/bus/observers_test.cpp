@@ -119,6 +119,10 @@ TEST_CASE("a late observer of a paused server sees the scene and one frame")
     (void)frames->take([&](const plab_v1_Frame& f, const dds_sample_info_t&) { bodies = f.bodies._length, shafts = f.shafts._length; });
     CHECK(bodies == 2);
     CHECK(shafts == 6);
+    // So does a second one, though the first is still there and nothing has moved.
+    auto second = session.reader<plab_v1_Frame>();
+    REQUIRE(second.ok());
+    CHECK(session.wait(*second, Seconds(5)));
     const link::Catalogue known = catalogue(session);
     CHECK(known.now().types.size() > 20);
     // Known without loading its plugin, from the manifest.

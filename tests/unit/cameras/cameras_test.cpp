@@ -136,6 +136,7 @@ TEST_CASE("the view is the scene's camera of that name, the camera's own place, 
 TEST_CASE("all kinds of geometry, and shafts without any, are seen")
 {
     Room room;
+    room.camera.rows.position[0] = {0, -5, 1};
     room.step(1);
     std::set<std::vector<std::uint8_t>> different{room.viewer.pictures.back()};
     room.ball.size = {0.5, 0.9, 0.7};

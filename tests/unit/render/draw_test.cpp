@@ -130,7 +130,7 @@ TEST_CASE("what lies below the ground shines through; a plane hides it")
     drawing.view = {{0, -3, 3}, {0.3, 0.2, 0}, {0, 0, 1}, 0.7};
     drawing.ground = true;
     const Picture ground = drawn(drawing);
-    const Item below = item(Form::Sphere, {0.3, 0.2, -1}, {0.6, 0, 0}, kRed);
+    const Item below = item(Form::Sphere, {0.4, 1.27, -1}, {0.6, 0, 0}, kRed);
     drawing.items = {below};
     const Pixel veiled = middle(drawn(drawing));
     CHECK(veiled.red > veiled.green + 10);
