@@ -54,7 +54,11 @@ std::string json_line(const std::vector<link::TopicInfo>& topics)
         list("partitions", t.partitions);
         json.key("writers").value(t.writers).key("readers").value(t.readers);
         list("qos", t.qos);
-        json.key("plab").value(t.origin == link::Origin::Plab).key("origin").value(word_for(t.origin)).close('}');
+        json.key("plab")
+            .value(t.origin == link::Origin::Plab)
+            .key("other_version")
+            .value(t.origin == link::Origin::OtherVersion)
+            .close('}');
     }
     return json.close(']').close('}').take() + "\n";
 }

@@ -31,8 +31,10 @@ Result<Logger> Logger::make(const link::Session& session, const Options& options
     if (auto done = subscribe(session, out.waitset_, out.collisions_); !done) return done.errors();
     if (options.metrics)
         if (auto done = subscribe(session, out.waitset_, out.metrics_); !done) return done.errors();
-    // Last: once it says that the server is there, the others listen already.
+    // Last: once it says that the server is there, the others listen already. Its line is the first.
     if (auto done = subscribe(session, out.waitset_, out.server_); !done) return done.errors();
+    (void)session.wait(out.server_, link::Seconds(2));
+    out.take_server();
     return out;
 }
 

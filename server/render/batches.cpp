@@ -10,7 +10,9 @@ namespace
 /// Outlines of spheres of that level keep within a third of a pixel of the circle up to 130, 500 pixels of radius.
 constexpr int kCoarseSphere = 3, kFineSphere = 4;
 constexpr double kCoarsePixels = 130;
-constexpr int kCylinderSides = 64, kShadowSides = 16;
+constexpr int kCylinderSides = 64, kRoundSides = 40, kCoarseSides = 8;
+/// Shadows of spheres up to that radius in pixels are coarse discs.
+constexpr double kCoarseShadow = 16;
 
 void attribute(GLuint index, GLint size, GLsizei stride, std::size_t offset, GLuint divisor)
 {
@@ -97,7 +99,7 @@ void Batch::draw() const
 Batches Batches::make()
 {
     Batches out;
-    for (const int sides : {4, kShadowSides}) out.balls_.push_back(Batch::make(unit_disc(sides)));
+    for (const int sides : {4, kCoarseSides, kRoundSides}) out.balls_.push_back(Batch::make(unit_disc(sides)));
     for (const int level : {kCoarseSphere, kFineSphere}) out.spheres_.push_back(Batch::make(unit_sphere(level)));
     out.box_and_cylinder_.push_back(Batch::make(unit_box()));
     out.box_and_cylinder_.push_back(Batch::make(unit_cylinder(kCylinderSides)));
@@ -136,7 +138,7 @@ void Batches::add(const Item& item, const Frame& frame)
     const double pixels = pixels_of(item.size.x, frame.from_eye(item.pose.p), frame.pixels_per_radian);
     Batch& as_seen = pixels < kBallPixels ? balls_[0] : spheres_[pixels < kCoarsePixels ? 0 : 1];
     as_seen.add(instance);
-    balls_[1].add(instance);
+    balls_[pixels < kCoarseShadow ? 1 : 2].add(instance);
 }
 
 Result<void> Batches::sort(const Drawing& drawing, const Frame& frame)

@@ -53,14 +53,14 @@ public:
     /// Spheres that are small in the picture, as squares.
     void draw_balls() const { balls_[0].draw(); }
     /// All spheres, as discs.
-    void draw_ball_shadows() const { balls_[1].draw(); }
+    void draw_ball_shadows() const { balls_[1].draw(), balls_[2].draw(); }
 
 private:
     Batches() = default;
     void add(const Item& item, const Frame& frame);
     std::vector<Batch*> all();
 
-    std::vector<Batch> balls_;    ///< squares, discs
+    std::vector<Batch> balls_;    ///< squares, coarse discs, round discs
     std::vector<Batch> spheres_;  ///< from coarse to fine
     std::vector<Batch> box_and_cylinder_;
     std::vector<Batch> meshes_;

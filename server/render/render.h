@@ -84,8 +84,8 @@ Result<std::unique_ptr<Renderer>> make_renderer(std::uint32_t width, std::uint32
 /// Writes beside the file and renames, so that whoever looks sees a whole picture.
 Result<void> write_png(const std::string& path, const Picture& picture);
 
-/// A view that shows all items from a pleasant angle (azimuth and elevation in rad about their middle). Planes and what
-/// is not finite do not count.
+/// A view that shows all items from a pleasant angle (azimuth and elevation in rad about their middle), in a
+/// picture at least as wide as high. Planes and what is not finite do not count.
 View view_of_everything(const Drawing& drawing, double azimuth = -1.1, double elevation = 0.35);
 /// The same for items that are no meshes, which have no size by themselves.
 View view_of_everything(const std::vector<Item>& items, double azimuth = -1.1, double elevation = 0.35);

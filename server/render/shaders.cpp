@@ -32,12 +32,12 @@ uniform float texel;  // m
 uniform float softness;  // radius of the places, as a share of the map
 const vec2 kPlaces[8] = vec2[8](vec2(1.0, 0.45), vec2(-0.45, 1.0), vec2(-1.0, -0.45), vec2(0.45, -1.0),
                                 vec2(0.55, -0.2), vec2(0.2, 0.55), vec2(-0.55, 0.2), vec2(-0.2, -0.55));
-float lit(vec3 p, vec3 n, bool turned_away)
+// `most`: places, 4 or 8.
+float lit(vec3 p, vec3 n, int most)
 {
     vec3 s = (light_from_E * vec4(p + n * (1.5 * texel), 1.0)).xyz * 0.5 + 0.5;
-    int places = turned_away ? 0 : 8;
     float sum = 0.0, count = 0.0;
-    for (int i = 0; i < places; ++i)
+    for (int i = 0; i < most; ++i)
     {
         if (i == 4 && (sum == 0.0 || sum == 4.0)) break;
         sum += texture(shadow_map, s + vec3(kPlaces[i] * softness, 0.0));
@@ -80,11 +80,11 @@ uniform vec3 to_light;
 vec3 surroundings(float up) { return mix(vec3(0.46, 0.44, 0.42), vec3(0.78, 0.86, 0.96), smoothstep(-0.6, 0.8, up)); }
 
 // `albedo`: linear; `n`: unit, towards the eye.
-vec3 look(vec3 albedo, vec3 point, vec3 n)
+vec3 look(vec3 albedo, vec3 point, vec3 n, int places)
 {
     vec3 v = normalize(-point), l = to_light, h = normalize(l + v);
     float facing = max(dot(n, v), 0.0), cosine = dot(n, l);
-    float open = lit(point, n, cosine <= 0.0);
+    float open = lit(point, n, cosine <= 0.0 ? 0 : places);
     float sun = max(cosine, 0.0) * open;
 
     // Key light, a weak one from the eye, and the surroundings; then what a clear coat mirrors (Schlick's law).
@@ -107,7 +107,7 @@ void main()
 {
     vec3 n = normalize(outward);
     n = faceforward(n, point, n);  // an open mesh has two sides
-    result = vec4(look(linear(base), point, n), 1.0);
+    result = vec4(look(linear(base), point, n, 8), 1.0);
 }
 )";
 
@@ -152,7 +152,7 @@ void main()
     vec4 clip = clip_from_E * vec4(point, 1.0);
     gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
     float coverage = clamp((radius - sqrt(off)) / pixel + 0.5, 0.0, 1.0);
-    result = vec4(look(linear(base), point, normalize(point - middle)), coverage);
+    result = vec4(look(linear(base), point, normalize(point - middle), 4), coverage);
 }
 )";
 
@@ -219,7 +219,7 @@ out vec4 result;
 void main()
 {
     float fade = 1.0 - smoothstep(0.15, 1.0, distance(point, focus) / reach);
-    result = vec4(0.02, 0.03, 0.05, 0.34 * fade * (1.0 - lit(point, normal, false)));
+    result = vec4(0.02, 0.03, 0.05, 0.34 * fade * (1.0 - lit(point, normal, 8)));
 }
 )";
 

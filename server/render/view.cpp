@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "frame.h"
 #include "matrix.h"
@@ -11,20 +12,15 @@ namespace
 {
 
 /// A little air around everything.
-constexpr double kMargin = 1.1;
+constexpr double kMargin = 1.08;
 
-/// The middle of the box around all balls, and the radius that holds them.
-struct Extent
-{
-    Vec3 middle;
-    double radius = 1;
-};
+bool counts(const Item& item) { return item.form != Form::Plane && can_be_drawn(item); }
 
-Extent extent_of(const std::vector<Item>& items, const std::vector<double>& mesh_radii)
+/// The middle of the box around all balls; empty where there are none.
+std::optional<Vec3> middle_of(const std::vector<Item>& items, const std::vector<double>& mesh_radii)
 {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
-    const auto counts = [](const Item& item) { return item.form != Form::Plane && can_be_drawn(item); };
     for (const Item& item : items)
     {
         if (!counts(item)) continue;
@@ -36,19 +32,27 @@ Extent extent_of(const std::vector<Item>& items, const std::vector<double>& mesh
         }
     }
     if (!(low.x <= high.x)) return {};
-    Extent out{(low + high) * 0.5, 0};
-    for (const Item& item : items)
-        if (counts(item)) out.radius = std::max(out.radius, length(item.pose.p - out.middle) + radius_of(item, mesh_radii));
-    if (!(out.radius > 0)) out.radius = 1;
-    return out;
+    return (low + high) * 0.5;
 }
 
-View view_of(const Extent& extent, double azimuth, double elevation)
+View view_of(const std::vector<Item>& items, const std::vector<double>& mesh_radii, double azimuth, double elevation)
 {
     View out;
-    out.look_at = extent.middle;
-    const Vec3 direction{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
-    out.position = extent.middle + direction * (kMargin * extent.radius / std::sin(0.5 * out.field_of_view));
+    const Vec3 back{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+    out.look_at = middle_of(items, mesh_radii).value_or(Vec3{});
+    // As far away as the ball needs that sticks out most of the pyramid of the view, whose sides lean by half its angle:
+    // a ball at (x, y) across and z towards the eye is inside if  max(|x|, |y|) cos h + r <= (distance - z) sin h.
+    const Basis basis = basis_of(back, out.up);
+    const double half = 0.5 * out.field_of_view;
+    double distance = 0;
+    for (const Item& item : items)
+    {
+        if (!counts(item)) continue;
+        const Vec3 p = item.pose.p - out.look_at;
+        const double across = std::max(std::fabs(dot(p, basis.right)), std::fabs(dot(p, basis.up)));
+        distance = std::max(distance, dot(p, basis.back) + across / std::tan(half) + radius_of(item, mesh_radii) / std::sin(half));
+    }
+    out.position = out.look_at + basis.back * (distance > 0 ? kMargin * distance : 5);
     return out;
 }
 
@@ -58,12 +62,9 @@ View view_of_everything(const Drawing& drawing, double azimuth, double elevation
 {
     std::vector<double> radii;
     for (const Mesh& mesh : drawing.meshes) radii.push_back(radius_of(mesh));
-    return view_of(extent_of(drawing.items, radii), azimuth, elevation);
+    return view_of(drawing.items, radii, azimuth, elevation);
 }
 
-View view_of_everything(const std::vector<Item>& items, double azimuth, double elevation)
-{
-    return view_of(extent_of(items, {}), azimuth, elevation);
-}
+View view_of_everything(const std::vector<Item>& items, double azimuth, double elevation) { return view_of(items, {}, azimuth, elevation); }
 
 }  // namespace plab::render

@@ -45,7 +45,7 @@ inline const std::vector<Layer>& layers()
         {"interactions/*", {"server/sdk"}, {}},
         {"idl", {"server/sdk"}, {"dds/"}},
         {"clients/link", {"server/sdk", "idl"}, {"dds/", "nlohmann/"}},
-        {"clients/viewer", {"server/sdk", "server/render", "idl", "clients/link"}, {"CLI/", "unistd.h", "sys/", "fcntl.h", "signal.h"}},
+        {"clients/viewer", {"server/sdk", "server/render", "idl", "clients/link"}, {"CLI/", "unistd.h", "sys/", "fcntl.h", "signal.h", "spawn.h"}},
         {"clients/*", {"server/sdk", "idl", "clients/link"}, {"CLI/", "nlohmann/", "unistd.h", "sys/", "signal.h"}},
         {"tests",
          {"server", "interactions", "clients", "idl"},

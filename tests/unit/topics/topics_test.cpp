@@ -140,7 +140,8 @@ TEST_CASE("list shows pLab's topics and those of strangers")
     const Outcome out = topics({"--json"});
     REQUIRE_MESSAGE(out.code == 0, out.errors);
     Json frames, readings;
-    for (const Json& topic : Json::parse(out.output)["topics"])
+    const Json all = Json::parse(out.output);
+    for (const Json& topic : all["topics"])
     {
         if (topic["topic"] == "plab/states" && topic["partitions"][0] == scene.server) frames = topic;
         if (topic["topic"] == "readings") readings = topic;
