@@ -122,13 +122,13 @@ Result<Frame> make_frame(const Drawing& drawing, const std::vector<double>& mesh
     double nearest = distance, farthest = 1.5 * out.reach;
     for (std::size_t i = 0; i < radii.size(); ++i)
     {
-        if (!can_be_drawn(drawing.items[i])) continue;
+        if (drawing.items[i].form == Form::Plane || !can_be_drawn(drawing.items[i])) continue;
         const double depth = -dot(out.from_eye(drawing.items[i].pose.p), out.basis.back);
         nearest = std::min(nearest, depth - radii[i]);
         farthest = std::max(farthest, depth + radii[i]);
     }
-    // A depth of 24 bits tells apart what is near to 1e-3 of its distance even at this ratio.
-    const double near = std::clamp(0.5 * nearest, 2e-3 * distance, 0.2 * distance);
+    // The ground begins at the eye's feet, so not too far away; a depth of 24 bits is fine enough at this ratio.
+    const double near = std::clamp(0.5 * nearest, 2e-3 * distance, 0.02 * distance);
     out.clip_from_E = perspective(out.basis, view.field_of_view, static_cast<double>(width) / height, near, farthest);
     aim_light(out, drawing, radii);
     return out;

@@ -49,7 +49,7 @@ Result<void> set_field(world::World& world, std::uint32_t component, const std::
     const Bodies before = world.host().bodies;
     const bool quarantined = world.component(component).quarantined;
     if (auto done = world.set(component, name, value); !done) return done;
-    world.component(component).quarantined = false;  // a mended component gets another chance
+    world.quarantine(component, false);  // a mended component gets another chance
     if (field->kind == FieldKind::State && !quarantined) return {};
     prepared.insert(component);
     const world::HostTables moved = world.host();

@@ -16,8 +16,7 @@ Result<Simulation::Live> Simulation::build(const model::SceneSpec& scene)
 {
     Live live;
     live.world = std::make_unique<world::World>(*types_);
-    live.world->scene().settings = scene.settings;
-    live.world->scene().file = scene.file;
+    live.world->describe(scene.settings, scene.file);
     if (auto added = live.world->add(scene); !added) return added.errors();
     live.stepper = std::make_unique<Stepper>(*live.world, threads_);
     if (auto built = live.stepper->rebuild(); !built)
@@ -136,7 +135,7 @@ void Simulation::freeze_lost_objects()
         world::HostTables& host = world_->host();
         if (ref.facet == Facet::Body) host.bodies.motion[ref.index] = Motion::Static;
         if (ref.facet == Facet::Shaft) host.shafts.motion[ref.index] = Motion::Static;
-        world_->component(host.component_of(ref)).quarantined = true;
+        world_->quarantine(host.component_of(ref), true);
         changes_.touched.push_back(world_->id_of(ref));
     }
     (void)stepper_->rebuild();  // fewer moving parts cannot contradict one another
@@ -148,11 +147,11 @@ void Simulation::quarantine_failed()
     for (const Event& e : events_)
     {
         if (e.severity != Severity::Failure || e.component == kNoIndex) continue;
-        world::Component& c = world_->component(e.component);
+        const world::Component c = world_->component(e.component);
         const bool object = c.facet != Facet::Component;
         any = any || (!c.quarantined && !object);
         if (!c.quarantined) changes_.touched.push_back(c.id);
-        c.quarantined = true;
+        world_->quarantine(e.component, true);
     }
     if (any) (void)stepper_->rebuild();
 }

@@ -8,33 +8,46 @@ namespace plab::world
 
 std::uint32_t World::insert(Component component)
 {
-    std::uint32_t i = static_cast<std::uint32_t>(components_.size());
-    if (free_components_.empty())
-        components_.emplace_back();
+    Directory& directory = directory_.edit();
+    std::uint32_t i = static_cast<std::uint32_t>(directory.components.size());
+    if (directory.free.empty())
+        directory.components.emplace_back();
     else
     {
-        i = free_components_.back();
-        free_components_.pop_back();
+        i = directory.free.back();
+        directory.free.pop_back();
     }
     component.alive = true;
-    index_of_id_[component.id] = i;
-    components_[i] = std::move(component);
+    directory.index_of_id[component.id] = i;
+    directory.components[i] = std::move(component);
     return i;
 }
 
 void World::erase(std::uint32_t i)
 {
-    index_of_id_.erase(components_[i].id);
-    components_[i] = {};
-    free_components_.push_back(i);
+    Directory& directory = directory_.edit();
+    directory.index_of_id.erase(directory.components[i].id);
+    directory.components[i] = {};
+    directory.free.push_back(i);
+}
+
+void World::quarantine(std::uint32_t i, bool quarantined)
+{
+    if (component(i).quarantined != quarantined) directory_.edit().components[i].quarantined = quarantined;
+}
+
+void World::describe(const model::SceneSettings& settings, const std::string& file)
+{
+    model::SceneSpec& scene = scene_.edit();
+    scene.settings = settings, scene.file = file;
 }
 
 void World::sort_by_id()
 {
     in_id_order_.clear();
-    rank_.assign(components_.size(), kNoIndex);
+    rank_.assign(components().size(), kNoIndex);
     // std::map iterates in byte-wise order of ids: the order that every phase, hash and listing uses.
-    for (const auto& [id, i] : index_of_id_)
+    for (const auto& [id, i] : directory_->index_of_id)
     {
         rank_[i] = static_cast<std::uint32_t>(in_id_order_.size());
         in_id_order_.push_back(i);
@@ -85,7 +98,7 @@ Result<std::uint32_t> World::create(const model::ComponentSpec& spec)
     c.facet = table.type().info.facet;
     c.commands = enabled_commands(table.type(), spec);
     const std::uint32_t i = insert(std::move(c));
-    Component& placed = components_[i];
+    Component& placed = directory_.edit().components[i];
     placed.host_index = host_.add(placed.facet, i);
     placed.row = table.add(i, placed.host_index);
     fill_fields(table, placed.row, spec);
@@ -97,7 +110,7 @@ std::vector<Ref> World::everyone_in(const Role& role) const
     std::vector<Ref> out;
     for (const std::uint32_t i : in_id_order_)
     {
-        const Component& c = components_[i];
+        const Component& c = directory_->components[i];
         if (c.table == kNoIndex || std::find(role.facets.begin(), role.facets.end(), c.facet) == role.facets.end()) continue;
         if (c.facet == Facet::Component && tables_[c.table]->type().info.name.rfind(role.family, 0) != 0) continue;
         out.push_back(c.ref(i));
@@ -112,7 +125,7 @@ void World::bind_role(const Role& role, Row row, const model::RoleSpec* spec)
         refs = everyone_in(role);
     else if (spec)
         for (const std::string& id : spec->members)
-            if (const std::uint32_t i = find(id); i != kNoIndex) refs.push_back(components_[i].ref(i));
+            if (const std::uint32_t i = find(id); i != kNoIndex) refs.push_back(directory_->components[i].ref(i));
     if (role.one) (*role.one)[row] = refs.empty() ? Ref{} : refs.front();
     if (role.many) (*role.many)[row] = std::move(refs);
 }
@@ -124,13 +137,13 @@ void World::bind(std::uint32_t component, const model::ComponentSpec& spec)
     {
         const auto given =
             std::find_if(spec.roles.begin(), spec.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
-        bind_role(role, components_[component].row, given == spec.roles.end() ? nullptr : &*given);
+        bind_role(role, directory_->components[component].row, given == spec.roles.end() ? nullptr : &*given);
     }
 }
 
 void World::initialize_motion(std::uint32_t component)
 {
-    const Component& c = components_[component];
+    const Component& c = directory_->components[component];
     if (c.host_index == kNoIndex) return;
     for (const Field& field : table_of(component).schema().fields())
         if (field.hosted) set_hosted(host_, c.facet, c.host_index, field.name, field.column->get(c.row));
@@ -160,11 +173,11 @@ Result<void> World::add(const model::SceneSpec& scene)
             continue;
         }
         created.push_back({*made, &spec});
-        scene_.components.push_back(spec);
+        scene_.edit().components.push_back(spec);
     }
     sort_by_id();
     for (const Created& c : created)
-        if (components_[c.component].table != kNoIndex) bind(c.component, *c.spec);
+        if (directory_->components[c.component].table != kNoIndex) bind(c.component, *c.spec);
     if (errors.empty())
     {
         std::sort(created.begin(), created.end(),
@@ -186,19 +199,19 @@ Result<void> World::add(const model::SceneSpec& scene)
 
 void World::refresh_open_roles()
 {
-    for (const model::ComponentSpec& spec : scene_.components)
+    for (const model::ComponentSpec& spec : scene_->components)
         for (const model::RoleSpec& role : spec.roles)
             if (role.everyone)
             {
                 const std::uint32_t i = find(spec.id);
-                bind_role(*table_of(i).schema().find_role(role.name), components_[i].row, &role);
+                bind_role(*table_of(i).schema().find_role(role.name), directory_->components[i].row, &role);
             }
 }
 
 void World::remove(std::uint32_t component)
 {
-    const Component c = components_[component];
-    std::erase_if(scene_.components, [&](const model::ComponentSpec& s) { return s.id == c.id; });
+    const Component c = directory_->components[component];
+    std::erase_if(scene_.edit().components, [&](const model::ComponentSpec& s) { return s.id == c.id; });
     if (c.table != kNoIndex)
     {
         parked_.push_back({c.table, c.row, c.host_index, c.facet});
@@ -216,7 +229,7 @@ Result<void> World::exchange(std::uint32_t component, const model::ComponentSpec
     auto table_index = table_for(spec.type);
     if (!table_index) return table_index.errors();
     Table& table = *tables_[*table_index];
-    const Component old = components_[component];
+    const Component old = directory_->components[component];
     const HostTables host_before = host_;
 
     Component next = old;
@@ -225,18 +238,18 @@ Result<void> World::exchange(std::uint32_t component, const model::ComponentSpec
     next.commands = enabled_commands(table.type(), spec);
     next.quarantined = false;
     fill_fields(table, next.row, spec);
-    components_[component] = next;
+    directory_.edit().components[component] = next;
     bind(component, spec);
     if (auto done = prepare(component); !done)
     {
         table.remove(next.row);
-        components_[component] = old;
+        directory_.edit().components[component] = old;
         host_ = host_before;
         return done.errors();
     }
     parked_.push_back({old.table, old.row, kNoIndex, old.facet});
     tables_[old.table]->assign(old.row, kNoIndex, kNoIndex);
-    for (model::ComponentSpec& s : scene_.components)
+    for (model::ComponentSpec& s : scene_.edit().components)
         if (s.id == spec.id) s = spec;
     return {};
 }
@@ -254,36 +267,37 @@ void World::release_parked()
 Backup World::backup() const
 {
     ByteWriter cells;
-    for (const Component& c : components_)
+    for (const Component& c : components())
         if (c.alive && c.table != kNoIndex) tables_[c.table]->save(c.row, kLiveKinds, cells);
-    return {components_, index_of_id_, free_components_, host_, scene_, cells.bytes()};
+    return {directory_, scene_, host_, cells.bytes()};
 }
 
 void World::restore(const Backup& b)
 {
-    // Rows that came since the backup go; rows that were parked since come back.
-    for (const Component& c : components_)
-        if (c.alive && c.table != kNoIndex) tables_[c.table]->assign(c.row, kNoIndex, kNoIndex);
-    std::vector<Component> newer = components_;
-    components_ = b.components;
-    index_of_id_ = b.index_of_id;
-    free_components_ = b.free_components;
+    const bool same_structure = directory_.same_as(b.directory) && scene_.same_as(b.scene);
+    if (!same_structure) restore_structure(b);
     host_ = b.host;
-    scene_ = b.scene;
     ByteReader cells(b.cells);
-    for (std::uint32_t i = 0; i < components_.size(); ++i)
-    {
-        const Component& c = components_[i];
-        if (!c.alive || c.table == kNoIndex) continue;
-        tables_[c.table]->assign(c.row, i, c.host_index);
-        tables_[c.table]->load(c.row, kLiveKinds, cells);
-    }
-    for (const Component& c : newer)
+    for (const Component& c : components())
+        if (c.alive && c.table != kNoIndex) tables_[c.table]->load(c.row, kLiveKinds, cells);
+    if (same_structure) return;
+    for (const model::ComponentSpec& spec : scene_->components)
+        if (const std::uint32_t i = find(spec.id); i != kNoIndex && component(i).table != kNoIndex) bind(i, spec);
+}
+
+void World::restore_structure(const Backup& b)
+{
+    // Rows that came since the backup go; rows that were parked since come back.
+    for (const Component& c : components())
+        if (c.alive && c.table != kNoIndex) tables_[c.table]->assign(c.row, kNoIndex, kNoIndex);
+    const Shared<Directory> newer = directory_;
+    directory_ = b.directory, scene_ = b.scene;
+    for (std::uint32_t i = 0; i < components().size(); ++i)
+        if (const Component& c = component(i); c.alive && c.table != kNoIndex) tables_[c.table]->assign(c.row, i, c.host_index);
+    for (const Component& c : newer->components)
         if (c.alive && c.table != kNoIndex && tables_[c.table]->component_of_row()[c.row] == kNoIndex) tables_[c.table]->remove(c.row);
     std::erase_if(parked_, [&](const Parked& p) { return tables_[p.table]->component_of_row()[p.row] != kNoIndex; });
     sort_by_id();
-    for (const model::ComponentSpec& spec : scene_.components)
-        if (const std::uint32_t i = find(spec.id); i != kNoIndex && components_[i].table != kNoIndex) bind(i, spec);
 }
 
 }  // namespace plab::world

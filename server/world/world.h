@@ -13,6 +13,7 @@
 #include "model/scene.h"
 #include "model/type_registry.h"
 #include "world/host_tables.h"
+#include "world/shared.h"
 #include "world/table.h"
 
 namespace plab::world
@@ -37,14 +38,20 @@ struct Component
     }
 };
 
-/// What a swap or rollback needs to bring everything back, except opaque objects, whose rows stay parked.
-struct Backup
+/// Who is who. Changed only by requests.
+struct Directory
 {
     std::vector<Component> components;
     std::map<std::string, std::uint32_t> index_of_id;
-    std::vector<std::uint32_t> free_components;
+    std::vector<std::uint32_t> free;
+};
+
+/// What a swap or rollback needs to bring everything back, except opaque objects, whose rows stay parked.
+struct Backup
+{
+    Shared<Directory> directory;
+    Shared<model::SceneSpec> scene;
     HostTables host;
-    model::SceneSpec scene;
     std::vector<std::uint8_t> cells;  ///< params, state and outputs of all rows, in directory order
 };
 
@@ -75,9 +82,10 @@ public:
 
     // Looking things up ----------------------------------------------------------------------------------------------
     std::uint32_t find(const std::string& id) const;
-    const std::vector<Component>& components() const { return components_; }
-    Component& component(std::uint32_t i) { return components_[i]; }
-    const Component& component(std::uint32_t i) const { return components_[i]; }
+    const std::vector<Component>& components() const { return directory_->components; }
+    const Component& component(std::uint32_t i) const { return directory_->components[i]; }
+    /// A quarantined component takes no part in the step.
+    void quarantine(std::uint32_t i, bool quarantined);
     const std::string& id_of(std::uint32_t component) const;
     const std::string& id_of(Ref ref) const { return id_of(host_.component_of(ref)); }
     const model::ComponentType* type_of(std::uint32_t component) const;
@@ -99,12 +107,13 @@ public:
 
     std::vector<std::unique_ptr<Table>>& tables() { return tables_; }
     const std::vector<std::unique_ptr<Table>>& tables() const { return tables_; }
-    Table& table_of(std::uint32_t component) { return *tables_[components_[component].table]; }
-    const Table& table_of(std::uint32_t component) const { return *tables_[components_[component].table]; }
+    Table& table_of(std::uint32_t i) { return *tables_[component(i).table]; }
+    const Table& table_of(std::uint32_t i) const { return *tables_[component(i).table]; }
     HostTables& host() { return host_; }
     const HostTables& host() const { return host_; }
-    model::SceneSpec& scene() { return scene_; }
-    const model::SceneSpec& scene() const { return scene_; }
+    const model::SceneSpec& scene() const { return *scene_; }
+    /// Settings and file; before components are added.
+    void describe(const model::SceneSettings& settings, const std::string& file);
     model::TypeSource& types() { return *types_; }
 
     /// Over the raw bits of all state, in id order (server/docs/determinism.md).
@@ -120,6 +129,7 @@ private:
     void bind_role(const Role& role, Row row, const model::RoleSpec* spec);
     std::vector<Ref> everyone_in(const Role& role) const;
     void initialize_motion(std::uint32_t component);
+    void restore_structure(const Backup& backup);
     std::uint32_t insert(Component component);
     void erase(std::uint32_t component);
     void sort_by_id();
@@ -139,11 +149,10 @@ private:
     model::TypeSource* types_;
     std::vector<std::unique_ptr<Table>> tables_;
     std::map<std::string, std::uint32_t> table_of_type_;
-    std::vector<Component> components_;
-    std::map<std::string, std::uint32_t> index_of_id_;
-    std::vector<std::uint32_t> free_components_, in_id_order_, rank_;
+    Shared<Directory> directory_;
+    Shared<model::SceneSpec> scene_;
+    std::vector<std::uint32_t> in_id_order_, rank_;
     HostTables host_;
-    model::SceneSpec scene_;
     std::vector<Parked> parked_;
 };
 

@@ -8,25 +8,25 @@ namespace plab::world
 
 std::uint32_t World::find(const std::string& id) const
 {
-    const auto found = index_of_id_.find(id);
-    return found == index_of_id_.end() ? kNoIndex : found->second;
+    const auto found = directory_->index_of_id.find(id);
+    return found == directory_->index_of_id.end() ? kNoIndex : found->second;
 }
 
 const std::string& World::id_of(std::uint32_t component) const
 {
     static const std::string nobody;
-    return component < components_.size() ? components_[component].id : nobody;
+    return component < components().size() ? directory_->components[component].id : nobody;
 }
 
 const model::ComponentType* World::type_of(std::uint32_t component) const
 {
-    const Component& c = components_[component];
+    const Component& c = directory_->components[component];
     return c.table == kNoIndex ? nullptr : &tables_[c.table]->type();
 }
 
 std::vector<Ref> World::participants(std::uint32_t component, const Role& role) const
 {
-    const Row row = components_[component].row;
+    const Row row = directory_->components[component].row;
     if (role.many) return (*role.many)[row];
     const Ref ref = (*role.one)[row];
     return ref.valid() ? std::vector<Ref>{ref} : std::vector<Ref>{};
@@ -35,9 +35,10 @@ std::vector<Ref> World::participants(std::uint32_t component, const Role& role) 
 std::vector<std::uint32_t> World::referrers(std::uint32_t component) const
 {
     std::vector<std::uint32_t> out;
-    for (const model::ComponentSpec& spec : scene_.components)
+    for (const model::ComponentSpec& spec : scene_->components)
         for (const model::RoleSpec& role : spec.roles)
-            if (!role.everyone && std::find(role.members.begin(), role.members.end(), components_[component].id) != role.members.end())
+            if (!role.everyone &&
+                std::find(role.members.begin(), role.members.end(), directory_->components[component].id) != role.members.end())
             {
                 out.push_back(find(spec.id));
                 break;
@@ -47,7 +48,7 @@ std::vector<std::uint32_t> World::referrers(std::uint32_t component) const
 
 Value World::get(std::uint32_t component, const std::string& name) const
 {
-    const Component& c = components_[component];
+    const Component& c = directory_->components[component];
     if (c.table == kNoIndex) return {};
     const Table& table = *tables_[c.table];
     if (const Field* field = table.schema().find_field(name))
@@ -63,7 +64,7 @@ Value World::get(std::uint32_t component, const std::string& name) const
 
 Result<void> World::set(std::uint32_t component, const std::string& name, const Value& value)
 {
-    const Component& c = components_[component];
+    const Component& c = directory_->components[component];
     if (c.table == kNoIndex) return reason("is a group");
     const Table& table = *tables_[c.table];
     const Field* field = table.schema().find_field(name);
@@ -80,7 +81,7 @@ Result<void> World::set(std::uint32_t component, const std::string& name, const 
 
 int World::prepare_order(std::uint32_t component) const
 {
-    const Component& c = components_[component];
+    const Component& c = directory_->components[component];
     if (c.table == kNoIndex) return 0;
     const bool refers_to_shape = std::any_of(tables_[c.table]->schema().roles().begin(), tables_[c.table]->schema().roles().end(),
                                              [](const Role& r) { return r.facets == std::vector<Facet>{Facet::Shape}; });
@@ -90,10 +91,10 @@ int World::prepare_order(std::uint32_t component) const
 
 Result<void> World::run(std::uint32_t component, Phase phase)
 {
-    const Component& c = components_[component];
+    const Component& c = directory_->components[component];
     Table& table = *tables_[c.table];
     StepContext context;
-    context.seed = scene_.settings.seed;
+    context.seed = scene_->settings.seed;
     context.component_of_row = table.component_of_row();
     context.facet_of_row = table.host_of_row();
     PhaseCall call;
@@ -121,7 +122,7 @@ bool is_needle(const Mat3& inertia)
 
 Result<void> World::prepare(std::uint32_t component)
 {
-    const Component& c = components_[component];
+    const Component& c = directory_->components[component];
     if (c.table == kNoIndex) return {};
     auto done = run(component, Phase::Prepare);
     if (done && c.facet == Facet::Body)
@@ -134,7 +135,7 @@ Result<void> World::prepare(std::uint32_t component)
     }
     if (done) return {};
     Errors errors = done.errors();
-    const model::ComponentSpec* spec = scene_.find(c.id);
+    const model::ComponentSpec* spec = scene_->find(c.id);
     for (Error& e : errors)
     {
         if (e.element.empty()) e.element = c.id + " (" + tables_[c.table]->type().info.name + ")";
@@ -156,7 +157,7 @@ Result<void> World::prepare_all()
 
 void World::save_state(std::uint32_t component, ByteWriter& out) const
 {
-    const Component& c = components_[component];
+    const Component& c = directory_->components[component];
     if (c.table == kNoIndex) return;
     tables_[c.table]->save(c.row, kStateKinds, out);
     if (c.host_index != kNoIndex) plab::world::save_state(host_, c.ref(component), out);

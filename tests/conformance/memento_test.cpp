@@ -15,7 +15,7 @@ class Run
 public:
     explicit Run(const model::SceneSpec& scene) : dt_(scene.settings.dt), world_(library())
     {
-        world_.scene().settings = scene.settings;
+        world_.describe(scene.settings, scene.file);
         const auto added = world_.add(scene);
         REQUIRE_MESSAGE(added.ok(), reasons(added));
         stepper_ = std::make_unique<simulation::Stepper>(world_, 1);

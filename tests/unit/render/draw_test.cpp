@@ -40,6 +40,19 @@ TEST_CASE("a red sphere is red in the middle, round, and the background is all a
     }
 }
 
+TEST_CASE("up in the view is up in the picture, right is right")
+{
+    Drawing drawing = empty_drawing();
+    const Picture nothing = drawn(drawing);
+    drawing.items = {item(Form::Sphere, {0.8, 0, 0.6}, {0.3, 0, 0}, kRed)};
+    const Picture picture = drawn(drawing);
+    const auto empty = [&](std::uint32_t x, std::uint32_t y) { return pixel(picture, x, y) == pixel(nothing, x, y); };
+    CHECK_FALSE(empty(106, 40));  // 32.9 pixels a metre: 80 + 26, 60 - 20
+    CHECK(empty(106, 80));
+    CHECK(empty(54, 40));
+    CHECK(empty(54, 80));
+}
+
 TEST_CASE("the picture is opaque, whatever was blended into it")
 {
     Drawing drawing = empty_drawing();
