@@ -43,11 +43,11 @@ bool is_block(const std::string& text) { return text.find('\n') != std::string::
 void print_parameters(const Console& console, const std::vector<link::Parameter>& parameters, const link::Type* type)
 {
     Table table({{"field"},
-                 {"value", Align::Left, Shrink::End},
+                 {"value", Align::Left, Shrink::Wrap},
                  {"unit"},
                  {"kind"},
-                 {"rule", Align::Left, Shrink::End},
-                 {"meaning", Align::Left, Shrink::End}});
+                 {"rule", Align::Left, Shrink::Wrap},
+                 {"meaning", Align::Left, Shrink::Wrap}});
     for (const link::Parameter& p : parameters)
     {
         const link::FieldInfo* const f = find_field(type, p.name);
@@ -143,7 +143,7 @@ void print_type(Context& c, const link::Type& t)
     lines.add("limits", t.limits);
     lines.add("source", t.source);
     lines.print(c.console);
-    Table roles({{"role"}, {"accepts"}, {"number", Align::Right}, {"meaning", Align::Left, Shrink::End}});
+    Table roles({{"role"}, {"accepts"}, {"number", Align::Right}, {"meaning", Align::Left, Shrink::Wrap}});
     for (const link::RoleInfo& r : t.roles) roles.add({r.name, r.accepts, arity(r), r.doc});
     if (!roles.empty()) c.console.out("\n");
     roles.print(c.console);
@@ -151,9 +151,9 @@ void print_type(Context& c, const link::Type& t)
                   {"kind"},
                   {"value"},
                   {"unit"},
-                  {"default", Align::Left, Shrink::End},
-                  {"rule", Align::Left, Shrink::End},
-                  {"meaning", Align::Left, Shrink::End}});
+                  {"default", Align::Left, Shrink::Wrap},
+                  {"rule", Align::Left, Shrink::Wrap},
+                  {"meaning", Align::Left, Shrink::Wrap}});
     for (const link::FieldInfo& f : t.fields)
         fields.add({f.name, f.kind, f.value_type, f.unit, f.required ? "(required)" : f.fallback, f.rule, f.doc});
     if (!fields.empty()) c.console.out("\n");

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
+#include <utility>
 
 namespace plab::control
 {
@@ -10,13 +10,26 @@ namespace
 {
 
 constexpr std::size_t kGap = 2;
-constexpr std::size_t kLeast = 8;  // what a column keeps when it shrinks
+// What columns keep when they shrink. Ids give way further only when there is no prose left to give way.
+constexpr std::size_t kLeastProse = 16, kLeastId = 20, kLeastAtAll = 8;
 
 std::size_t total(const std::vector<std::size_t>& widths)
 {
     std::size_t sum = 0;
     for (const std::size_t w : widths) sum += w > 0 ? w + kGap : 0;
     return sum > 0 ? sum - kGap : 0;
+}
+
+/// Takes as many words off the front of `text` as go into `most` columns; a word that is too long is cut.
+std::string take_line(std::string& text, std::size_t most)
+{
+    if (columns_of(text) <= most) return std::exchange(text, {});
+    std::size_t end = text.rfind(' ', most);
+    if (end == std::string::npos || end == 0 || columns_of(text.substr(0, end)) > most)
+        for (end = 0; end < text.size() && columns_of(text.substr(0, end + 1)) <= most;) ++end;
+    std::string line = text.substr(0, end);
+    text.erase(0, end + (text[end] == ' ' ? 1 : 0));
+    return line;
 }
 
 }  // namespace
@@ -28,25 +41,68 @@ void Table::add(std::vector<std::string> cells, Style style)
     rows_.push_back({std::move(cells), style});
 }
 
-std::vector<std::size_t> Table::widths(const Console& console) const
+std::vector<std::size_t> Table::natural_widths() const
 {
     std::vector<std::size_t> out(columns_.size(), 0);
     for (const Row& row : rows_)
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::max(out[i], columns_of(row.cells[i]));
     for (std::size_t i = 0; i < out.size(); ++i)
         if (out[i] > 0) out[i] = std::max(out[i], columns_of(columns_[i].title));
-    if (console.width() == 0) return out;
-    // Prose gives way first, then ids; the widest of them by one column at a time, so that they end up alike.
-    for (const Shrink kind : {Shrink::End, Shrink::Middle})
-        while (total(out) > console.width())
-        {
-            std::size_t widest = out.size();
-            for (std::size_t i = 0; i < out.size(); ++i)
-                if (columns_[i].shrink == kind && out[i] > kLeast && (widest == out.size() || out[i] > out[widest])) widest = i;
-            if (widest == out.size()) break;
-            --out[widest];
-        }
     return out;
+}
+
+/// Narrows the widest column by one at a time, so that they end up alike; prose first. True if it fits then.
+bool Table::shrink_to(std::size_t most, std::size_t least_id, std::vector<std::size_t>& widths) const
+{
+    for (const bool prose : {true, false})
+        while (total(widths) > most)
+        {
+            const std::size_t least = prose ? kLeastProse : least_id;
+            std::size_t widest = widths.size();
+            for (std::size_t i = 0; i < widths.size(); ++i)
+            {
+                const Shrink kind = columns_[i].shrink;
+                const bool may = prose ? kind == Shrink::End || kind == Shrink::Wrap : kind == Shrink::Middle;
+                if (may && widths[i] > least && (widest == widths.size() || widths[i] > widths[widest])) widest = i;
+            }
+            if (widest == widths.size()) break;
+            --widths[widest];
+        }
+    return total(widths) <= most;
+}
+
+std::vector<std::size_t> Table::widths(const Console& console) const
+{
+    std::vector<std::size_t> natural = natural_widths();
+    if (console.width() == 0) return natural;
+    std::vector<std::size_t> out = natural;
+    if (shrink_to(console.width(), kLeastId, out)) return out;
+    for (std::size_t i = columns_.size(); i-- > 0;)
+    {
+        if (columns_[i].shrink != Shrink::End || natural[i] == 0) continue;
+        natural[i] = 0;
+        out = natural;
+        if (shrink_to(console.width(), kLeastId, out)) return out;
+    }
+    (void)shrink_to(console.width(), kLeastAtAll, out);
+    return out;
+}
+
+/// The row's cells line by line: all but those that wrap are in the first.
+std::vector<std::vector<std::string>> Table::wrapped(const Row& row, const std::vector<std::size_t>& widths) const
+{
+    std::vector<std::vector<std::string>> lines{row.cells};
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+    {
+        if (columns_[i].shrink != Shrink::Wrap || widths[i] == 0) continue;
+        std::string rest = row.cells[i];
+        for (std::size_t n = 0; n == 0 || !rest.empty(); ++n)
+        {
+            if (n == lines.size()) lines.emplace_back(columns_.size());
+            lines[n][i] = take_line(rest, widths[i]);
+        }
+    }
+    return lines;
 }
 
 std::string Table::cell(std::size_t column, const std::string& text, std::size_t width) const
@@ -76,7 +132,8 @@ void Table::print(const Console& console, bool title) const
         for (const Column& c : columns_) titles.push_back(c.title);
         console.out(console.styled(Style::Bold, line(titles, wide)) + "\n");
     }
-    for (const Row& row : rows_) console.out(console.styled(row.style, line(row.cells, wide)) + "\n");
+    for (const Row& row : rows_)
+        for (const std::vector<std::string>& cells : wrapped(row, wide)) console.out(console.styled(row.style, line(cells, wide)) + "\n");
 }
 
 void Lines::add(std::string name, std::string text)

@@ -19,7 +19,8 @@ enum class Shrink : unsigned char
 {
     Never,
     Middle,  ///< ids, type names: both ends tell them apart
-    End,     ///< prose
+    End,     ///< prose; on a narrow terminal the last of these columns go altogether
+    Wrap,    ///< prose that is printed in full, over several lines
 };
 
 struct Column
@@ -46,6 +47,9 @@ private:
         Style style;
     };
     std::vector<std::size_t> widths(const Console& console) const;
+    std::vector<std::size_t> natural_widths() const;
+    bool shrink_to(std::size_t most, std::size_t least_id, std::vector<std::size_t>& widths) const;
+    std::vector<std::vector<std::string>> wrapped(const Row& row, const std::vector<std::size_t>& widths) const;
     std::string cell(std::size_t column, const std::string& text, std::size_t width) const;
     std::string line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) const;
 

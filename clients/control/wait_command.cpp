@@ -30,10 +30,9 @@ struct Place
 };
 
 /// The server's state tells the time once a second and at every change, frames in between.
-std::optional<Place> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, Clock::time_point end)
+std::optional<Place> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, Place place, Clock::time_point end)
 {
     auto frames = c.session().reader<plab_v1_Frame>();
-    Place place;
     while (!c.stopped() && Clock::now() < end && !catalogue.server_is_gone())
     {
         if (frames)
@@ -69,7 +68,7 @@ Exit run_wait(Context& c, const WaitOptions& o)
     Place place{catalogue->now().server->run, catalogue->now().server->step, catalogue->now().server->time};
     if (o.step || o.time)
     {
-        const auto reached = wait_for_place(c, *catalogue, o, end);
+        const auto reached = wait_for_place(c, *catalogue, o, place, end);
         if (!reached && catalogue->server_is_gone()) return c.fail(Exit::NoServer, "server '" + c.session().server() + "' has gone");
         if (!reached)
             return c.fail(Exit::NoServer, "server '" + c.session().server() + "' did not get there within the time-out" +

@@ -2,9 +2,10 @@
 
 #include <unistd.h>
 
+#include <cinttypes>
 #include <cstdio>
 
-#include "daemon/output.h"
+#include "publish/figures.h"
 
 namespace plab::daemon
 {
@@ -12,6 +13,63 @@ namespace
 {
 
 constexpr std::size_t kLines = 6;
+/// Objects and interactions each; a terminal is not longer.
+constexpr std::size_t kRows = 20;
+
+template <class... Values>
+std::string line_of(const char* format, Values... values)
+{
+    char line[256];
+    std::snprintf(line, sizeof line, format, values...);
+    return line;
+}
+
+std::string more_text(std::size_t rows) { return rows > kRows ? line_of("  and %zu more\n", rows - kRows) : std::string(); }
+
+std::string objects_text(const world::World& world)
+{
+    std::string out = "objects\n";
+    std::size_t rows = 0;
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        const world::Component& c = world.component(i);
+        const bool moves =
+            c.facet == Facet::Shaft || (c.facet == Facet::Body && world.host().bodies.motion[c.host_index] != Motion::Static);
+        if (!moves || ++rows > kRows) continue;
+        if (c.facet == Facet::Shaft)
+        {
+            out += line_of("  %-24.24s %10.3f rad  %10.4f rad/s\n", c.id.c_str(), world.host().shafts.angle[c.host_index],
+                           world.host().shafts.speed[c.host_index]);
+            continue;
+        }
+        const Vec3 p = world.host().bodies.pose(c.host_index).p, v = world.host().bodies.velocity[c.host_index];
+        out += line_of("  %-24.24s (%8.4f %8.4f %8.4f) m  (%8.4f %8.4f %8.4f) m/s\n", c.id.c_str(), p.x, p.y, p.z, v.x, v.y, v.z);
+    }
+    return out + more_text(rows);
+}
+
+std::string interactions_text(const simulation::Simulation& s)
+{
+    std::string out = line_of("%-26s %-34s %16s  %s\n", "interactions", "algorithm", "cost per step", "error");
+    const std::vector<double> costs = publish::cost_of_rows(s);
+    std::size_t rows = 0;
+    for (const std::uint32_t i : s.world().in_id_order())
+    {
+        if (!publish::is_interaction(s.world().component(i)) || ++rows > kRows) continue;
+        const world::Component& c = s.world().component(i);
+        out += line_of("  %-24.24s %-34.34s %13.0f ns  %.2e%s\n", c.id.c_str(), s.world().type_of(i)->info.name.c_str(),
+                       publish::cost_of(costs, c), s.error_of(i), c.quarantined ? "  quarantined" : "");
+    }
+    return out + more_text(rows);
+}
+
+std::string table_text(const simulation::Simulation& s)
+{
+    const simulation::Totals totals = s.totals();
+    return line_of("t = %9.4f s   step %" PRId64 "   energy %.6g J%s\n", s.time(), s.tick(), totals.kinetic + totals.stored,
+                   s.paused() ? "   paused" : "") +
+           objects_text(s.world()) + interactions_text(s);
+}
 
 std::string stamped(double time, const std::string& text)
 {
@@ -58,8 +116,8 @@ void LiveTable::show(const simulation::Simulation& s, bool last)
     if (!wanted_) return;
     const auto now = std::chrono::steady_clock::now();
     const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(100) : s.time() >= next_;
-    if (!due && !last) return;
-    shown_ = now;
+    if (!due && !(last && s.tick() != shown_tick_)) return;
+    shown_ = now, shown_tick_ = s.tick();
     while (next_ <= s.time()) next_ += 1.0;
     std::string text = table_text(s);
     if (!lines_.empty()) text += "latest events\n";

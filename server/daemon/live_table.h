@@ -25,6 +25,7 @@ private:
     std::string footer_;
     std::chrono::steady_clock::time_point shown_{};
     double next_ = 0;
+    Tick shown_tick_ = -1;
     std::deque<std::string> lines_;
 };
 

@@ -195,34 +195,4 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     std::fprintf(file_.get(), "%s\n", row.c_str());
 }
 
-std::string table_text(const simulation::Simulation& s)
-{
-    const world::World& world = s.world();
-    char line[256];
-    std::snprintf(line, sizeof line, "t = %9.4f s   step %" PRId64 "   energy %.6g J\n", s.time(), s.tick(),
-                  s.totals().kinetic + s.totals().stored);
-    std::string out = line;
-    const std::vector<double> costs = publish::cost_of_rows(s);
-    for (const std::uint32_t i : world.in_id_order())
-    {
-        const world::Component& c = world.component(i);
-        if (c.facet == Facet::Shaft)
-            std::snprintf(line, sizeof line, "  %-24.24s %10.3f rad  %10.4f rad/s\n", c.id.c_str(), world.host().shafts.angle[c.host_index],
-                          world.host().shafts.speed[c.host_index]);
-        else if (c.facet == Facet::Body && world.host().bodies.motion[c.host_index] != Motion::Static)
-        {
-            const Vec3 p = world.host().bodies.pose(c.host_index).p, v = world.host().bodies.velocity[c.host_index];
-            std::snprintf(line, sizeof line, "  %-24.24s (%8.4f %8.4f %8.4f) m  (%8.4f %8.4f %8.4f) m/s\n", c.id.c_str(), p.x, p.y, p.z,
-                          v.x, v.y, v.z);
-        }
-        else if (is_listed(world, i))
-            std::snprintf(line, sizeof line, "  %-24.24s %-34.34s %8.0f ns/step  error %.2e\n", c.id.c_str(),
-                          world.type_of(i)->info.name.c_str(), publish::cost_of(costs, c), s.error_of(i));
-        else
-            continue;
-        out += line;
-    }
-    return out;
-}
-
 }  // namespace plab::daemon

@@ -1,4 +1,4 @@
-/// What plabd writes: the end state as JSON, the course as CSV, a live table.
+/// What plabd writes: the end state as JSON, the course as CSV.
 #pragma once
 
 #include <cstdio>
@@ -34,8 +34,5 @@ private:
     double next_ = 0;
     Tick last_ = -1;
 };
-
-/// A few lines for people: time, objects, interactions.
-std::string table_text(const simulation::Simulation& simulation);
 
 }  // namespace plab::daemon

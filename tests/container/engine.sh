@@ -87,6 +87,7 @@ clean_up() {
     done
     # Layers that no image has any more.
     engine image prune --force >/dev/null 2>&1 || true
+    rm -rf --one-file-system "${work:?}/tmp"
     # podman keeps its storage mounted onto itself.
     while mountpoint --quiet "$store/overlay" 2>/dev/null; do
         umount "$store/overlay" || break
