@@ -125,8 +125,9 @@ bool WatchPrinter::collision(const plab_v1_Collisions& sample, std::uint32_t ent
         return true;
     }
     std::string text = when(sample.step, c.time) + "  " + console_.styled(Style::Cyan, padded(printable(c.kind), 6)) + "  " +
-                       printable(c.a) + " - " + printable(c.b) + "  at " + number(position.x) + " " + number(position.y) + " " +
-                       number(position.z);
+                       printable(c.a) + " - " + printable(c.b);
+    // A contact that ended has no place any more, and no normal.
+    if (length(vector(c.normal)) > 0) text += "  at " + number(position.x) + " " + number(position.y) + " " + number(position.z);
     if (const double j = length(impulse); j > 0) text += "  impulse " + number(j) + " N s";
     if (c.depth > 0) text += "  depth " + number(c.depth) + " m";
     console_.out(text + "  (" + printable(c.detector) + ")\n");

@@ -35,7 +35,7 @@ const vec2 kPlaces[8] = vec2[8](vec2(1.0, 0.45), vec2(-0.45, 1.0), vec2(-1.0, -0
 // `most`: places, 4 or 8.
 float lit(vec3 p, vec3 n, int most)
 {
-    vec3 s = (light_from_E * vec4(p + n * (1.5 * texel), 1.0)).xyz * 0.5 + 0.5;
+    vec3 s = (light_from_E * vec4(p + n * (2.5 * texel), 1.0)).xyz * 0.5 + 0.5;
     float sum = 0.0, count = 0.0;
     for (int i = 0; i < most; ++i)
     {
@@ -56,8 +56,8 @@ layout(location = 3) in vec4 turn;  // x y z w
 layout(location = 4) in vec3 size;
 layout(location = 5) in vec3 color;
 uniform mat4 clip_from_E;
-out vec3 point;
-out vec3 outward;
+centroid out vec3 point;  // on the surface also where the pixel's middle is not
+centroid out vec3 outward;
 flat out vec3 base;
 vec3 turned(vec3 v)
 {
@@ -99,8 +99,8 @@ vec3 look(vec3 albedo, vec3 point, vec3 n, int places)
 )";
 
 constexpr const char* kSolidFragment = R"(
-in vec3 point;
-in vec3 outward;
+centroid in vec3 point;
+centroid in vec3 outward;
 flat in vec3 base;
 out vec4 result;
 void main()

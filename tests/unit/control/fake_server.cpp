@@ -213,7 +213,7 @@ void FakeServer::publish_log()
     for (plab_v1_CollisionInfo& hit : hits)
     {
         hit.kind = text("impact"), hit.time = time, hit.detector = text("contact");
-        hit.a = text("red"), hit.b = text("green"), hit.impulse = {0, 0, 0.002};
+        hit.a = text("red"), hit.b = text("green"), hit.normal = {0, 0, 1}, hit.impulse = {0, 0, 0.002};
     }
     plab_v1_Collisions collisions{1, number_, step_, {2, 2, hits, false}};
     (void)ends_->collisions.write(collisions);

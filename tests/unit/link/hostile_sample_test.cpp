@@ -1,7 +1,7 @@
 // Bytes that no honest writer sends. Under AddressSanitizer this is also the proof that nothing is read past the end.
 #include <doctest/doctest.h>
 
-#include <chrono>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -89,11 +89,11 @@ TEST_CASE("bounds of the type hold")
 
 TEST_CASE("elements without bytes, and types without end, cost no more than a limit")
 {
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     const auto empty = structure({});
     CHECK(has(json(structure({{"list", sequence(empty)}}), Cdr().put(~std::uint32_t{0}).bytes()), "more than"));
     CHECK(has(json(structure({{"grid", array(empty, {65535, 65535, 65535})}}), Cdr().bytes()), "more than"));
-    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
+    CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 30);  // s of this process; 1 without sanitizers
     DynamicTypePtr deep = simple(Kind::Octet);
     for (int i = 0; i < 100; ++i) deep = structure({{"m", deep}});
     CHECK(has(json(deep, Cdr().put('x').bytes()), "deeper than"));
