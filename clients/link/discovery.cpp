@@ -62,6 +62,16 @@ std::string qos_text(const dds_qos_t* qos)
     return text;
 }
 
+/// Cyclone DDS 0.10 calls the keys of rebuilt types short and of fixed length, strings as well: one of more than 11
+/// characters then overruns its place in the sample. Without those flags it sets aside what a key needs.
+dds_topic_descriptor_t with_keys_of_any_length(const dds_topic_descriptor_t& d)
+{
+    constexpr std::uint32_t kFixed = DDS_TOPIC_FIXED_KEY | DDS_TOPIC_FIXED_KEY_XCDR2;
+    return {
+        d.m_size,           d.m_align,      d.m_flagset & ~kFixed,         d.m_nkeys, d.m_typename, d.m_keys, d.m_nops, d.m_ops, d.m_meta,
+        d.type_information, d.type_mapping, d.restrict_data_representation};
+}
+
 Origin origin_of(const std::string& topic, const std::string& type)
 {
     for (const wire::Topic& t : wire::topics())
@@ -281,7 +291,8 @@ Result<RawReader> Discovery::read(const std::vector<const Endpoint*>& writers, c
         out.why_opaque_ = type.error().text();
     Offer offer;
     for (const Endpoint* writer : writers) offer.narrow(writer->qos.get());
-    if (code = dds_create_topic(participant_, descriptor.get(), name.c_str(), nullptr, nullptr); code < 0)
+    const dds_topic_descriptor_t safe = with_keys_of_any_length(*descriptor);
+    if (code = dds_create_topic(participant_, &safe, name.c_str(), nullptr, nullptr); code < 0)
         return wire::failed("cannot use the topic '" + name + "'", code);
     out.topic_ = wire::Entity(code);
     if (code = dds_create_subscriber(participant_, offer.subscriber_qos(options.partition).get(), nullptr); code < 0)
