@@ -1,8 +1,7 @@
 // plab-log: writes what happens in a server, line by line.
-#include <pthread.h>
+#include <signal.h>
 
 #include <chrono>
-#include <csignal>
 #include <iostream>
 
 #include "logger/logger.h"
@@ -23,7 +22,7 @@ public:
         (void)sigaddset(&set_, SIGINT);
         (void)sigaddset(&set_, SIGTERM);
         (void)pthread_sigmask(SIG_BLOCK, &set_, nullptr);
-        (void)std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is seen when writing
+        (void)signal(SIGPIPE, SIG_IGN);  // a closed pipe is seen when writing
     }
     bool came()
     {

@@ -56,6 +56,8 @@ private:
     /// One step with the new ones, withheld and taken back; an error if something fails that did not fail before.
     Result<void> try_new();
     StepOutcome try_step(std::string& failure);
+    /// The cost of that step from `state` once more, warm.
+    void measure_again(const State& state, StepOutcome& outcome);
 
     Simulation* s_;
     const Request* request_;
