@@ -4,6 +4,7 @@
 #include "control/commands.h"
 #include "control/json.h"
 #include "control/request.h"
+#include "link/numbers.h"
 
 namespace plab::control
 {
@@ -50,7 +51,7 @@ void add_step(CLI::App& app, Context& context)
         [count](Context& c) {
             return send(c, {{"step", "", std::to_string(*count)}});
         });
-    command.add_option("count", *count, "steps, default 1")->check(CLI::PositiveNumber)->type_name("N");
+    command.add_option("count", *count, "steps, default 1")->check(link::check_count)->type_name("N");
 }
 
 void add_rate(CLI::App& app, Context& context)
@@ -120,7 +121,7 @@ Exit run_shutdown(Context& c)
     if (!catalogue) return c.fail(Exit::Failed, catalogue.errors());
     if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
     if (const Exit e = send(c, {{"shutdown"}}); e != Exit::Done) return e;
-    const auto end = std::chrono::steady_clock::now() + c.timeout();
+    const auto end = link::moment_after(c.timeout());
     while (!catalogue->server_is_gone())
     {
         if (c.stopped()) return Exit::Interrupted;

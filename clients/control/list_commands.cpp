@@ -37,15 +37,15 @@ void print_servers(const Console& console, const std::vector<link::ServerInfo>& 
     const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
     Table table({{"server", Align::Left, Shrink::Middle},
                  {"state"},
-                 {"step", Align::Right},
+                 {"step", Align::Right, Shrink::Never, 2},
                  {"time", Align::Right},
-                 {"pace", Align::Right},
-                 {"run", Align::Right},
-                 {"scene", Align::Left, Shrink::Middle},
-                 {"up", Align::Right},
-                 {"process", Align::Right},
+                 {"pace", Align::Right, Shrink::Never, 4},
+                 {"run", Align::Right, Shrink::Never, 5},
+                 {"scene", Align::Left, Shrink::Middle, 3},
+                 {"up", Align::Right, Shrink::Never, 6},
+                 {"process", Align::Right, Shrink::Never, 7},
                  {"host", Align::Left, Shrink::End},
-                 {"version"}});
+                 {"version", Align::Left, Shrink::Never, 8}});
     for (const link::ServerInfo& s : servers)
         table.add({s.name, s.paused ? "paused" : (s.overload.empty() ? "running" : s.overload), std::to_string(s.step),
                    fixed(s.time) + " s", number(s.rate_reached) + "x", std::to_string(s.run), s.scene_file,
@@ -103,15 +103,15 @@ Exit run_objects(Context& c)
     if (!objects.empty() && !catalogue->now().server->paused) frame = next_frame(c.session(), kForFrame);
     Json list = Json::array();
     Table table({{"object", Align::Left, Shrink::Middle},
-                 {"type", Align::Left, Shrink::Middle},
-                 {"motion"},
-                 {"mass", Align::Right},
+                 {"type", Align::Left, Shrink::Middle, 4},
+                 {"motion", Align::Left, Shrink::Never, 6},
+                 {"mass", Align::Right, Shrink::Never, 5},
                  {"x", Align::Right},
                  {"y", Align::Right},
                  {"z", Align::Right},
-                 {"angle", Align::Right},
-                 {"speed", Align::Right},
-                 {"state"},
+                 {"angle", Align::Right, Shrink::Never, 3},
+                 {"speed", Align::Right, Shrink::Never, 2},
+                 {"state", Align::Left, Shrink::Never, 1},
                  {"name", Align::Left, Shrink::End}});
     for (const auto& [id, o] : objects)
     {
@@ -163,11 +163,11 @@ Exit run_interactions(Context& c)
     Table table({{"interaction", Align::Left, Shrink::Middle},
                  {"algorithm", Align::Left, Shrink::Middle},
                  {"cost/step", Align::Right},
-                 {"error", Align::Right},
-                 {"work", Align::Right},
-                 {"since", Align::Right},
-                 {"participants", Align::Left, Shrink::End},
-                 {"note", Align::Left, Shrink::End}});
+                 {"error", Align::Right, Shrink::Never, 1},
+                 {"work", Align::Right, Shrink::Never, 2},
+                 {"since", Align::Right, Shrink::Never, 3},
+                 {"note", Align::Left, Shrink::End},
+                 {"participants", Align::Left, Shrink::End}});
     for (const auto& [id, i] : now.interactions)
     {
         const link::InteractionMetrics* const m = now.metrics ? now.metrics->find(id) : nullptr;
@@ -223,9 +223,9 @@ void print_types(Context& c, const std::vector<const link::Type*>& types)
 {
     Json list = Json::array();
     Table table({{"type", Align::Left, Shrink::Middle},
-                 {"family", Align::Left, Shrink::Middle},
-                 {"loaded"},
-                 {"order", Align::Right},
+                 {"family", Align::Left, Shrink::Middle, 1},
+                 {"loaded", Align::Left, Shrink::Never, 3},
+                 {"order", Align::Right, Shrink::Never, 2},
                  {"does", Align::Left, Shrink::End},
                  {"cost", Align::Left, Shrink::End}});
     for (const link::Type* t : types)

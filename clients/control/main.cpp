@@ -5,6 +5,7 @@
 #include "control/interrupt.h"
 #include "control/topics.h"
 #include "link/names.h"
+#include "link/numbers.h"
 
 namespace
 {
@@ -48,12 +49,12 @@ void add_global_options(CLI::App& app, Settings& s)
     app.add_option("--domain", s.link.domain.id, "DDS domain, 0 to 232")->check(CLI::Range(0, 232))->type_name("N");
     app.add_option("--interface", s.link.domain.network_interface, "network interface; default: this host only")->type_name("NAME");
     app.add_option("--timeout", s.timeout, "how long to wait for a server and a reply; default 5 (wait: 30, servers: 0.5)")
-        ->check(CLI::PositiveNumber)
+        ->check(plab::link::check_positive)
         ->type_name("SECONDS");
     app.add_flag("--json", s.json, "print one JSON object; streams: one on each line");
     app.add_option("--color", s.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
-    app.add_option("-n,--count", s.count, "end a stream after so many samples")->check(CLI::PositiveNumber)->type_name("N");
-    app.add_option("-d,--duration", s.duration, "end a stream after that long")->check(CLI::PositiveNumber)->type_name("SECONDS");
+    app.add_option("-n,--count", s.count, "end a stream after so many samples")->check(plab::link::check_count)->type_name("N");
+    app.add_option("-d,--duration", s.duration, "end a stream after that long")->check(plab::link::check_positive)->type_name("SECONDS");
 }
 
 /// What CLI11 says, and which command or option was probably meant.

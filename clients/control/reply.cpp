@@ -72,7 +72,10 @@ void print_swap(const Console& console, const link::SwapReport& swap)
                 console.styled(Style::Bold, printable(swap.to)) + "\n");
     print_fields(console, swap);
     const link::StepOutcome &a = swap.with_old, &b = swap.with_new;
-    Table table({{"first step"}, {"with the old", Align::Right}, {"with the new", Align::Right}, {"difference", Align::Right}});
+    Table table({{"first step"},
+                 {"with the old", Align::Right, Shrink::Wrap},
+                 {"with the new", Align::Right, Shrink::Wrap},
+                 {"difference", Align::Right, Shrink::Wrap}});
     table.add({"energy, J", exact_number(a.energy), exact_number(b.energy), number(b.energy - a.energy)});
     table.add({"momentum, N s", vector_text(a.momentum), vector_text(b.momentum), change_text(a.momentum, b.momentum)});
     table.add({"error", exact_number(a.error), exact_number(b.error), number(b.error - a.error)});

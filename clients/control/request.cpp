@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "control/json.h"
+#include "link/numbers.h"
 
 namespace plab::control
 {
@@ -19,15 +20,30 @@ Exit refused(const Context& context, const link::Reply& reply)
     return Exit::Refused;
 }
 
+/// A request for a later step outlives a time-out, but not the server.
+std::string fate_of_unanswered(const link::Caller& caller, const Timing& timing)
+{
+    if (!timing.at) return "whether it was carried out is not known";
+    const std::string step = "step " + std::to_string(*timing.at);
+    switch (caller.presence())
+    {
+        case link::Presence::There:
+            return step + " may still be ahead: the request stands, --timeout waits longer";
+        case link::Presence::Silent:
+            return "the server shows no sign of life: whether the request for " + step + " will be carried out is not known";
+        case link::Presence::Gone:
+            break;
+    }
+    return "the server has gone: if it had not come to " + step + ", the request will not be carried out";
+}
+
 }  // namespace
 
 void add_timing(CLI::App& command, Timing& timing)
 {
-    command.add_option("--at", timing.at, "take effect before this step; too late: refused")
-        ->check(CLI::NonNegativeNumber)
-        ->type_name("STEP");
+    command.add_option("--at", timing.at, "take effect before this step; too late: refused")->check(link::check_whole)->type_name("STEP");
     command.add_option("--revision", timing.revision, "refuse unless the scene is at this revision")
-        ->check(CLI::NonNegativeNumber)
+        ->check(link::check_whole)
         ->type_name("N");
 }
 
@@ -39,10 +55,7 @@ Exit send(Context& context, std::vector<link::Operation> operations, const Timin
     if (!caller) return context.fail(Exit::NoServer, caller.errors());
     const link::Request request{std::move(operations), timing.at, timing.revision};
     auto reply = caller->call(request, context.timeout(), context.stop());
-    if (!reply && timing.at)
-        return context.fail(Exit::NoServer, reply.error().text() + "; step " + std::to_string(*timing.at) +
-                                                " may still be ahead: the request stands, --timeout waits longer");
-    if (!reply) return context.fail(Exit::NoServer, reply.error().text() + "; whether it was carried out is not known");
+    if (!reply) return context.fail(Exit::NoServer, reply.error().text() + "; " + fate_of_unanswered(*caller, timing));
     if (context.settings.json)
     {
         Json json{{"server", context.session().server()}};

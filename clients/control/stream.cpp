@@ -7,9 +7,7 @@ namespace plab::control
 
 Limit::Limit(const Context& context) : most_(context.settings.count)
 {
-    using Clock = std::chrono::steady_clock;
-    if (context.settings.duration)
-        end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(link::Seconds(*context.settings.duration));
+    if (context.settings.duration) end_ = link::moment_after(link::Seconds(*context.settings.duration));
 }
 
 link::Seconds Limit::slice() const

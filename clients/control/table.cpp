@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 namespace plab::control
@@ -11,7 +12,7 @@ namespace
 
 constexpr std::size_t kGap = 2;
 // What columns keep when they shrink. Ids give way further only when there is no prose left to give way.
-constexpr std::size_t kLeastProse = 16, kLeastId = 20, kLeastAtAll = 8;
+constexpr std::size_t kLeastProse = 16, kLeastId = 20, kLeastShortId = 12, kLeastAtAll = 8;
 
 std::size_t total(const std::vector<std::size_t>& widths)
 {
@@ -52,12 +53,12 @@ std::vector<std::size_t> Table::natural_widths() const
 }
 
 /// Narrows the widest column by one at a time, so that they end up alike; prose first. True if it fits then.
-bool Table::shrink_to(std::size_t most, std::size_t least_id, std::vector<std::size_t>& widths) const
+bool Table::shrink_to(std::size_t most, Least kept, std::vector<std::size_t>& widths) const
 {
     for (const bool prose : {true, false})
         while (total(widths) > most)
         {
-            const std::size_t least = prose ? kLeastProse : least_id;
+            const std::size_t least = prose ? kept.prose : kept.id;
             std::size_t widest = widths.size();
             for (std::size_t i = 0; i < widths.size(); ++i)
             {
@@ -71,20 +72,33 @@ bool Table::shrink_to(std::size_t most, std::size_t least_id, std::vector<std::s
     return total(widths) <= most;
 }
 
+/// Columns that may go: prose from the last, then what is expendable, then all but the first from the last.
+std::vector<std::size_t> Table::in_order_of_leaving() const
+{
+    std::vector<std::size_t> out(columns_.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = out.size() - 1 - i;
+    out.pop_back();
+    const auto rank = [&](std::size_t i)
+    { return columns_[i].shrink == Shrink::End ? std::numeric_limits<unsigned>::max() : columns_[i].expendable; };
+    std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
+    return out;
+}
+
 std::vector<std::size_t> Table::widths(const Console& console) const
 {
-    std::vector<std::size_t> natural = natural_widths();
-    if (console.width() == 0) return natural;
-    std::vector<std::size_t> out = natural;
-    if (shrink_to(console.width(), kLeastId, out)) return out;
-    for (std::size_t i = columns_.size(); i-- > 0;)
+    std::vector<std::size_t> natural = natural_widths(), out = natural;
+    if (console.width() == 0 || shrink_to(console.width(), {kLeastProse, kLeastId}, out)) return out;
+    // Prose that is printed in full leaves nothing out: better a line that is too long.
+    const bool wraps = std::any_of(columns_.begin(), columns_.end(), [](const Column& c) { return c.shrink == Shrink::Wrap; });
+    for (const std::size_t i : in_order_of_leaving())
     {
-        if (columns_[i].shrink != Shrink::End || natural[i] == 0) continue;
-        natural[i] = 0;
-        out = natural;
-        if (shrink_to(console.width(), kLeastId, out)) return out;
+        const bool is_prose = columns_[i].shrink == Shrink::End;
+        if (wraps && !is_prose) break;
+        if (out = natural; !is_prose && shrink_to(console.width(), {kLeastProse, kLeastShortId}, out)) return out;
+        natural[i] = 0, out = natural;
+        if (shrink_to(console.width(), {kLeastProse, is_prose ? kLeastId : kLeastShortId}, out)) return out;
     }
-    (void)shrink_to(console.width(), kLeastAtAll, out);
+    (void)shrink_to(console.width(), {kLeastAtAll, kLeastAtAll}, out);
     return out;
 }
 

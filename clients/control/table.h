@@ -28,6 +28,7 @@ struct Column
     std::string title;
     Align align = Align::Left;
     Shrink shrink = Shrink::Never;
+    unsigned expendable = 0;  ///< where even shortened columns do not fit, the largest goes first; 0: as late as can be
 };
 
 class Table
@@ -48,7 +49,12 @@ private:
     };
     std::vector<std::size_t> widths(const Console& console) const;
     std::vector<std::size_t> natural_widths() const;
-    bool shrink_to(std::size_t most, std::size_t least_id, std::vector<std::size_t>& widths) const;
+    struct Least
+    {
+        std::size_t prose, id;
+    };
+    bool shrink_to(std::size_t most, Least least, std::vector<std::size_t>& widths) const;
+    std::vector<std::size_t> in_order_of_leaving() const;
     std::vector<std::vector<std::string>> wrapped(const Row& row, const std::vector<std::size_t>& widths) const;
     std::string cell(std::size_t column, const std::string& text, std::size_t width) const;
     std::string line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) const;

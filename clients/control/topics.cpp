@@ -92,12 +92,12 @@ Exit list_topics(Context& context, const TopicsArguments& arguments)
                             (only.empty() ? "" : ", partition '" + only + "'"));
     else
     {
-        Table table({{"TOPIC"},
-                     {"TYPE", Align::Left, Shrink::Middle},
-                     {"PLAB"},
+        Table table({{"TOPIC", Align::Left, Shrink::Middle},
+                     {"TYPE", Align::Left, Shrink::Middle, 1},
+                     {"PLAB", Align::Left, Shrink::Never, 2},
                      {"PARTITION", Align::Left, Shrink::End},
-                     {"WRITERS", Align::Right},
-                     {"READERS", Align::Right},
+                     {"WRITERS", Align::Right, Shrink::Never, 3},
+                     {"READERS", Align::Right, Shrink::Never, 4},
                      {"QOS", Align::Left, Shrink::End}});
         for (const link::TopicInfo& t : topics)
             table.add({t.name, t.type, word_for(t.origin), joined(t.partitions, "(default)"), std::to_string(t.writers),

@@ -4,6 +4,7 @@
 #include "control/commands.h"
 #include "control/frames.h"
 #include "link/caller.h"
+#include "link/numbers.h"
 
 namespace plab::control
 {
@@ -56,7 +57,7 @@ std::optional<Place> wait_for_place(Context& c, link::Catalogue& catalogue, cons
 Exit run_wait(Context& c, const WaitOptions& o)
 {
     const auto start = Clock::now();
-    const auto end = start + std::chrono::duration_cast<Clock::duration>(c.timeout(kWait));
+    const auto end = link::moment_after(c.timeout(kWait), start);
     const auto left = [&] { return std::max(link::Seconds(0), link::Seconds(end - Clock::now())); };
     if (const Exit e = c.connect(kWait); e != Exit::Done) return e;
     // Ready means: a request would be answered, and all there is to know is known.
@@ -95,8 +96,8 @@ void add_wait_command(CLI::App& app, Context& context)
                                      "  plabd scene.xml --name lab & plabctl wait --server lab\n"
                                      "  plabctl wait --step 1200\n  plabctl wait --time 5 --timeout 60\n"},
                                     [o](Context& c) { return run_wait(c, *o); });
-    command.add_option("--step", o->step, "until this step is done; default time-out: 30 s")->check(CLI::NonNegativeNumber)->type_name("N");
-    command.add_option("--time", o->time, "until this simulated time")->check(CLI::NonNegativeNumber)->type_name("SECONDS");
+    command.add_option("--step", o->step, "until this step is done; default time-out: 30 s")->check(link::check_whole)->type_name("N");
+    command.add_option("--time", o->time, "until this simulated time")->check(link::check_not_negative)->type_name("SECONDS");
 }
 
 }  // namespace plab::control

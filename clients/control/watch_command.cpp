@@ -4,6 +4,7 @@
 #include "control/stream.h"
 #include "control/watch_print.h"
 #include "link/names.h"
+#include "link/numbers.h"
 
 namespace plab::control
 {
@@ -151,7 +152,7 @@ void add_watch_command(CLI::App& app, Context& context)
         ->allow_extra_args(false)
         ->type_name("ID");
     command.add_option("--every", o->every, "of states and metrics: one in so much simulated time")
-        ->check(CLI::PositiveNumber)
+        ->check(link::check_positive)
         ->type_name("SECONDS");
 }
 

@@ -41,11 +41,11 @@ Table motion_table(const std::map<std::string, const Motion*>& motions)
                  {"x", Align::Right},
                  {"y", Align::Right},
                  {"z", Align::Right},
-                 {"vx", Align::Right},
-                 {"vy", Align::Right},
-                 {"vz", Align::Right},
-                 {"angle", Align::Right},
-                 {"speed", Align::Right}});
+                 {"vx", Align::Right, Shrink::Never, 2},
+                 {"vy", Align::Right, Shrink::Never, 2},
+                 {"vz", Align::Right, Shrink::Never, 3},
+                 {"angle", Align::Right, Shrink::Never, 4},
+                 {"speed", Align::Right, Shrink::Never, 1}});
     for (const auto& [id, m] : motions)
         if (m->is_shaft)
             table.add({id, "", "", "", "", "", "", fixed(m->angle), fixed(m->speed)});
@@ -92,8 +92,8 @@ void WatchPrinter::metrics(const link::Metrics& metrics)
     Table table({{"interaction", Align::Left, Shrink::Middle},
                  {"algorithm", Align::Left, Shrink::Middle},
                  {"cost/step", Align::Right},
-                 {"error", Align::Right},
-                 {"work", Align::Right},
+                 {"error", Align::Right, Shrink::Never, 2},
+                 {"work", Align::Right, Shrink::Never, 3},
                  {"state"}});
     for (const link::InteractionMetrics& i : m.interactions)
         table.add({i.component, algorithm_of(i), duration_text(i.cost_ns), number(i.error), number(i.work) + " J",

@@ -70,7 +70,7 @@ Result<Caller> Caller::make(const Session& session, Seconds timeout, const Stop&
     auto requests = session.writer<plab_v1_Request>();
     if (!requests) return requests.errors();
     state.replies = replies.take(), state.requests = requests.take();
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    const auto end = moment_after(timeout);
     while (state.replies.writers() == 0 || state.requests.readers() == 0)
     {
         if (Clock::now() >= end || (stop && stop())) return reason("server '" + session.server() + "' did not answer");
@@ -118,16 +118,28 @@ void Caller::take(const std::function<void(std::uint64_t, Reply)>& handle)
         });
 }
 
+Presence Caller::presence() const
+{
+    // The server's state comes at once to a new reader, and once a second to all.
+    constexpr Seconds kState(1.5);
+    if (state_->replies.writers() == 0) return Presence::Gone;
+    if (!state_->session->servers(kState, 1).empty()) return Presence::There;
+    return state_->replies.writers() == 0 ? Presence::Gone : Presence::Silent;
+}
+
 Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& stop)
 {
-    constexpr Seconds kAgain(1.0), kSlice(0.1);
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    constexpr Seconds kAgain(1.0), kSlice(0.1), kGone(0.5);
+    const auto end = moment_after(timeout);
     auto number = send(request);
     if (!number) return number.errors();
-    auto sent_at = Clock::now();
+    auto sent_at = Clock::now(), seen_at = sent_at;
     std::optional<Reply> answer;
     while (!answer)
     {
+        if (state_->replies.writers() > 0) seen_at = Clock::now();
+        // Its last reply may overtake, or be overtaken by, the news of its end.
+        if (Clock::now() - seen_at >= kGone) return reason("server '" + state_->session->server() + "' has gone without a reply");
         const Seconds left = Seconds(end - Clock::now());
         if (left <= Seconds(0)) return reason("no reply from server '" + state_->session->server() + "' within the time-out");
         if (stop && stop()) return reason("interrupted before the reply");

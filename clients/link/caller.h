@@ -53,14 +53,26 @@ struct Reply
     bool done() const { return outcome == "done"; }
 };
 
+/// Of a server that did not reply.
+enum class Presence : std::uint8_t
+{
+    There,
+    Silent,  ///< known, but it says nothing: stopped, or its host is out of reach
+    Gone,    ///< ended, or silent for so long that it counts as ended
+};
+
 /// Not thread-safe.
 class Caller
 {
 public:
     /// Waits until the server's ends are matched both ways: a reply cannot be missed.
     static Result<Caller> make(const Session& session, Seconds timeout, const Stop& stop = {});
-    /// Waits for the reply until `timeout`; an error means that there was none (whether it was carried out is unknown).
+    /// Waits for the reply until `timeout`, or until the server has gone; an error means that there was none (whether it
+    /// was carried out is unknown).
     Result<Reply> call(const Request& request, Seconds timeout, const Stop& stop = {});
+
+    /// Whether the server is still there; takes a moment if it is silent.
+    Presence presence() const;
 
     /// For those who wait themselves: sends, and gives the request's number.
     Result<std::uint64_t> send(const Request& request);

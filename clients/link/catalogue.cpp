@@ -97,7 +97,7 @@ std::string Catalogue::missing() const
 
 Result<void> Catalogue::fetch(Seconds timeout, const Stop& stop)
 {
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    const auto end = moment_after(timeout);
     auto last = Clock::now();
     while (true)
     {
@@ -111,7 +111,7 @@ Result<void> Catalogue::fetch(Seconds timeout, const Stop& stop)
         if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not tell everything; missing: " + gap);
         if (stop && stop()) return reason("interrupted");
         const Seconds left = std::min(kSlice, Seconds(end - Clock::now()));
-        (void)dds_waitset_wait(waitset_.get(), nullptr, 0, std::max<dds_duration_t>(0, Session::duration(left)));
+        (void)dds_waitset_wait(waitset_.get(), nullptr, 0, duration_of(left));
     }
 }
 
@@ -125,10 +125,10 @@ bool Catalogue::update()
 
 bool Catalogue::wait(Seconds timeout)
 {
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    const auto end = moment_after(timeout);
     do {
         const Seconds left = std::max(Seconds(0), Seconds(end - Clock::now()));
-        (void)dds_waitset_wait(waitset_.get(), nullptr, 0, Session::duration(left));
+        (void)dds_waitset_wait(waitset_.get(), nullptr, 0, duration_of(left));
         if (update()) return true;
     } while (Clock::now() < end);
     return false;

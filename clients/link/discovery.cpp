@@ -170,15 +170,14 @@ std::vector<TopicInfo> Discovery::topics(Seconds quiet, Seconds longest, const S
     // Under load the first answer may take longer than those that follow it.
     constexpr Seconds kFirst(1);
     const auto begin = Clock::now();
-    const auto end_of = [](Clock::time_point from, Seconds length) { return from + std::chrono::duration_cast<Clock::duration>(length); };
     update();
-    auto settled = end_of(begin, known_->endpoints.empty() ? std::max(kFirst, quiet) : quiet);
-    while (Clock::now() < std::min(settled, end_of(begin, longest)) && !(stop && stop()))
+    auto settled = moment_after(known_->endpoints.empty() ? std::max(kFirst, quiet) : quiet, begin);
+    while (Clock::now() < std::min(settled, moment_after(longest, begin)) && !(stop && stop()))
     {
         const std::uint64_t changes = known_->changes;
         (void)dds_waitset_wait(waitset_.get(), nullptr, 0, DDS_MSECS(50));
         update();
-        if (known_->changes != changes && !known_->endpoints.empty()) settled = end_of(Clock::now(), quiet);
+        if (known_->changes != changes && !known_->endpoints.empty()) settled = moment_after(quiet);
     }
     std::map<std::pair<std::string, std::string>, TopicInfo> found;
     const auto has_writer = [&](const Endpoint& e)
@@ -213,7 +212,7 @@ std::vector<const Discovery::Endpoint*> Discovery::writers_of(const std::string&
 
 bool Discovery::wait_for_writer(const std::string& topic, const RawOptions& options, Seconds timeout, const Stop& stop)
 {
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    const auto end = moment_after(timeout);
     update();
     while (writers_of(topic, options).empty() && Clock::now() < end && !(stop && stop()))
     {

@@ -16,7 +16,7 @@ struct SerdataDeleter
 
 }  // namespace
 
-bool RawReader::wait(Seconds timeout) const { return dds_waitset_wait(waitset_.get(), nullptr, 0, Session::duration(timeout)) > 0; }
+bool RawReader::wait(Seconds timeout) const { return dds_waitset_wait(waitset_.get(), nullptr, 0, duration_of(timeout)) > 0; }
 
 void RawReader::take(const std::function<void(const RawSample&)>& handle)
 {

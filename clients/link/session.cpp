@@ -80,7 +80,7 @@ Result<Session> Session::find(const Options& options, Seconds timeout)
 
 Result<void> Session::find_server(const Options& options, Seconds timeout, const Stop& stop)
 {
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    const auto end = moment_after(timeout);
     std::vector<ServerInfo> seen;
     while (true)
     {
@@ -105,7 +105,7 @@ Result<void> Session::find_server(const Options& options, Seconds timeout, const
 
 std::vector<ServerInfo> Session::servers(Seconds timeout, std::size_t enough) const
 {
-    const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    const auto end = moment_after(timeout);
     std::map<std::string, ServerInfo> seen;
     auto subscriber = wire::make_subscriber(participant_, server_.empty() ? "*" : server_);
     if (!subscriber) return {};
@@ -133,7 +133,7 @@ bool Session::wait_for(const wire::Entity& entity, std::uint32_t status, Seconds
     if (!waitset.valid()) return false;
     (void)dds_set_status_mask(entity.get(), status);
     if (dds_waitset_attach(waitset.get(), entity.get(), 0) < 0) return false;
-    const bool triggered = dds_waitset_wait(waitset.get(), nullptr, 0, duration(timeout)) > 0;
+    const bool triggered = dds_waitset_wait(waitset.get(), nullptr, 0, duration_of(timeout)) > 0;
     (void)dds_waitset_detach(waitset.get(), entity.get());
     return triggered;
 }

@@ -5,17 +5,16 @@
 ///   while (session->wait(*frames, 1s)) frames->take([](const plab_v1_Frame& f, const dds_sample_info_t& info) { ... });
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "idl/domain.h"
+#include "link/duration.h"
 
 namespace plab::link
 {
 
-using Seconds = std::chrono::duration<double>;
 /// Asked several times a second by what waits: true ends the waiting.
 using Stop = std::function<bool()>;
 
@@ -79,8 +78,6 @@ public:
     }
     const std::string& server() const { return server_; }
     const wire::Entity& participant() const { return participant_; }
-
-    static dds_duration_t duration(Seconds s) { return static_cast<dds_duration_t>(s.count() * 1e9); }
 
 private:
     bool wait_for(const wire::Entity& entity, std::uint32_t status, Seconds timeout) const;

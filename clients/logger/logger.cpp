@@ -40,7 +40,7 @@ Result<Logger> Logger::make(const link::Session& session, const Options& options
 
 Output::State Logger::step(link::Seconds longest)
 {
-    (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::Session::duration(longest));
+    (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::duration_of(longest));
     take_server();
     take_events();
     take_collisions();

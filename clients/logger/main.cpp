@@ -44,7 +44,6 @@ int fail(int code, const Errors& errors)
 
 int run(const logger::Options& options, EndSignals& signals)
 {
-    constexpr double kAlways = 1e9;      // s
     constexpr link::Seconds kLook(0.1);  // how late a signal may be seen
     const auto begin = Clock::now();
     const auto is_over = [&] { return options.duration && link::Seconds(Clock::now() - begin).count() >= *options.duration; };
@@ -54,7 +53,7 @@ int run(const logger::Options& options, EndSignals& signals)
     if (!output) return fail(1, output.errors());
     auto session = link::Session::join(options.link);
     if (!session) return fail(1, session.errors());
-    const link::Seconds patience(options.timeout > 0 ? options.timeout : kAlways);
+    const link::Seconds patience = options.timeout > 0 ? link::Seconds(options.timeout) : link::kLongestWait;
     if (auto found = session->find_server(options.link, patience, stop); !found) return signals.came() ? 0 : fail(3, found.errors());
     auto logger = logger::Logger::make(*session, options, output.take());
     if (!logger) return fail(1, logger.errors());

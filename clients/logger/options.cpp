@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "link/numbers.h"
+
 namespace plab::logger
 {
 namespace
@@ -25,7 +27,7 @@ void add_options(CLI::App& app, Options& options, std::string& severity)
     app.add_option("--domain", options.link.domain.id, "DDS domain, 0 to 232 (PLAB_DOMAIN)")->check(CLI::Range(0, 232));
     app.add_option("--interface", options.link.domain.network_interface, "network interface instead of loopback (PLAB_INTERFACE)");
     app.add_option("--timeout", options.timeout, "seconds to wait for the server; 0: as long as it takes")
-        ->check(CLI::NonNegativeNumber)
+        ->check(link::check_not_negative)
         ->capture_default_str();
     app.add_flag("--json", options.json, "one JSON object per line");
     app.add_option("--out", options.out, "file to append to instead of standard output");
@@ -34,8 +36,8 @@ void add_options(CLI::App& app, Options& options, std::string& severity)
     app.add_option("--kind", options.kind, "only kinds that begin so; \"collision\" for all collisions");
     app.add_option("--severity", severity, "least severity: info, warning, failure; collisions are info")
         ->check(CLI::IsMember({"info", "warning", "failure"}));
-    app.add_option("-n,--count", options.count, "end after so many entries")->check(CLI::PositiveNumber);
-    app.add_option("-d,--duration", options.duration, "end after so many seconds")->check(CLI::PositiveNumber);
+    app.add_option("-n,--count", options.count, "end after so many entries")->check(link::check_count);
+    app.add_option("-d,--duration", options.duration, "end after so many seconds")->check(link::check_positive);
 }
 
 }  // namespace

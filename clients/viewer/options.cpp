@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "idl/topics.h"
+#include "link/numbers.h"
 
 namespace plab::view
 {
@@ -56,19 +57,20 @@ void add_pictures(CLI::App& app, Options& options, Texts& texts)
         ->group("Pictures");
     app.add_option("--mp4", texts.film, "write a film (needs ffmpeg)")->type_name("FILE")->group("Pictures");
     app.add_option("--at", options.at, "of the picture, or of the first frame; default: now")
-        ->check(CLI::NonNegativeNumber)
+        ->check(link::check_not_negative)
         ->type_name("T")
         ->group("Pictures");
     app.add_option("--fps", options.frames_per_second, "frames per simulated second")
+        ->check(link::check_positive)  // nan is in every range
         ->check(CLI::Range(0.001, 1e5))
         ->capture_default_str()
         ->group("Pictures");
     auto* const duration = app.add_option("--duration", options.duration, "seconds from the first frame; default: until Ctrl-C")
-                               ->check(CLI::PositiveNumber)
+                               ->check(link::check_positive)
                                ->type_name("S")
                                ->group("Pictures");
     app.add_option("--until", options.until, "time of the last frame")
-        ->check(CLI::NonNegativeNumber)
+        ->check(link::check_not_negative)
         ->type_name("T")
         ->excludes(duration)
         ->group("Pictures");
@@ -81,13 +83,13 @@ void add_view(CLI::App& app, Options& options, Texts& texts)
     app.add_option("--look-at", texts.look_at, "what to look at")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
     app.add_option("--up", texts.up, "what is up in the picture")->type_name("\"X Y Z\"")->group("View");
     app.add_option("--orbit", options.view.orbit, "go round in a circle of this radius; 0: as far as the scene needs")
-        ->check(CLI::NonNegativeNumber)
+        ->check(link::check_not_negative)
         ->type_name("RADIUS")
         ->excludes(camera)
         ->excludes(from)
         ->group("View");
     app.add_option("--orbit-period", options.view.orbit_period, "simulated seconds of one round")
-        ->check(CLI::PositiveNumber)
+        ->check(link::check_positive)
         ->type_name("S")
         ->capture_default_str()
         ->group("View");
@@ -106,7 +108,7 @@ void add_server(CLI::App& app, Options& options, Texts& texts)
         ->type_name("NAME")
         ->group("Server");
     app.add_option("--timeout", texts.timeout, "longest wait for the server, and for its next state; default: 10")
-        ->check(CLI::PositiveNumber)
+        ->check(link::check_positive)
         ->type_name("S")
         ->group("Server");
 }
@@ -181,7 +183,8 @@ Result<Shot> parse_shot(const std::string& text)
     const std::size_t sign = when.find('@');
     const auto time = parse_number(std::string_view(when).substr(0, sign));
     const bool named = sign != std::string::npos;
-    if (equal == std::string::npos || equal + 1 == text.size() || !time || !(*time >= 0) || (named && sign + 1 == when.size()))
+    if (equal == std::string::npos || equal + 1 == text.size() || !time || !link::check_not_negative(when.substr(0, sign)).empty() ||
+        (named && sign + 1 == when.size()))
         return reason("--shot wants T[@CAMERA]=FILE, not '" + text + "'");
     return Shot{time, named ? when.substr(sign + 1) : "", text.substr(equal + 1)};
 }

@@ -29,6 +29,14 @@ publish::Answer refusal(const publish::ClientId& client, std::uint64_t number, E
     return answer;
 }
 
+/// Whether it finds room though all the rest is taken: it is carried out at the next boundary, and then there is no
+/// more to wait for. One that names a step could wait for ever.
+bool needs_no_room(const RequestBook::Load& load) { return load.shutdown && !load.names_step; }
+
+std::size_t without(std::size_t all, std::size_t kept) { return all > kept ? all - kept : 0; }
+
+Error full(const std::string& what) { return reason(what + " waiting already: send it again, with a new number, when some are done"); }
+
 }  // namespace
 
 RequestBook::Client& RequestBook::client_of(const publish::ClientId& id)
@@ -58,7 +66,56 @@ std::optional<RequestBook::Decision> RequestBook::known(const Client& client, st
     return Decision{Verdict::Refused, refusal(client.id, number, reason(std::move(why)))};
 }
 
-RequestBook::Decision RequestBook::open(const publish::ClientId& id, std::uint64_t number, const std::optional<Error>& wrong)
+std::optional<Error> RequestBook::no_room(const Client& client, const Load& load) const
+{
+    if (needs_no_room(load))
+    {
+        if (shutdowns_.requests < limits_.shutdowns) return std::nullopt;
+        return reason(std::to_string(shutdowns_.requests) + " requests to shut down are waiting already: one is enough");
+    }
+    if (client.counted >= limits_.waiting_per_client)
+        return full(std::to_string(client.counted) + " requests of this client, the most of one, are");
+    if (all_.requests >= limits_.waiting) return full(std::to_string(all_.requests) + " requests, the most of all clients together, are");
+    if (load.names_step && with_step_.requests >= without(limits_.waiting, limits_.kept_for_next_step))
+        return full(std::to_string(with_step_.requests) + " requests that name a step, the most of these, are");
+    return no_bytes(load);
+}
+
+std::optional<Error> RequestBook::no_bytes(const Load& load) const
+{
+    const auto too_much = [&](const Count& count, std::size_t most) { return count.bytes + load.bytes > most; };
+    const auto words = [&](const Count& count, const char* of, std::size_t most)
+    {
+        return reason("the request has " + std::to_string(load.bytes) + " bytes, and " + std::to_string(count.bytes) + " bytes of " + of +
+                      " are waiting already, of at most " + std::to_string(most) +
+                      ": send it again, with a new number, when some are done");
+    };
+    if (too_much(all_, limits_.waiting_bytes)) return words(all_, "requests", limits_.waiting_bytes);
+    const std::size_t most = without(limits_.waiting_bytes, limits_.bytes_kept_for_next_step);
+    if (load.names_step && too_much(with_step_, most)) return words(with_step_, "requests that name a step", most);
+    return std::nullopt;
+}
+
+void RequestBook::count(Client& client, const Load& load)
+{
+    const auto add = [&](Count& to) { ++to.requests, to.bytes += load.bytes; };
+    if (needs_no_room(load)) return add(shutdowns_);
+    ++client.counted;
+    add(all_);
+    if (load.names_step) add(with_step_);
+}
+
+void RequestBook::discount(Client& client, const Load& load)
+{
+    const auto take = [&](Count& from) { --from.requests, from.bytes -= load.bytes; };
+    if (needs_no_room(load)) return take(shutdowns_);
+    --client.counted;
+    take(all_);
+    if (load.names_step) take(with_step_);
+}
+
+RequestBook::Decision RequestBook::open(const publish::ClientId& id, std::uint64_t number, const Load& load,
+                                        const std::optional<Error>& wrong)
 {
     // Without an id or a number there is nothing to remember it by.
     if (number == 0 || id == publish::ClientId{})
@@ -66,17 +123,14 @@ RequestBook::Decision RequestBook::open(const publish::ClientId& id, std::uint64
     Client& client = client_of(id);
     if (auto decision = known(client, number)) return *std::move(decision);
     client.highest = number;
-    std::optional<Error> refused = wrong;
-    if (!refused && waiting_ >= limits_.waiting)
-        refused = reason(std::to_string(waiting_) + " requests are waiting already: send it again, with a new number, when some are done");
-    if (refused)
+    if (std::optional<Error> refused = wrong ? wrong : no_room(client, load))
     {
         Decision decision{Verdict::Refused, refusal(id, number, *std::move(refused))};
         keep(client, decision.answer);
         return decision;
     }
-    client.waiting.insert(number);
-    ++waiting_;
+    client.waiting.emplace(number, load);
+    count(client, load);
     forget_silent_clients(client);
     return {};
 }
@@ -84,9 +138,13 @@ RequestBook::Decision RequestBook::open(const publish::ClientId& id, std::uint64
 bool RequestBook::close(const publish::Answer& answer)
 {
     const auto found = by_id_.find(answer.client);
-    if (found == by_id_.end() || found->second->waiting.erase(answer.number) == 0) return false;
-    --waiting_;
-    keep(*found->second, answer);
+    if (found == by_id_.end()) return false;
+    Client& client = *found->second;
+    const auto waited = client.waiting.find(answer.number);
+    if (waited == client.waiting.end()) return false;
+    discount(client, waited->second);
+    client.waiting.erase(waited);
+    keep(client, answer);
     return true;
 }
 

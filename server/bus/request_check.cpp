@@ -44,6 +44,7 @@ publish::OperationText read_operation(const plab_v1_Operation& operation, TextRe
     out.target = reader.copy(operation.target, "a target");
     out.argument = reader.copy(operation.argument, "an argument");
     out.blueprint = reader.copy(operation.blueprint, "a blueprint");
+    out.values.reserve(operation.values._length);
     for (std::uint32_t i = 0; i < operation.values._length && reader.ok(); ++i)
     {
         std::string name = reader.copy(operation.values._buffer[i].name, "a name");
@@ -65,6 +66,11 @@ std::string wrong_outside(const plab_v1_Request& request)
     if (request.operations._length > wire::kMostOperations)
         return "the request has " + std::to_string(request.operations._length) + " operations: at most " +
                std::to_string(wire::kMostOperations) + " may be asked for at once";
+    // Before anybody compares each value's name with the others'.
+    for (std::uint32_t i = 0; i < request.operations._length; ++i)
+        if (const std::uint32_t values = request.operations._buffer[i].values._length; values > wire::kMostValues)
+            return "operation " + std::to_string(i + 1) + " has " + std::to_string(values) + " values: at most " +
+                   std::to_string(wire::kMostValues) + " may be given at once";
     return {};
 }
 
@@ -119,6 +125,20 @@ publish::ClientId client_of(const plab_v1_Request& request)
     std::copy(std::begin(request.client), std::end(request.client), client.begin());
     return client;
 }
+
+std::size_t bytes_of(const publish::RequestText& request)
+{
+    constexpr std::size_t kEachText = 32;
+    std::size_t bytes = 0;
+    for (const publish::OperationText& operation : request.operations)
+    {
+        bytes += operation.verb.size() + operation.target.size() + operation.argument.size() + operation.blueprint.size() + 4 * kEachText;
+        for (const auto& [name, text] : operation.values) bytes += name.size() + text.size() + 2 * kEachText;
+    }
+    return bytes;
+}
+
+bool is_shutdown(const publish::RequestText& request) { return request.operations.size() == 1 && request.operations[0].verb == "shutdown"; }
 
 Result<publish::RequestText> read_request(const plab_v1_Request& request)
 {

@@ -16,6 +16,13 @@ bool is_utf8(std::string_view text);
 /// Who asks, and with which number.
 publish::ClientId client_of(const plab_v1_Request& request);
 
+/// What the limit on the text of all waiting requests counts: each text costs 32 bytes more than it has, about what it
+/// takes to keep it, so that the limit bounds the number of empty ones too.
+std::size_t bytes_of(const publish::RequestText& request);
+
+/// One operation, and that is to end the server.
+bool is_shutdown(const publish::RequestText& request);
+
 /// The request with its text copied, or the first thing that is wrong with it. Reads no more of an oversized request
 /// than the limit.
 Result<publish::RequestText> read_request(const plab_v1_Request& request);

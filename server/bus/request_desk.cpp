@@ -9,9 +9,9 @@ namespace plab::bus
 
 RequestDesk::RequestDesk(Trouble& trouble)
     : trouble_(&trouble),
-      book_({.waiting = wire::kMostRequestsWaiting, .answers = wire::kAnswersKeptPerClient, .clients = wire::kClientsRemembered}),
-      requests_(wire::kMostRequestsWaiting),
-      answers_(wire::kMostRequestsWaiting),
+      book_({}),
+      requests_(wire::kMostRequestsWaiting + wire::kMostShutdownsWaiting),
+      answers_(wire::kMostRequestsWaiting + wire::kMostShutdownsWaiting),
       outbox_([this](const publish::Answer& answer, bool repeated) { return writer_.write(sample_.of(answer, repeated)); }, trouble)
 {
 }
@@ -61,7 +61,9 @@ void RequestDesk::receive_one(const plab_v1_Request& request, Clock::time_point 
 {
     auto text = read_request(request);
     const std::optional<Error> wrong = text ? std::nullopt : std::optional<Error>(text.error());
-    const RequestBook::Decision decision = book_.open(client_of(request), request.number, wrong);
+    RequestBook::Load load;
+    if (text) load = {.names_step = text->at >= 0, .shutdown = is_shutdown(*text), .bytes = bytes_of(*text)};
+    const RequestBook::Decision decision = book_.open(client_of(request), request.number, load, wrong);
     switch (decision.verdict)
     {
         case RequestBook::Verdict::New:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <set>
 
 #include "blueprint/reader.h"
 #include "model/compile.h"
@@ -160,12 +161,12 @@ std::string given_too_little(const Verb& verb, const OperationText& op)
     if (!verb.argument.empty() && !verb.argument_optional && op.argument.empty()) return "needs an argument: " + std::string(verb.argument);
     if (verb.blueprint && op.blueprint.empty()) return "needs a blueprint: XML text";
     if (op.verb == "set" && op.values.empty()) return "needs values: names and texts";
-    for (std::size_t i = 0; i < op.values.size(); ++i)
-        for (std::size_t k = 0; k <= i; ++k)
-        {
-            if (op.values[i].first.empty()) return "has a value without a name";
-            if (k < i && op.values[i].first == op.values[k].first) return "gives '" + op.values[i].first + "' twice";
-        }
+    std::set<std::string_view> names;
+    for (const auto& [name, text] : op.values)
+    {
+        if (name.empty()) return "has a value without a name";
+        if (!names.insert(name).second) return "gives '" + name + "' twice";
+    }
     return {};
 }
 
@@ -234,8 +235,8 @@ Result<double> parse_rate(const std::string& text)
     if (text == "max") return 0.0;
     double factor = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
-    if (error != std::errc() || end != text.data() + text.size() || !(factor > 0) || !(factor <= 1e9))
-        return reason("a rate is real, max or a positive factor of real time, not '" + text + "'");
+    if (error != std::errc() || end != text.data() + text.size() || !(factor >= 1e-6) || !(factor <= 1e9))
+        return reason("a rate is real, max or a factor of real time from 1e-6 to 1e9, not '" + text + "'");
     return factor;
 }
 
@@ -257,6 +258,8 @@ Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& ty
         }
     }
     if (errors.empty() && out.shutdown && text.operations.size() > 1) errors.push_back(reason("shutdown stands alone in a request"));
+    if (errors.empty() && out.shutdown && (text.at >= 0 || text.revision >= 0))
+        errors.push_back(reason("shutdown takes effect at once: it names no step and no revision"));
     if (!errors.empty()) return errors;
     if (text.at >= 0) out.request.at = text.at;
     if (text.revision >= 0) out.request.revision = static_cast<std::uint64_t>(text.revision);

@@ -26,7 +26,7 @@ struct Description
 };
 Description description_of(const simulation::Operation& operation);
 
-/// "real" (1), "max" (0), or a positive factor of real time.
+/// "real" (1), "max" (0), or a factor of real time from 1e-6 to 1e9.
 Result<double> parse_rate(const std::string& text);
 
 }  // namespace plab::control

@@ -115,6 +115,7 @@ void LiveTable::show(const simulation::Simulation& s, bool last)
 {
     if (!wanted_) return;
     const auto now = std::chrono::steady_clock::now();
+    if (s.tick() < shown_tick_) next_ = s.time();  // a new run
     const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(100) : s.time() >= next_;
     if (!due && !(last && s.tick() != shown_tick_)) return;
     shown_ = now, shown_tick_ = s.tick();

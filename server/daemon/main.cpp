@@ -104,5 +104,7 @@ int main(int argc, char** argv)
     spdlog::set_level(spdlog::level::from_str(options.log_level));
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+    std::signal(SIGHUP, on_signal);  // the terminal has gone
+    std::signal(SIGPIPE, SIG_IGN);   // whoever read the table has gone; the run goes on
     return carry_out(options);
 }

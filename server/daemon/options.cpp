@@ -33,6 +33,16 @@ std::optional<Tick> take_step(std::string_view& text)
     return step;
 }
 
+/// Seconds, 0 or more: CLI11's own check lets NaN through.
+std::string not_seconds(const std::string& text)
+{
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    const bool fine = error == std::errc() && stop == end && value >= 0 && value <= 1e12;
+    return fine ? "" : "'" + text + "' is no number of seconds from 0 to 1e12";
+}
+
 void add_bus_options(CLI::App& app, Options& options, std::string& states, bool& no_bus)
 {
     const std::string group = "The bus";
@@ -95,12 +105,10 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     app.footer(kExamples);
     app.set_version_flag("--version", std::string("plabd ") + PLAB_VERSION);
     app.add_option("scene", options.scene, "blueprint (XML)");
-    app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")
-        ->check(CLI::NonNegativeNumber);
+    app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")->check(&not_seconds, "");
     app.add_option("--out", options.out, "write the end state as JSON to FILE (- is standard output)")->type_name("FILE");
     app.add_option("--trace", options.trace, "write the course as CSV to FILE")->type_name("FILE");
-    app.add_option("--every", options.every, "simulated seconds between rows of --trace; default: each step")
-        ->check(CLI::NonNegativeNumber);
+    app.add_option("--every", options.every, "simulated seconds between rows of --trace; default: each step")->check(&not_seconds, "");
     app.add_option("--threads", options.threads, "threads that step; the result is the same for any number")->check(CLI::Range(1, 256));
     app.add_option("--log-level", options.log_level, "what goes to standard error")
         ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));

@@ -36,7 +36,12 @@ void report_events(const simulation::Simulation& s)
 bool write_end_state(const simulation::Simulation& s, const std::string& file)
 {
     const std::string text = end_state_json(s);
-    if (file == "-") return std::fputs(text.c_str(), stdout) >= 0;
+    if (file == "-")
+    {
+        const bool fine = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+        if (!fine) spdlog::error("cannot write the end state to standard output");
+        return fine;
+    }
     std::FILE* f = std::fopen(file.c_str(), "w");
     const bool written = f && std::fputs(text.c_str(), f) >= 0;
     const bool closed = f && std::fclose(f) == 0;
@@ -167,9 +172,9 @@ bool Run::finish()
     table_.show(s_, true);
     if (trace_) trace_->sample(s_, true);
     if (options_.maps) print_mapped_libraries();
-    if (s_.pending_requests() > 0)
+    if (const std::size_t own = service_.close(); own > 0)
     {
-        spdlog::error("{} requests found no step to take effect at: the run did not reach it", s_.pending_requests());
+        spdlog::error("{} requests found no step to take effect at: the run did not reach it", own);
         fine_ = false;
     }
     if (const std::string why = service_.lost(); !why.empty())
@@ -204,7 +209,11 @@ int Run::go()
         }
         // Requests are served while the next step is not due yet: they wait for no clock, only for a step that runs.
         const auto due = pacer_.due(s_.time() + s_.dt(), s_.rate(), s_.run(), now);
-        if (due > now && wake_.wait_until(due)) continue;
+        if (due > now && (wake_.wait_until(due) || Clock::now() < due))
+        {
+            service_.idle();
+            continue;
+        }
         step();
     }
     return finish() ? 0 : 1;

@@ -29,6 +29,16 @@ const char* word(simulation::Fate fate)
     return "";
 }
 
+/// Text of others, for a log: no control characters, no more than a line.
+std::string one_line(std::string text)
+{
+    constexpr std::size_t kLongest = 300;
+    if (text.size() > kLongest) text.resize(kLongest), text += " ...";
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return text;
+}
+
 void log_swap(const simulation::Reply& r, const simulation::SwapReport& swap)
 {
     std::string fields;
@@ -90,24 +100,46 @@ void Service::take_requests()
     publish::RequestText text;
     while (bus_->take(text))
     {
+        const std::uint64_t begin = simulation::now_ns();
         auto wanted = control::wanted_of(text, *library_);
+        const auto read_ns = static_cast<double>(simulation::now_ns() - begin);
         if (!wanted)
-        {
-            refuse(text, wanted.errors());
-            continue;
-        }
-        if (wanted->shutdown)
-        {
+            refuse(text, wanted.errors(), read_ns);
+        else if (wanted->shutdown)
             shut_down(text);
+        else
+            accept(text, wanted.take(), read_ns);
+    }
+}
+
+void Service::accept(const publish::RequestText& text, control::Wanted wanted, double read_ns)
+{
+    Origin origin;
+    origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
+    origin.read_ns = read_ns;
+    for (const simulation::Operation& op : wanted.request.operations) origin.operations.push_back(control::description_of(op));
+    wanted.request.id = ++last_request_;
+    waiting_.emplace(last_request_, std::move(origin));
+    simulation_->post(std::move(wanted.request));
+}
+
+std::size_t Service::close()
+{
+    std::size_t own = 0;
+    for (const auto& [id, origin] : waiting_)
+    {
+        if (!origin.from_bus)
+        {
+            ++own;
             continue;
         }
-        Origin origin;
-        origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
-        for (const simulation::Operation& op : wanted->request.operations) origin.operations.push_back(control::description_of(op));
-        wanted->request.id = ++last_request_;
-        waiting_.emplace(last_request_, std::move(origin));
-        simulation_->post(std::move(wanted->request));
+        simulation::Reply reply;
+        reply.step = simulation_->tick(), reply.revision = simulation_->revision();
+        reply.errors = {reason("the server ended before the step that the request names")};
+        answer_client(origin, std::move(reply));
     }
+    waiting_.clear();
+    return own;
 }
 
 void Service::shut_down(const publish::RequestText& text)
@@ -123,12 +155,13 @@ void Service::shut_down(const publish::RequestText& text)
     shutdown_ = true;
 }
 
-void Service::refuse(const publish::RequestText& text, Errors errors)
+void Service::refuse(const publish::RequestText& text, Errors errors, double read_ns)
 {
     Origin origin;
     origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
     for (const publish::OperationText& op : text.operations) origin.operations.push_back({op.verb, op.target, op.argument});
     simulation::Reply reply;
+    reply.pause_ns = read_ns;
     reply.errors = std::move(errors), reply.step = simulation_->tick(), reply.revision = simulation_->revision();
     ++refused_;
     note(origin, reply);
@@ -153,6 +186,7 @@ bool Service::answer()
         if (found == waiting_.end()) continue;  // nobody asked for it under this number
         const Origin origin = std::move(found->second);
         waiting_.erase(found);
+        reply.pause_ns += origin.read_ns;
         ++(reply.done ? done_ : refused_);
         note(origin, reply);
         for (const simulation::SwapReport& swap : reply.swaps) log_swap(reply, swap);
@@ -169,10 +203,8 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
     for (const Error& e : reply.errors)
     {
         // What a client gets wrong is told to the client; the log of the server does not fill up with it.
-        if (origin.from_bus)
-            spdlog::info("request refused at step {}: {}", reply.step, e.text());
-        else
-            spdlog::error("request refused at step {}: {}", reply.step, e.text());
+        spdlog::log(origin.from_bus ? spdlog::level::debug : spdlog::level::err, "request refused at step {}: {}", reply.step,
+                    one_line(e.text()));
     }
     publish::EventRecord event;
     event.time = simulation_->time();

@@ -35,6 +35,9 @@ public:
     void idle() { collector_.idle(*simulation_); }
     void publish_status(double rate_reached, double slipped, bool slipping);
 
+    /// The end: clients whose requests still wait are told. The number of the command line's that wait.
+    std::size_t close();
+
     bool shutdown_wanted() const { return shutdown_; }
     /// Why the server must end, if it must.
     std::string lost() const { return bus_ ? bus_->lost() : std::string(); }
@@ -51,9 +54,11 @@ private:
         publish::ClientId client{};
         std::uint64_t number = 0;
         std::int64_t arrived_ns = 0;
+        double read_ns = 0;  ///< what it took to understand it, on the step thread
         std::vector<control::Description> operations;
     };
-    void refuse(const publish::RequestText& text, Errors errors);
+    void accept(const publish::RequestText& text, control::Wanted wanted, double read_ns);
+    void refuse(const publish::RequestText& text, Errors errors, double read_ns);
     void answer_client(const Origin& origin, simulation::Reply reply);
     void shut_down(const publish::RequestText& text);
     void note(const Origin& origin, const simulation::Reply& reply);

@@ -7,19 +7,35 @@
 namespace plab::simulation
 {
 
-void keep_motion(world::World& world, std::uint32_t component, const Bodies& before)
+BodyMotion motion_of(const world::World& world, std::uint32_t component)
 {
     const world::Component& c = world.component(component);
-    if (c.facet != Facet::Body) return;
+    if (c.facet != Facet::Body) return {};
     const std::uint32_t b = c.host_index;
+    const world::HostTables& host = world.host();
+    const auto value = [&](const char* name) { return world::get_hosted(host, Facet::Body, b, name); };
+    return {true,
+            host.bodies.motion[b],
+            host.bodies.center_B[b],
+            host.bodies.inertia_B[b],
+            value("orientation"),
+            value("position"),
+            value("angular_velocity"),
+            value("linear_velocity")};
+}
+
+void keep_motion(world::World& world, std::uint32_t component, const BodyMotion& before)
+{
+    if (!before.is_body) return;
+    const std::uint32_t b = world.component(component).host_index;
     world::HostTables& host = world.host();
-    const Bodies& now = host.bodies;
-    if (now.motion[b] == before.motion[b] && now.center_B[b] == before.center_B[b] && now.inertia_B[b] == before.inertia_B[b]) return;
-    world::HostTables old = host;
-    old.bodies = before;
-    for (const char* name : {"orientation", "position", "angular_velocity", "linear_velocity"})
-        world::set_hosted(host, Facet::Body, b, name, world::get_hosted(old, Facet::Body, b, name));
-    if (now.motion[b] == Motion::Static) host.bodies.velocity[b] = host.bodies.angular_velocity[b] = host.bodies.angular_momentum[b] = {};
+    Bodies& now = host.bodies;
+    if (now.motion[b] == before.motion && now.center_B[b] == before.center_B && now.inertia_B[b] == before.inertia_B) return;
+    world::set_hosted(host, Facet::Body, b, "orientation", before.orientation);
+    world::set_hosted(host, Facet::Body, b, "position", before.position);
+    world::set_hosted(host, Facet::Body, b, "angular_velocity", before.angular_velocity);
+    world::set_hosted(host, Facet::Body, b, "linear_velocity", before.linear_velocity);
+    if (now.motion[b] == Motion::Static) now.velocity[b] = now.angular_velocity[b] = now.angular_momentum[b] = {};
 }
 
 Result<void> prepare_dependents(world::World& world, std::uint32_t component, std::set<std::uint32_t>& prepared)
@@ -27,7 +43,7 @@ Result<void> prepare_dependents(world::World& world, std::uint32_t component, st
     if (world.component(component).facet != Facet::Shape) return {};
     for (const std::uint32_t who : world.referrers(component))
     {
-        const Bodies before = world.host().bodies;
+        const BodyMotion before = motion_of(world, who);
         prepared.insert(who);
         if (auto done = world.prepare(who); !done) return done;
         keep_motion(world, who, before);
@@ -46,15 +62,15 @@ Result<void> set_field(world::World& world, std::uint32_t component, const std::
     if (const auto* number = std::get_if<double>(&value); number && field->type == FieldType::Integer && std::nearbyint(*number) == *number)
         value = static_cast<std::int64_t>(*number);
     if (auto fits = model::check_value(value, *field); !fits) return reason(name + ": " + fits.error().reason);
-    const Bodies before = world.host().bodies;
+    const BodyMotion before = motion_of(world, component);
     const bool quarantined = world.component(component).quarantined;
     if (auto done = world.set(component, name, value); !done) return done;
     world.quarantine(component, false);  // a mended component gets another chance
     if (field->kind == FieldKind::State && !quarantined) return {};
     prepared.insert(component);
-    const world::HostTables moved = world.host();
+    const BodyMotion moved = motion_of(world, component);
     if (auto done = world.prepare(component); !done) return done;
-    keep_motion(world, component, field->kind == FieldKind::State ? moved.bodies : before);
+    keep_motion(world, component, field->kind == FieldKind::State ? moved : before);
     return prepare_dependents(world, component, prepared);
 }
 

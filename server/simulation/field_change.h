@@ -15,9 +15,20 @@ namespace plab::simulation
 Result<void> set_field(world::World& world, std::uint32_t component, const std::string& name, Value value,
                        std::set<std::uint32_t>& prepared);
 
+/// How one body moves, as its author sees it, and what that hangs on.
+struct BodyMotion
+{
+    bool is_body = false;
+    Motion motion = Motion::Static;
+    Vec3 center_B;
+    Mat3 inertia_B;
+    Value orientation, position, angular_velocity, linear_velocity;
+};
+BodyMotion motion_of(const world::World& world, std::uint32_t component);
+
 /// New mass properties may move the centre of mass or change what moves at all; pose and velocity of the frame that the
 /// author sees stay. Where nothing of that changed, no bit is touched.
-void keep_motion(world::World& world, std::uint32_t component, const Bodies& before);
+void keep_motion(world::World& world, std::uint32_t component, const BodyMotion& before);
 
 /// A shape's size is the mass of the bodies that wear it.
 Result<void> prepare_dependents(world::World& world, std::uint32_t component, std::set<std::uint32_t>& prepared);

@@ -60,7 +60,7 @@ double Simulation::time_at(Tick tick) const
     return base_tick_ == 0 ? dt_.at(tick) : base_time_ + dt_.at(tick - base_tick_);
 }
 
-void Simulation::post(Request request) { requests_.push_back(std::move(request)); }
+void Simulation::post(Request request) { requests_.push_back({std::move(request), run_}); }
 
 std::vector<Reply> Simulation::take_replies()
 {
@@ -96,13 +96,31 @@ Changes Simulation::take_changes()
 
 bool Simulation::apply_due()
 {
-    if (requests_.empty()) return false;
-    std::deque<Request> later;
-    std::deque<Request> due;
-    for (Request& r : requests_) (r.at && *r.at > tick_ ? later : due).push_back(std::move(r));
-    requests_ = std::move(later);
-    for (const Request& r : due) replies_.push_back(carry_out(r));
-    return !due.empty();
+    bool any = false;
+    for (std::size_t k = 0; k < requests_.size();)
+    {
+        const Waiting& w = requests_[k];
+        if (w.request.at && w.run == run_ && *w.request.at > tick_)
+        {
+            ++k;
+            continue;
+        }
+        const Waiting due = std::move(requests_[k]);
+        requests_.erase(requests_.begin() + static_cast<std::ptrdiff_t>(k));
+        replies_.push_back(due.request.at && due.run != run_ ? outlived(due.request) : carry_out(due.request));
+        any = true;
+        // A new run concerns those that wait: from the front again.
+        k = 0;
+    }
+    return any;
+}
+
+Reply Simulation::outlived(const Request& request) const
+{
+    Reply reply;
+    reply.request = request.id, reply.step = tick_, reply.revision = revision_;
+    reply.errors = {reason("a new run began before step " + std::to_string(*request.at))};
+    return reply;
 }
 
 bool Simulation::step()

@@ -33,7 +33,8 @@ public:
     /// Replaces whatever is there. On error what was there goes on.
     Result<void> load(const model::SceneSpec& scene);
 
-    /// Queues a request for the boundary before the next step, or the step that it names.
+    /// Queues a request for the boundary before the next step, or the step that it names; that is a step of the present
+    /// run: if another run begins before, the request is refused.
     void post(Request request);
     /// Carries a request out at the present boundary, between two steps.
     Reply carry_out_now(const Request& request) { return carry_out(request); }
@@ -82,6 +83,7 @@ private:
     Result<Live> build(const model::SceneSpec& scene);
     void begin_run(Live live, const model::SceneSpec& scene);
     Reply carry_out(const Request& request);
+    Reply outlived(const Request& request) const;
     void run_step(bool trial);
     void freeze_lost_objects();
     void quarantine_failed();
@@ -104,7 +106,12 @@ private:
     double kinetic_at_start_ = 0;  ///< J
     std::uint64_t run_ = 0, revision_ = 0;
 
-    std::deque<Request> requests_;
+    struct Waiting
+    {
+        Request request;
+        std::uint64_t run = 0;  ///< in which it was posted
+    };
+    std::deque<Waiting> requests_;
     std::vector<Reply> replies_;
     Changes changes_;
     ImageSink* images_ = nullptr;

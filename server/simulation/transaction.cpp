@@ -1,6 +1,7 @@
 #include "simulation/transaction.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/compile.h"
 #include "model/values.h"
@@ -34,9 +35,9 @@ void Transaction::restore(const State& state, bool structure_changed)
 {
     s_->world_->restore(state.world);
     // Opaque parts (a script's chunk) are not in the backup: they are made again from what is.
-    for (const std::uint32_t i : prepared_)
-        if (i < s_->world_->components().size() && s_->world_->component(i).alive) (void)s_->world_->prepare(i);
-    for (const std::uint32_t i : s_->changed_by_scripts_) (void)s_->world_->prepare(i);
+    for (const std::set<std::uint32_t>* made : {&prepared_, &s_->changed_by_scripts_})
+        for (const std::uint32_t i : *made)
+            if (i < s_->world_->components().size() && s_->world_->component(i).alive) (void)s_->world_->prepare(i);
     // Preparing rewrites host rows from parameters; what moved on since (a body's pose) is in the backup.
     s_->world_->host() = state.world.host;
     if (structure_changed) (void)s_->stepper_->rebuild();
@@ -233,6 +234,8 @@ Result<void> Transaction::apply_one(const PushOperation& op)
         host.shafts.speed[c.host_index] += op.impulse.x * host.shafts.inverse_inertia[c.host_index];
     else
         return Error{{}, op.id, "does not move by forces, so it cannot be pushed"};
+    const double energy = c.facet == Facet::Body ? host.bodies.kinetic_energy(c.host_index) : host.shafts.kinetic_energy(c.host_index);
+    if (!std::isfinite(energy)) return Error{{}, op.id, "would move faster than can be computed with"};
     return {};
 }
 

@@ -59,7 +59,11 @@ void Transaction::compare_with_old(const State& before)
     old_fails_ = !failure.empty();
     for (const Operation& op : request_->operations)
         if (const auto* swap = std::get_if<SwapOperation>(&op))
-            if (auto component = find_typed(swap->id)) old_errors_.push_back(s_->error_of(*component));
+        {
+            // What an earlier operation of the request adds is not there yet: it had no error.
+            const auto component = find_typed(swap->id);
+            old_errors_.push_back(component ? s_->error_of(*component) : 0.0);
+        }
     restore(before, false);
     energy_before_ = [&]
     {
@@ -80,7 +84,8 @@ Result<void> Transaction::try_new()
     {
         report.energy_before = energy_before_, report.with_old = outcome_old_, report.with_new = outcome;
         if (k < old_errors_.size()) report.with_old.error = old_errors_[k++];
-        report.with_new.error = s_->error_of(s_->world_->find(report.id));
+        // A later operation of the request may have removed it.
+        if (const std::uint32_t i = s_->world_->find(report.id); i != kNoIndex) report.with_new.error = s_->error_of(i);
     }
     if (!failure.empty() && !old_fails_) return reason("the first step failed: " + failure);
     restore(after, false);
@@ -109,6 +114,7 @@ Reply Transaction::run()
     if (reply_.done) s_->changes_.touched.insert(s_->changes_.touched.end(), touched_.begin(), touched_.end());
     if (!reply_.done) reply_.swaps.clear();
     reply_.revision = s_->revision_;
+    if (reply_.done && anew) reply_.step = s_->tick_;
     reply_.pause_ns = static_cast<double>(now_ns() - begin);
     return std::move(reply_);
 }

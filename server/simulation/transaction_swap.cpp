@@ -107,7 +107,7 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
 Result<void> Transaction::exchange(std::uint32_t component, const model::ComponentSpec& spec, const SwapReport& report)
 {
     world::World& world = *s_->world_;
-    const Bodies before = world.host().bodies;
+    const BodyMotion before = motion_of(world, component);
     if (auto done = world.exchange(component, spec); !done) return done;
     keep_motion(world, component, before);
     // The host keeps the motion of objects; what the request gives of it is set there.

@@ -269,7 +269,7 @@ Backup World::backup() const
     ByteWriter cells;
     for (const Component& c : components())
         if (c.alive && c.table != kNoIndex) tables_[c.table]->save(c.row, kLiveKinds, cells);
-    return {directory_, scene_, host_, cells.bytes()};
+    return {directory_, scene_, parked_, host_, cells.bytes()};
 }
 
 void World::restore(const Backup& b)
@@ -296,7 +296,12 @@ void World::restore_structure(const Backup& b)
         if (const Component& c = component(i); c.alive && c.table != kNoIndex) tables_[c.table]->assign(c.row, i, c.host_index);
     for (const Component& c : newer->components)
         if (c.alive && c.table != kNoIndex && tables_[c.table]->component_of_row()[c.row] == kNoIndex) tables_[c.table]->remove(c.row);
-    std::erase_if(parked_, [&](const Parked& p) { return tables_[p.table]->component_of_row()[p.row] != kNoIndex; });
+    // Whoever came and went since the backup is parked and belongs to nobody: its row goes. Its host row went with the
+    // host tables; to free it later would free the row of whoever has that index by then.
+    for (const Parked& p : parked_)
+        if (tables_[p.table]->component_of_row()[p.row] == kNoIndex && std::find(b.parked.begin(), b.parked.end(), p) == b.parked.end())
+            tables_[p.table]->remove(p.row);
+    parked_ = b.parked;
     sort_by_id();
 }
 

@@ -46,11 +46,22 @@ struct Directory
     std::vector<std::uint32_t> free;
 };
 
+/// A row that belongs to nobody, and is kept because a rollback may want it back.
+struct Parked
+{
+    std::uint32_t table;
+    Row row;
+    std::uint32_t host_index;  ///< to be freed with the row, or kNoIndex
+    Facet facet;
+    friend bool operator==(const Parked&, const Parked&) = default;
+};
+
 /// What a swap or rollback needs to bring everything back, except opaque objects, whose rows stay parked.
 struct Backup
 {
     Shared<Directory> directory;
     Shared<model::SceneSpec> scene;
+    std::vector<Parked> parked;
     HostTables host;
     std::vector<std::uint8_t> cells;  ///< params, state and outputs of all rows, in directory order
 };
@@ -137,14 +148,6 @@ private:
     Result<void> measure(std::uint32_t component);
     std::uint64_t enabled_commands(const model::ComponentType& type, const model::ComponentSpec& spec) const;
     int prepare_order(std::uint32_t component) const;
-
-    struct Parked
-    {
-        std::uint32_t table;
-        Row row;
-        std::uint32_t host_index;  ///< to be freed with the row, or kNoIndex
-        Facet facet;
-    };
 
     model::TypeSource* types_;
     std::vector<std::unique_ptr<Table>> tables_;

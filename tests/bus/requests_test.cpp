@@ -167,3 +167,54 @@ TEST_CASE("load, reset, dt and shutdown")
     CHECK(ask(client.caller, {"shutdown"}).done());
     CHECK(server.process().wait(Milliseconds(5000)) == 0);
 }
+
+TEST_CASE("clients whose requests wait are told when the server ends, and it ends well")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
+    Client client(server);
+    auto number = client.caller.send(link::Request{{{"pause"}}, 900'000'000, {}});
+    REQUIRE(number.ok());
+    CHECK(ask(client.caller, {"step", "", "1"}).done());
+    server.process().signal(15);
+    bool told = false;
+    for (int i = 0; i < 100 && !told; ++i)
+    {
+        std::this_thread::sleep_for(Milliseconds(20));
+        client.caller.take(
+            [&](std::uint64_t of, const link::Reply& reply)
+            {
+                if (of != *number) return;
+                told = true;
+                CHECK(reply.outcome == "refused");
+                CHECK(has(reasons(reply), "the server ended"));
+            });
+    }
+    CHECK(told);
+    CHECK(server.process().wait(Milliseconds(5000)) == 0);
+}
+
+TEST_CASE("a request for a step of a run that is over is refused, not carried out in the next one")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
+    Client client(server);
+    auto number = client.caller.send(link::Request{{{"remove", "gears"}}, 600, {}});
+    REQUIRE(number.ok());
+    const link::Reply reset = ask(client.caller, {"reset"});
+    CHECK(reset.done());
+    CHECK(reset.step == 0);
+    bool told = false;
+    for (int i = 0; i < 100 && !told; ++i)
+    {
+        std::this_thread::sleep_for(Milliseconds(20));
+        client.caller.take([&](std::uint64_t of, const link::Reply& reply)
+                           { told = told || (of == *number && has(reasons(reply), "new run")); });
+    }
+    CHECK(told);
+}
+
+TEST_CASE("SIGHUP ends a server as SIGTERM does")
+{
+    Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
+    server.process().signal(1);
+    CHECK(server.process().wait(Milliseconds(5000)) == 0);
+}

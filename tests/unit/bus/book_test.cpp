@@ -22,10 +22,12 @@ publish::Answer answer(const publish::ClientId& id, std::uint64_t number, Tick s
     return a;
 }
 
-RequestBook::Decision open(RequestBook& book, std::uint16_t who, std::uint64_t number)
+RequestBook::Decision open(RequestBook& book, std::uint16_t who, std::uint64_t number, const RequestBook::Load& load = {})
 {
-    return book.open(client(who), number, std::nullopt);
+    return book.open(client(who), number, load, std::nullopt);
 }
+
+constexpr RequestBook::Load kFar{.names_step = true}, kShutdown{.shutdown = true};
 
 std::string why(const RequestBook::Decision& decision) { return decision.answer.reply.errors.at(0).text(); }
 
@@ -95,21 +97,96 @@ TEST_CASE("a refusal is an answer like any other: the same request does not slip
     CHECK(open(book, 1, 1).verdict == Verdict::New);
     const auto full = open(book, 2, 1);
     CHECK(full.verdict == Verdict::Refused);
-    CHECK(why(full).find("1 requests are waiting already") == 0);
+    CHECK(why(full) ==
+          "1 requests, the most of all clients together, are waiting already: send it again, with a new number, when "
+          "some are done");
     CHECK(book.close(answer(client(1), 1)));
     CHECK(open(book, 2, 1).verdict == Verdict::Answered);
     CHECK(open(book, 2, 2).verdict == Verdict::New);
-    CHECK(book.open(client(3), 4, reason("bad")).verdict == Verdict::Refused);
+    CHECK(book.open(client(3), 4, {}, reason("bad")).verdict == Verdict::Refused);
     const auto again = open(book, 3, 4);
     CHECK(again.verdict == Verdict::Answered);
     CHECK(why(again) == "bad");
 }
 
+TEST_CASE("one client has a share of those that may wait, and has it back when they are answered")
+{
+    RequestBook book({.waiting_per_client = 2});
+    CHECK(open(book, 1, 1, kFar).verdict == Verdict::New);
+    CHECK(open(book, 1, 2).verdict == Verdict::New);
+    const auto third = open(book, 1, 3);
+    CHECK(third.verdict == Verdict::Refused);
+    CHECK(why(third).find("2 requests of this client, the most of one, are waiting already: send it again") == 0);
+    CHECK(open(book, 2, 1).verdict == Verdict::New);
+    CHECK(book.close(answer(client(1), 1)));
+    CHECK(open(book, 1, 4).verdict == Verdict::New);
+    CHECK(open(book, 1, 5).verdict == Verdict::Refused);
+}
+
+TEST_CASE("requests that name a step leave room for those that do not")
+{
+    RequestBook book({.waiting = 5, .kept_for_next_step = 2});
+    for (std::uint16_t who = 1; who <= 3; ++who) CHECK(open(book, who, 1, kFar).verdict == Verdict::New);
+    const auto far = open(book, 4, 1, kFar);
+    CHECK(far.verdict == Verdict::Refused);
+    CHECK(why(far).find("3 requests that name a step, the most of these, are waiting already") == 0);
+    CHECK(open(book, 4, 2).verdict == Verdict::New);
+    CHECK(open(book, 4, 3).verdict == Verdict::New);
+    CHECK(open(book, 4, 4).verdict == Verdict::Refused);
+    CHECK(book.close(answer(client(4), 2)));
+    CHECK(open(book, 4, 5, kFar).verdict == Verdict::Refused);  // not even when there is room
+    CHECK(book.close(answer(client(1), 1)));
+    CHECK(open(book, 4, 6, kFar).verdict == Verdict::New);
+}
+
+TEST_CASE("a shutdown for the next step finds room when nothing else does")
+{
+    RequestBook book({.waiting = 2, .waiting_per_client = 2, .kept_for_next_step = 0, .waiting_bytes = 100, .shutdowns = 2});
+    CHECK(open(book, 1, 1, {.bytes = 50}).verdict == Verdict::New);
+    CHECK(open(book, 1, 2, {.bytes = 50}).verdict == Verdict::New);
+    CHECK(open(book, 1, 3).verdict == Verdict::Refused);
+    CHECK(open(book, 1, 4, {.names_step = true, .shutdown = true}).verdict == Verdict::Refused);  // could wait for ever
+    CHECK(open(book, 1, 5, {.shutdown = true, .bytes = 500}).verdict == Verdict::New);            // by the client that took it all
+    CHECK(open(book, 2, 1, kShutdown).verdict == Verdict::New);
+    CHECK(book.waiting() == 4);
+    CHECK(why(open(book, 3, 1, kShutdown)) == "2 requests to shut down are waiting already: one is enough");
+    CHECK(book.close(answer(client(1), 5)));
+    CHECK(open(book, 3, 2, kShutdown).verdict == Verdict::New);
+    CHECK(open(book, 3, 3).verdict == Verdict::Refused);  // the others' room is what it was
+}
+
+TEST_CASE("all requests that wait have a bounded number of bytes, some of them for those that name no step")
+{
+    RequestBook book({.waiting_bytes = 100, .bytes_kept_for_next_step = 30});
+    CHECK(open(book, 1, 1, {.names_step = true, .bytes = 70}).verdict == Verdict::New);
+    CHECK(why(open(book, 1, 2, {.names_step = true, .bytes = 1})) ==
+          "the request has 1 bytes, and 70 bytes of requests that name a step are waiting already, of at most 70: send it again, with a "
+          "new number, when some are done");
+    CHECK(open(book, 2, 1, {.bytes = 30}).verdict == Verdict::New);
+    CHECK(book.waiting_bytes() == 100);
+    CHECK(why(open(book, 3, 1, {.bytes = 7})).find("the request has 7 bytes, and 100 bytes of requests are waiting already") == 0);
+    CHECK(book.close(answer(client(1), 1)));
+    CHECK(book.waiting_bytes() == 30);
+    CHECK(open(book, 3, 2, {.bytes = 70}).verdict == Verdict::New);
+}
+
+TEST_CASE("what a request counts for is its text, and something for each text; shutdown stands alone")
+{
+    publish::RequestText request;
+    request.operations = {{"set", "ball", "", "", {{"mass", "2"}}}};
+    CHECK(bus::bytes_of(request) == 3 + 4 + 4 + 1 + 6 * 32);
+    CHECK_FALSE(bus::is_shutdown(request));
+    request.operations = {{"shutdown", "", "", "", {}}};
+    CHECK(bus::is_shutdown(request));
+    request.operations.push_back(request.operations[0]);
+    CHECK_FALSE(bus::is_shutdown(request));
+}
+
 TEST_CASE("without id or number a request is refused, and leaves nothing behind")
 {
     RequestBook book({});
-    CHECK(book.open({}, 1, std::nullopt).verdict == Verdict::Refused);
-    CHECK(book.open(client(1), 0, std::nullopt).verdict == Verdict::Refused);
+    CHECK(book.open({}, 1, {}, std::nullopt).verdict == Verdict::Refused);
+    CHECK(book.open(client(1), 0, {}, std::nullopt).verdict == Verdict::Refused);
     CHECK(book.clients() == 0);
     CHECK(book.answer_bytes() == 0);
 }
@@ -190,10 +267,16 @@ TEST_CASE("the text of a request is limited, and so is the number of its values"
     r.operation.blueprint = bus::text(above);
     CHECK(r.refusal() == "the request has more than 4194304 bytes of text");
     RawRequest empties;
-    const std::vector<plab_v1_NamedText> values(wire::kMostRequestBytes / 2, {bus::text(""), bus::text("")});
-    const auto count = static_cast<std::uint32_t>(values.size());
-    empties.operation.values = {count, count, const_cast<plab_v1_NamedText*>(values.data()), false};
-    CHECK(empties.refusal() == "the request has more than 4194304 bytes of text");
+    const std::vector<plab_v1_NamedText> values(wire::kMostValues + 1, {bus::text(""), bus::text("")});
+    empties.operation.values = {257, 257, const_cast<plab_v1_NamedText*>(values.data()), false};
+    CHECK(empties.refusal() == "operation 1 has 257 values: at most 256 may be given at once");
+    empties.operation.values._length = 256;
+    CHECK(empties.refusal().empty());
+    RawRequest second;
+    plab_v1_Operation two[] = {second.operation, second.operation};
+    two[1].values = {257, 257, const_cast<plab_v1_NamedText*>(values.data()), false};
+    second.wire.operations = {2, 2, two, false};
+    CHECK(second.refusal() == "operation 2 has 257 values: at most 256 may be given at once");
 }
 
 TEST_CASE("UTF-8 is what RFC 3629 says")

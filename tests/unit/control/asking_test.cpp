@@ -145,6 +145,7 @@ TEST_CASE("wait: for readiness, for a step, and not for ever")
     CHECK(later.code == 0);
     CHECK(later.json()["step"].get<std::int64_t>() >= step + 200);
     CHECK(plabctl("wait --time 0.5").code == 0);
+    CHECK(plabctl("wait --step 1 --timeout 1e8").code == 0);  // 292 years would overflow a count of nanoseconds
     const Outcome never = plabctl("wait --step 1000000000 --timeout 0.7");
     CHECK(never.code == 3);
     CHECK(has(never.err, "did not get there within the time-out"));

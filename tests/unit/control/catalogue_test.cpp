@@ -1,6 +1,8 @@
 // The catalogue that all clients share, and the names that were probably meant.
 #include "link/catalogue.h"
 
+#include <limits>
+
 #include "link/names.h"
 #include "plabctl.h"
 
@@ -52,6 +54,18 @@ TEST_CASE("a catalogue without a server gives up and says what is missing")
     REQUIRE_FALSE(fetched);
     CHECK(has(fetched.error().text(), "server 'nobody' did not tell everything; missing: the server's state"));
     CHECK_FALSE(catalogue->server_is_gone());
+}
+
+TEST_CASE("no wait overflows, whatever it is given")
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
+    CHECK(link::duration_of(link::Seconds(0.25)) == 250'000'000);
+    CHECK(link::duration_of(link::Seconds(1e10)) == 100'000'000'000'000'000);
+    CHECK(link::duration_of(link::Seconds(endless)) == link::duration_of(link::kLongestWait));
+    CHECK(link::duration_of(link::Seconds(-1)) == 0);
+    CHECK(link::duration_of(link::Seconds(nan)) == 0);
+    const auto now = std::chrono::steady_clock::now();
+    CHECK(link::moment_after(link::Seconds(endless), now) - now == std::chrono::seconds(100'000'000));
 }
 
 TEST_CASE("nearest names: slips of the keyboard, capitals, last parts")

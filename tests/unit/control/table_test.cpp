@@ -36,6 +36,38 @@ TEST_CASE("no line is wider than the terminal, however narrow, and none is lost"
     CHECK(has(on_terminal(70, "interactions")[2], "contact.response"));
 }
 
+TEST_CASE("every list fits 40, 60 and 80 columns; what matters least goes first")
+{
+    FakeServer server(test_domain(), "lab");
+    for (const int columns : {40, 60, 80})
+        for (const char* list : {"objects", "servers", "interactions", "types", "topics"})
+        {
+            CAPTURE(columns);
+            CAPTURE(list);
+            const std::vector<std::string> lines = on_terminal(columns, list);
+            CHECK(lines.size() >= 2);
+            for (const std::string& line : lines) CHECK_MESSAGE(line.size() <= static_cast<std::size_t>(columns), line);
+        }
+    const std::vector<std::string> narrow = on_terminal(40, "objects");
+    CHECK(has(narrow[0], " z"));
+    CHECK(has(narrow[2], "red "));
+    CHECK(has(narrow[2], "1.500  0.250  1.000"));
+    CHECK_FALSE(has(narrow[0], "motion"));
+    CHECK(has(on_terminal(40, "servers")[1], "running"));
+    CHECK_FALSE(has(on_terminal(40, "servers")[0], "version"));
+    CHECK(has(on_terminal(200, "objects")[0], "motion"));
+    CHECK(has(on_terminal(200, "servers")[0], "version"));
+    CHECK(on_terminal(10, "objects")[0].size() <= 10);
+}
+
+TEST_CASE("note and participants stand below their titles")
+{
+    FakeServer server(test_domain(), "lab");
+    const std::vector<std::string> lines = on_terminal(200, "interactions");
+    CHECK(lines[0].find("participants") == lines[1].find("between red"));
+    CHECK(lines[0].find("note") == lines[2].find("quarantined"));
+}
+
 TEST_CASE("show wraps its prose instead of cutting it")
 {
     FakeServer server(test_domain(), "lab");

@@ -1,4 +1,8 @@
 // What plabctl sends, and what it makes of the reply.
+#include <chrono>
+#include <future>
+#include <memory>
+
 #include "plabctl.h"
 
 using namespace plab::test;
@@ -140,6 +144,62 @@ TEST_CASE("no reply is a time-out")
     CHECK(silent.code == 3);
     CHECK(has(silent.err, "no reply from server 'lab'"));
     CHECK(has(silent.err, "whether it was carried out is not known"));
+}
+
+TEST_CASE("a request for a later step stands as long as its server")
+{
+    auto server = std::make_unique<FakeServer>(test_domain(), "lab");
+    const std::string request = "remove silent --at 999999999 --timeout ";
+    const Outcome alive = lab(request + "0.6");
+    CHECK(alive.code == 3);
+    CHECK(has(alive.err, "the request stands"));
+    auto left_alone = std::async(std::launch::async, [&] { return lab(request + "20"); });
+    for (int i = 0; i < 500 && server->last().parts.empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    server.reset();
+    const Outcome gone = left_alone.get();
+    CHECK(gone.code == 3);
+    CHECK(has(gone.err, "server 'lab' has gone without a reply"));
+    CHECK(has(gone.err, "the request will not be carried out"));
+    CHECK_FALSE(has(gone.err, "the request stands"));
+}
+
+TEST_CASE("numbers that are out of range are refused, with a number that would do")
+{
+    FakeServer server(test_domain(), "lab");
+    struct Case
+    {
+        const char *arguments, *message;
+    };
+    const Case cases[] = {
+        {"pause --at 9223372036854775808", "--at: must be at most 9223372036854775807, not '9223372036854775808'"},
+        {"pause --at -3", "--at: must be a whole number, 0 or more, not '-3'"},
+        {"pause --at 1.5", "--at: must be a whole number"},
+        {"pause --revision 9223372036854775808", "--revision: must be at most"},
+        {"step 9223372036854775808", "count: must be at most 9223372036854775807"},
+        {"step 0", "count: must be a whole number, 1 or more, not '0'"},
+        {"wait --step 9223372036854775808", "--step: must be at most"},
+        {"wait --time nan", "--time: must be a number from 0 to 1e8, not 'nan'"},
+        {"watch events -n 0", "--count: must be a whole number, 1 or more"},
+        {"watch events -d 1e10", "--duration: must be a number above 0, at most 1e8, not '1e10'"},
+        {"objects --timeout 1e10", "--timeout: must be a number above 0, at most 1e8"},
+        {"objects --timeout inf", "--timeout: must be a number above 0"},
+        {"objects --timeout nan", "--timeout: must be a number above 0"},
+        {"objects --timeout 0", "--timeout: must be a number above 0"},
+    };
+    for (const Case& c : cases)
+    {
+        CAPTURE(c.arguments);
+        const Outcome refused = lab(c.arguments);
+        CHECK(refused.code == 2);
+        CHECK_MESSAGE(has(refused.err, c.message), refused.err);
+        CHECK(refused.err.size() < 200);
+        CHECK(server.last().parts.empty());
+    }
+    CHECK(lab("step 9223372036854775807").code == 0);
+    CHECK(server.last().parts.at(0).argument == "9223372036854775807");
+    CHECK(lab("pause --at 9223372036854775807").code == 0);
+    CHECK(server.last().at == 9223372036854775807);
+    CHECK(lab("objects --timeout 1e8").code == 0);
 }
 
 TEST_CASE("shutdown waits until the server is gone")

@@ -92,7 +92,7 @@ TEST_CASE("what a verb does not use is refused, and so is what it lacks")
     CHECK(refusal({"push", "red", "", "", {{"impulse", "1 nan 0"}}}).find("impulse") != std::string::npos);
     for (const char* bad : {"", "0", "-1", "1.5", "1e3", "99999999999999999999", "7 "})
         CHECK(wanted({{"step", "", bad, "", {}}}).ok() == false);
-    for (const char* bad : {"0", "-1", "fast", "inf", "nan", "1 ", "1e300"}) CHECK(wanted({{"rate", "", bad, "", {}}}).ok() == false);
+    for (const char* bad : {"0", "-1", "fast", "inf", "nan", "1 ", "1e300", "1e-20"}) CHECK(wanted({{"rate", "", bad, "", {}}}).ok() == false);
     CHECK(refusal({"swpa", "a", "T", "", {}}) == "operation 1 (swpa): 'swpa' is no operation, did you mean 'swap'?");
 }
 
@@ -105,6 +105,10 @@ TEST_CASE("errors of a blueprint keep their place, all of them are told, and shu
     CHECK(out.errors()[0].text().rfind("bad.xml:2:", 0) == 0);
     CHECK(out.errors()[1].text().rfind("operation 2 (step)", 0) == 0);
     CHECK(wanted({{"shutdown", "", "", "", {}}, {"pause", "", "", "", {}}}).ok() == false);
+    plugins::PluginLibrary library;
+    publish::RequestText later;
+    later.at = 5, later.operations = {{"shutdown", "", "", "", {}}};
+    CHECK_FALSE(control::wanted_of(later, library).ok());
 }
 
 TEST_CASE("step and revision that a request names")
