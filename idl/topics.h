@@ -59,7 +59,7 @@ inline constexpr std::size_t kMostRequestBytes = 4u << 20;  ///< text of one req
 inline constexpr std::size_t kMostOperations = 256;         ///< of one request
 inline constexpr std::size_t kMostValues = 256;             ///< of one operation
 
-// Requests wait from when they are taken in until they are answered. A single `shutdown` for the next step is beyond
+// Requests wait from when they are taken in until they are answered. A single `shutdown` is beyond
 // all of these: nobody can keep others from it.
 inline constexpr std::size_t kMostRequestsWaiting = 1024;         ///< all clients together
 inline constexpr std::size_t kMostRequestsWaitingPerClient = 64;  ///< one cannot keep out the others

@@ -29,10 +29,6 @@ publish::Answer refusal(const publish::ClientId& client, std::uint64_t number, E
     return answer;
 }
 
-/// Whether it finds room though all the rest is taken: it is carried out at the next boundary, and then there is no
-/// more to wait for. One that names a step could wait for ever.
-bool needs_no_room(const RequestBook::Load& load) { return load.shutdown && !load.names_step; }
-
 std::size_t without(std::size_t all, std::size_t kept) { return all > kept ? all - kept : 0; }
 
 Error full(const std::string& what) { return reason(what + " waiting already: send it again, with a new number, when some are done"); }
@@ -68,7 +64,7 @@ std::optional<RequestBook::Decision> RequestBook::known(const Client& client, st
 
 std::optional<Error> RequestBook::no_room(const Client& client, const Load& load) const
 {
-    if (needs_no_room(load))
+    if (load.shutdown)
     {
         if (shutdowns_.requests < limits_.shutdowns) return std::nullopt;
         return reason(std::to_string(shutdowns_.requests) + " requests to shut down are waiting already: one is enough");
@@ -99,7 +95,7 @@ std::optional<Error> RequestBook::no_bytes(const Load& load) const
 void RequestBook::count(Client& client, const Load& load)
 {
     const auto add = [&](Count& to) { ++to.requests, to.bytes += load.bytes; };
-    if (needs_no_room(load)) return add(shutdowns_);
+    if (load.shutdown) return add(shutdowns_);
     ++client.counted;
     add(all_);
     if (load.names_step) add(with_step_);
@@ -108,7 +104,7 @@ void RequestBook::count(Client& client, const Load& load)
 void RequestBook::discount(Client& client, const Load& load)
 {
     const auto take = [&](Count& from) { --from.requests, from.bytes -= load.bytes; };
-    if (needs_no_room(load)) return take(shutdowns_);
+    if (load.shutdown) return take(shutdowns_);
     --client.counted;
     take(all_);
     if (load.names_step) take(with_step_);

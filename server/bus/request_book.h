@@ -20,7 +20,7 @@ struct BookLimits
     std::size_t kept_for_next_step = wire::kRequestsKeptForNextStep;     ///< of `waiting`
     std::size_t waiting_bytes = wire::kMostWaitingBytes;                 ///< of all requests under way
     std::size_t bytes_kept_for_next_step = wire::kBytesKeptForNextStep;  ///< of `waiting_bytes`
-    std::size_t shutdowns = wire::kMostShutdownsWaiting;                 ///< for the next step, beyond `waiting`
+    std::size_t shutdowns = wire::kMostShutdownsWaiting;                 ///< beyond `waiting`
     std::size_t answers = wire::kAnswersKeptPerClient;                   ///< kept of each client
     std::size_t clients = wire::kClientsRemembered;                      ///< remembered
     std::size_t answer_bytes = 64u << 20;                                ///< of all answers that are kept, about
@@ -92,7 +92,7 @@ private:
     std::map<publish::ClientId, Clients::iterator> by_id_;
     Count all_;        ///< under way, without those of shutdowns_
     Count with_step_;  ///< of them, those that name a step
-    Count shutdowns_;  ///< for the next step
+    Count shutdowns_;  ///< beyond the others
     std::size_t answer_bytes_ = 0;
 };
 

@@ -138,7 +138,12 @@ std::size_t bytes_of(const publish::RequestText& request)
     return bytes;
 }
 
-bool is_shutdown(const publish::RequestText& request) { return request.operations.size() == 1 && request.operations[0].verb == "shutdown"; }
+bool is_shutdown(const publish::RequestText& request)
+{
+    if (request.operations.size() != 1) return false;
+    const publish::OperationText& only = request.operations[0];
+    return only.verb == "shutdown" && only.target.empty() && only.argument.empty() && only.blueprint.empty() && only.values.empty();
+}
 
 Result<publish::RequestText> read_request(const plab_v1_Request& request)
 {

@@ -20,7 +20,7 @@ publish::ClientId client_of(const plab_v1_Request& request);
 /// takes to keep it, so that the limit bounds the number of empty ones too.
 std::size_t bytes_of(const publish::RequestText& request);
 
-/// One operation, and that is to end the server.
+/// One operation, and that is to end the server, and no more is said.
 bool is_shutdown(const publish::RequestText& request);
 
 /// The request with its text copied, or the first thing that is wrong with it. Reads no more of an oversized request
