@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bus/wire_view.h"
+#include "simulation/request_words.h"
 
 namespace plab::bus
 {
@@ -52,24 +53,6 @@ const char* word(Severity severity)
             return "warning";
         case Severity::Failure:
             return "failure";
-    }
-    return "";
-}
-
-const char* word(simulation::Fate fate)
-{
-    switch (fate)
-    {
-        case simulation::Fate::Kept:
-            return "kept";
-        case simulation::Fate::Converted:
-            return "converted";
-        case simulation::Fate::Given:
-            return "given";
-        case simulation::Fate::Fresh:
-            return "fresh";
-        case simulation::Fate::Lost:
-            return "lost";
     }
     return "";
 }
@@ -269,7 +252,7 @@ const plab_v1_Reply& ReplySample::of(const publish::Answer& answer, bool repeate
         const simulation::SwapReport& s = r.swaps[i];
         convert_each(fields_[i], s.fields,
                      [](const simulation::FieldFate& f) {
-                         return plab_v1_FieldFate{text(f.field), text(word(f.fate))};
+                         return plab_v1_FieldFate{text(f.field), text(simulation::name_of(f.fate))};
                      });
         swaps_.push_back({text(s.id), text(s.from), text(s.to), {}, s.energy_before, outcome(s.with_old), outcome(s.with_new)});
         view(swaps_.back().fields, fields_[i]);

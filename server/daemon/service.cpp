@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "simulation/clock.h"
+#include "simulation/request_words.h"
 
 namespace plab::daemon
 {
@@ -10,24 +11,6 @@ namespace
 {
 
 void wake_up(void* wake) { static_cast<const Wake*>(wake)->wake(); }
-
-const char* word(simulation::Fate fate)
-{
-    switch (fate)
-    {
-        case simulation::Fate::Kept:
-            return "kept";
-        case simulation::Fate::Converted:
-            return "converted";
-        case simulation::Fate::Given:
-            return "given";
-        case simulation::Fate::Fresh:
-            return "fresh";
-        case simulation::Fate::Lost:
-            return "lost";
-    }
-    return "";
-}
 
 /// Text of others, for a log: no control characters, no more than a line.
 std::string one_line(std::string text)
@@ -42,7 +25,7 @@ std::string one_line(std::string text)
 void log_swap(const simulation::Reply& r, const simulation::SwapReport& swap)
 {
     std::string fields;
-    for (const simulation::FieldFate& f : swap.fields) fields += fmt::format(" {} {}", f.field, word(f.fate));
+    for (const simulation::FieldFate& f : swap.fields) fields += fmt::format(" {} {}", f.field, simulation::name_of(f.fate));
     spdlog::info("step {}: {} {} -> {}; pause {:.1f} us;{}", r.step, swap.id, swap.from, swap.to, r.pause_ns * 1e-3, fields);
     spdlog::info("  first step: energy {:.9g} J -> {:.9g} J (old: {:.9g} J), error {:.3g} (old: {:.3g}), cost {:.1f} us (old: {:.1f} us)",
                  swap.energy_before, swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error,

@@ -18,14 +18,13 @@ require_base() {
     echo "base image: made in $((SECONDS - begin)) s"
 }
 
-# What the official image has: the smallest Debian, with security updates, without documentation and caches.
+# What the official image has: the smallest Debian, with security updates (mmdebstrap adds them by itself), without documentation and caches.
 make_archive() {
-    local archive=http://deb.debian.org folder=$work/tmp
+    local folder=$work/tmp
     # dpkg waits for the disk after each file: a third of the time where there is memory for it.
     [[ $(df --output=avail /dev/shm 2>/dev/null | tail -n 1) -lt 1000000 ]] || folder=/dev/shm
     TMPDIR=$folder timeout 900 mmdebstrap --variant=minbase --include=ca-certificates,usr-is-merged \
         --hook-dir=/usr/share/mmdebstrap/hooks/merged-usr --skip=output/dev --dpkgopt=force-unsafe-io \
         --dpkgopt='path-exclude=/usr/share/doc/*' --dpkgopt='path-exclude=/usr/share/man/*' --dpkgopt='path-exclude=/usr/share/locale/*' \
-        bookworm "$work/base.tar" "deb $archive/debian bookworm main" "deb $archive/debian bookworm-updates main" \
-        "deb $archive/debian-security bookworm-security main"
+        bookworm "$work/base.tar"
 }
