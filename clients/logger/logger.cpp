@@ -40,13 +40,26 @@ Result<Logger> Logger::make(const link::Session& session, const Options& options
 
 Output::State Logger::step(link::Seconds longest)
 {
-    (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::duration_of(longest));
+    const link::Seconds wait = entries_.empty() ? longest : std::min(longest, kSettling);
+    (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::duration_of(wait));
+    take_all();
+    write_entries(false);
+    return output_.flush();
+}
+
+Output::State Logger::finish()
+{
+    take_all();
+    write_entries(true);
+    return output_.flush();
+}
+
+void Logger::take_all()
+{
     take_server();
     take_events();
     take_collisions();
     if (options_.metrics) take_metrics();
-    write_entries();
-    return output_.flush();
 }
 
 bool Logger::is_wanted(const std::string& kind, Severity severity) const
@@ -61,7 +74,7 @@ void Logger::say_server(ServerChange change, const link::ServerInfo& info)
     {
         take_events();
         take_collisions();
-        write_entries();
+        write_entries(true);
     }
     if (change != ServerChange::Gone) run_ = info.run;
     output_.write(lines_->server(change, info));
@@ -85,7 +98,7 @@ void Logger::take_server()
             if (!is_there_ || is_another) say_server(was_there_ ? ServerChange::Back : ServerChange::Found, now);
             is_there_ = was_there_ = true;
             last_ = now;
-            if (options_.status) entries_.push_back({sample.run, sample.step, true, lines_->status(sample)});
+            if (options_.status) entries_.push_back({Clock::now(), sample.run, sample.step, true, lines_->status(sample)});
         });
 }
 
@@ -94,7 +107,7 @@ void Logger::note_gap(const Sample& sample, const dds_sample_info_t& info, Numbe
 {
     const auto missing = numbers.note(info.publication_handle, sample.sequence_number, sample.entries._length);
     if (missing.count == 0) return;
-    entries_.push_back({sample.run, sample.step, false, lines_->gap({topic, missing.first, missing.count})});
+    entries_.push_back({Clock::now(), sample.run, sample.step, false, lines_->gap({topic, missing.first, missing.count})});
 }
 
 void Logger::take_events()
@@ -106,7 +119,7 @@ void Logger::take_events()
             note_gap(sample, info, event_numbers_, wire::topic_of<plab_v1_Events>().name);
             for (std::uint32_t i = 0; i < sample.entries._length; ++i)
                 if (const auto& e = sample.entries._buffer[i]; is_wanted(e.kind, severity_of(e.severity)))
-                    entries_.push_back({sample.run, sample.step, true, lines_->event(sample, i)});
+                    entries_.push_back({Clock::now(), sample.run, sample.step, true, lines_->event(sample, i)});
         });
 }
 
@@ -119,7 +132,7 @@ void Logger::take_collisions()
             note_gap(sample, info, collision_numbers_, wire::topic_of<plab_v1_Collisions>().name);
             for (std::uint32_t i = 0; i < sample.entries._length; ++i)
                 if (is_wanted(std::string("collision.") + sample.entries._buffer[i].kind, Severity::Info))
-                    entries_.push_back({sample.run, sample.step, true, lines_->collision(sample, i)});
+                    entries_.push_back({Clock::now(), sample.run, sample.step, true, lines_->collision(sample, i)});
         });
 }
 
@@ -128,24 +141,27 @@ void Logger::take_metrics()
     (void)metrics_.take(
         [&](const plab_v1_Metrics& sample, const dds_sample_info_t& info)
         {
-            if (info.valid_data) entries_.push_back({sample.run, sample.step, true, lines_->metrics(sample)});
+            if (info.valid_data) entries_.push_back({Clock::now(), sample.run, sample.step, true, lines_->metrics(sample)});
         });
 }
 
-/// Topics arrive each for itself: what came at once is put into the order in which it happened.
-void Logger::write_entries()
+/// What came at once or nearly so is put into the order in which it happened.
+void Logger::write_entries(bool all)
 {
     std::stable_sort(entries_.begin(), entries_.end(),
                      [](const Entry& a, const Entry& b) { return a.run != b.run ? a.run < b.run : a.step < b.step; });
-    for (const Entry& entry : entries_)
+    const auto settled = [due = Clock::now() - std::chrono::duration_cast<Clock::duration>(kSettling), all](const Entry& e)
+    { return all || e.came <= due; };
+    // Whatever happened before a line that has settled goes with it.
+    const auto end = std::find_if(entries_.rbegin(), entries_.rend(), settled).base();
+    for (auto entry = entries_.begin(); entry != end && !is_full(); ++entry)
     {
-        if (is_full()) break;
-        if (run_ != 0 && entry.run > run_) output_.write(lines_->run(entry.run));
-        run_ = std::max(run_, entry.run);
-        output_.write(entry.text);
-        if (entry.counts) ++written_;
+        if (run_ != 0 && entry->run > run_) output_.write(lines_->run(entry->run));
+        run_ = std::max(run_, entry->run);
+        output_.write(entry->text);
+        if (entry->counts) ++written_;
     }
-    entries_.clear();
+    entries_.erase(entries_.begin(), end);
 }
 
 }  // namespace plab::logger
