@@ -1,10 +1,9 @@
-/// Couplings that keep the speeds of two shafts at a ratio, and joints.
+/// Couplings that keep the speeds of two shafts at a ratio.
 #include "plab/plugin.h"
 
 #include "angular_velocity/assign.h"
 #include "angular_velocity/graph.h"
 #include "angular_velocity/impulse.h"
-#include "joints/register.h"
 
 namespace
 {
@@ -48,6 +47,4 @@ PLAB_PLUGIN("constraints", registrar)
             "two shafts per coupling (no differentials); loops must multiply to 1; at most one prescribed shaft per "
             "train")
         .source("weighted union of ratios, d'Alembert's principle in one coordinate per train");
-
-    register_joints(registrar);
 }

@@ -8,8 +8,7 @@ namespace
 Roster::Kind kind_of(Facet facet)
 {
     if (facet == Facet::Shape) return Roster::Kind::Shape;
-    // Quantities have no place in space: they are told with their fields, as interactions are.
-    return facet == Facet::Body || facet == Facet::Shaft ? Roster::Kind::Object : Roster::Kind::Interaction;
+    return facet == Facet::Component ? Roster::Kind::Interaction : Roster::Kind::Object;
 }
 
 }  // namespace

@@ -23,7 +23,6 @@ struct Lab
     Schema schema;
     Bodies bodies;
     Shafts shafts;
-    Quantities quantities;
     Wrenches wrenches;
     Events events;
     std::vector<ParameterChange> changes;
@@ -54,8 +53,6 @@ struct Lab
     void clear()
     {
         wrenches.force.assign(2, {}), wrenches.torque.assign(2, {}), wrenches.shaft_torque.assign(2, 0);
-        wrenches.quantity_rate.assign(quantities.size(), {});
-        for (std::size_t i = 0; i < quantities.size(); ++i) wrenches.quantity_rate[i].assign(quantities.value[i].size(), 0);
         power.assign(8, 0);
     }
     /// The reason why the code is refused, or nothing.
@@ -67,13 +64,13 @@ struct Lab
     void drive()
     {
         context.changes = &changes;
-        scripts::drive(context, kRows, rows, bodies, shafts, quantities);
+        scripts::drive(context, kRows, rows, bodies, shafts);
         context.changes = nullptr;
     }
     void force()
     {
         clear();
-        scripts::force(context, kRows, rows, bodies, shafts, quantities, wrenches);
+        scripts::force(context, kRows, rows, bodies, shafts, wrenches);
     }
     void finish() { scripts::finish(context, kRows, rows); }
     void step()
