@@ -40,17 +40,19 @@ Result<Logger> Logger::make(const link::Session& session, const Options& options
 
 Output::State Logger::step(link::Seconds longest)
 {
-    const link::Seconds wait = entries_.empty() ? longest : std::min(longest, kSettling);
-    (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::duration_of(wait));
+    const auto now = Order::Clock::now();
+    const auto latest = now + std::chrono::duration_cast<Order::Clock::duration>(longest);
+    const link::Seconds wait = order_.due(latest) - now;
+    (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::duration_of(std::max(wait, link::Seconds(0))));
     take_all();
-    write_entries(false);
+    write(order_.take(Order::Clock::now()));
     return output_.flush();
 }
 
 Output::State Logger::finish()
 {
     take_all();
-    write_entries(true);
+    write(order_.take_all());
     return output_.flush();
 }
 
@@ -74,7 +76,7 @@ void Logger::say_server(ServerChange change, const link::ServerInfo& info)
     {
         take_events();
         take_collisions();
-        write_entries(true);
+        write(order_.take_all());
     }
     if (change != ServerChange::Gone) run_ = info.run;
     output_.write(lines_->server(change, info));
@@ -98,7 +100,7 @@ void Logger::take_server()
             if (!is_there_ || is_another) say_server(was_there_ ? ServerChange::Back : ServerChange::Found, now);
             is_there_ = was_there_ = true;
             last_ = now;
-            if (options_.status) entries_.push_back({Clock::now(), sample.run, sample.step, true, lines_->status(sample)});
+            if (options_.status) add(sample.run, sample.step, lines_->status(sample));
         });
 }
 
@@ -107,7 +109,7 @@ void Logger::note_gap(const Sample& sample, const dds_sample_info_t& info, Numbe
 {
     const auto missing = numbers.note(info.publication_handle, sample.sequence_number, sample.entries._length);
     if (missing.count == 0) return;
-    entries_.push_back({Clock::now(), sample.run, sample.step, false, lines_->gap({topic, missing.first, missing.count})});
+    add(sample.run, sample.step, lines_->gap({topic, missing.first, missing.count}), false);
 }
 
 void Logger::take_events()
@@ -119,7 +121,7 @@ void Logger::take_events()
             note_gap(sample, info, event_numbers_, wire::topic_of<plab_v1_Events>().name);
             for (std::uint32_t i = 0; i < sample.entries._length; ++i)
                 if (const auto& e = sample.entries._buffer[i]; is_wanted(e.kind, severity_of(e.severity)))
-                    entries_.push_back({Clock::now(), sample.run, sample.step, true, lines_->event(sample, i)});
+                    add(sample.run, sample.step, lines_->event(sample, i));
         });
 }
 
@@ -132,7 +134,7 @@ void Logger::take_collisions()
             note_gap(sample, info, collision_numbers_, wire::topic_of<plab_v1_Collisions>().name);
             for (std::uint32_t i = 0; i < sample.entries._length; ++i)
                 if (is_wanted(std::string("collision.") + sample.entries._buffer[i].kind, Severity::Info))
-                    entries_.push_back({Clock::now(), sample.run, sample.step, true, lines_->collision(sample, i)});
+                    add(sample.run, sample.step, lines_->collision(sample, i));
         });
 }
 
@@ -141,27 +143,25 @@ void Logger::take_metrics()
     (void)metrics_.take(
         [&](const plab_v1_Metrics& sample, const dds_sample_info_t& info)
         {
-            if (info.valid_data) entries_.push_back({Clock::now(), sample.run, sample.step, true, lines_->metrics(sample)});
+            if (info.valid_data) add(sample.run, sample.step, lines_->metrics(sample));
         });
 }
 
-/// What came at once or nearly so is put into the order in which it happened.
-void Logger::write_entries(bool all)
+void Logger::add(std::uint64_t run, std::int64_t step, std::string text, bool counts)
 {
-    std::stable_sort(entries_.begin(), entries_.end(),
-                     [](const Entry& a, const Entry& b) { return a.run != b.run ? a.run < b.run : a.step < b.step; });
-    const auto settled = [due = Clock::now() - std::chrono::duration_cast<Clock::duration>(kSettling), all](const Entry& e)
-    { return all || e.came <= due; };
-    // Whatever happened before a line that has settled goes with it.
-    const auto end = std::find_if(entries_.rbegin(), entries_.rend(), settled).base();
-    for (auto entry = entries_.begin(); entry != end && !is_full(); ++entry)
+    order_.add({run, step, counts, std::move(text)}, Order::Clock::now());
+}
+
+void Logger::write(const std::vector<Line>& lines)
+{
+    for (const Line& line : lines)
     {
-        if (run_ != 0 && entry->run > run_) output_.write(lines_->run(entry->run));
-        run_ = std::max(run_, entry->run);
-        output_.write(entry->text);
-        if (entry->counts) ++written_;
+        if (is_full()) return;
+        if (run_ != 0 && line.run > run_) output_.write(lines_->run(line.run));
+        run_ = std::max(run_, line.run);
+        output_.write(line.text);
+        if (line.counts) ++written_;
     }
-    entries_.erase(entries_.begin(), end);
 }
 
 }  // namespace plab::logger

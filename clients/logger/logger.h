@@ -1,12 +1,12 @@
 /// Follows one server, and writes what happens in it, through its ends and beginnings.
 #pragma once
 
-#include <chrono>
 #include <vector>
 
 #include "logger/lines.h"
 #include "logger/numbers.h"
 #include "logger/options.h"
+#include "logger/order.h"
 #include "logger/output.h"
 
 namespace plab::logger
@@ -17,7 +17,7 @@ class Logger
 public:
     static Result<Logger> make(const link::Session& session, const Options& options, Output output);
 
-    /// Waits up to `longest`, then writes and flushes what has come and has stayed for kSettling. Good: go on.
+    /// Waits up to `longest`, then writes and flushes the lines whose turn has come (order.h). Good: go on.
     Output::State step(link::Seconds longest);
     /// Writes and flushes what is left.
     Output::State finish();
@@ -26,21 +26,6 @@ public:
     const Output& output() const { return output_; }
 
 private:
-    using Clock = std::chrono::steady_clock;
-    /// Topics arrive each for itself, and what was lost on the way arrives late: a line waits so long for those that
-    /// happened before it.
-    static constexpr link::Seconds kSettling{0.1};
-
-    /// A line that waits for its place among those of the other topics.
-    struct Entry
-    {
-        Clock::time_point came = Clock::now();
-        std::uint64_t run = 0;
-        std::int64_t step = 0;
-        bool counts = true;  ///< towards -n
-        std::string text;
-    };
-
     explicit Logger(Output output) : output_(std::move(output)) {}
 
     void take_all();
@@ -50,7 +35,8 @@ private:
     void take_metrics();
     template <class Sample>
     void note_gap(const Sample& sample, const dds_sample_info_t& info, Numbers& numbers, const char* topic);
-    void write_entries(bool all);
+    void add(std::uint64_t run, std::int64_t step, std::string text, bool counts = true);
+    void write(const std::vector<Line>& lines);
     void say_server(ServerChange change, const link::ServerInfo& info);
     bool is_wanted(const std::string& kind, Severity severity) const;
 
@@ -64,7 +50,7 @@ private:
     wire::Entity waitset_;
 
     Numbers event_numbers_, collision_numbers_;
-    std::vector<Entry> entries_;
+    Order order_;
     link::ServerInfo last_;  ///< that was seen
     bool is_there_ = false, was_there_ = false;
     std::uint64_t run_ = 0;  ///< that the last line was about; 0: none yet

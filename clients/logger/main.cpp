@@ -63,7 +63,7 @@ int run(const logger::Options& options, EndSignals& signals)
         if (state == logger::Output::State::Closed) return 0;
         if (state == logger::Output::State::Broken) return fail(1, Errors{reason(logger->output().why())});
     }
-    if (logger->finish() == logger::Output::State::Broken) return fail(1, Errors{reason(logger->output().why())});
+    if (!logger->is_full() && logger->finish() == logger::Output::State::Broken) return fail(1, Errors{reason(logger->output().why())});
     return 0;
 }
 
