@@ -23,7 +23,9 @@ std::optional<render::Form> form_of(const std::string& name)
     if (name == "sphere") return render::Form::Sphere;
     if (name == "box") return render::Form::Box;
     if (name == "plane") return render::Form::Plane;
-    if (name == "mesh") return render::Form::Mesh;
+    if (name == "mesh" || name == "compound") return render::Form::Mesh;
+    if (name == "cylinder") return render::Form::Cylinder;
+    if (name == "capsule") return render::Form::Capsule;
     return {};  // "none", and what a newer server may have
 }
 
@@ -115,7 +117,7 @@ void SceneModel::rebuild_meshes()
 {
     std::vector<const link::Shape*> wanted;
     for (const auto& [id, shape] : scene_->shapes)
-        if (shape.form == "mesh") wanted.push_back(&shape);
+        if (form_of(shape.form) == render::Form::Mesh) wanted.push_back(&shape);
     const auto as_before = [this](const link::Shape* shape)
     {
         const auto known = std::find(mesh_ids_.begin(), mesh_ids_.end(), shape->id);

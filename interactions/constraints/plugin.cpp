@@ -1,9 +1,10 @@
-/// Couplings that keep the speeds of two shafts at a ratio.
+/// Couplings that keep the speeds of two shafts at a ratio, and joints.
 #include "plab/plugin.h"
 
 #include "angular_velocity/assign.h"
 #include "angular_velocity/graph.h"
 #include "angular_velocity/impulse.h"
+#include "joints/register.h"
 
 namespace
 {
@@ -47,4 +48,6 @@ PLAB_PLUGIN("constraints", registrar)
             "two shafts per coupling (no differentials); loops must multiply to 1; at most one prescribed shaft per "
             "train")
         .source("weighted union of ratios, d'Alembert's principle in one coordinate per train");
+
+    register_joints(registrar);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collider.h"
+#include "near_sweep.h"
 
 namespace plab::detection
 {
@@ -27,13 +28,15 @@ class BroadPhase
 public:
     using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-    /// `kind`: "simple", "hash" or "sweep_and_prune". `parts`: how many will be added.
+    /// `kind`: "simple", "hash", "sweep_and_prune" or "quadtree". `parts`: how many will be added.
     void reset(const std::string& kind, std::size_t parts);
     /// Parts are numbered in the order of this call; `member` (the body) must not decrease.
     void add(const Collider& collider, std::uint32_t member, Membership membership);
     void move(std::uint32_t part, const Collider& collider, const Pose& X_WS);
-    /// Pairs (i, j), i < j, whose tight boxes overlap; by members, then parts.
-    const std::vector<Pair>& find_pairs();
+    /// Pairs (i, j), i < j, whose tight boxes are no further apart than `margin` (m); by members, then parts.
+    const std::vector<Pair>& find_pairs(double margin = 0);
+    /// Gives the tight box of a part, grown by `growth` (m), to a sweep.
+    void offer(std::uint32_t part, double growth, NearSweep& sweep) const;
 
 private:
     struct Box
@@ -50,16 +53,20 @@ private:
         Box tight, wide;
     };
     static void note(void* self, dxGeom* a, dxGeom* b);
-    static bool overlap(const Part& a, const Part& b);
-    static bool reaches(const Part& half_space, const Box& box);
+    bool overlap(const Part& a, const Part& b) const;
+    bool reaches(const Part& half_space, const Part& part) const;
+    bool fits(const Part& part) const;
     void widen(Part& part);
     void search();
     void fit_cells();
+    void fit_tree();
 
     SpaceHandle space_;  // before the parts: their geometries leave it as they go
     std::vector<Part> parts_;
     std::vector<Pair> near_, pairs_;
-    bool hashed_ = false, stale_ = true;
+    bool hashed_ = false, tree_ = false, stale_ = true;
+    Box tree_bounds_;    // of ODE's quadtree
+    double growth_ = 0;  // m, by which the tight boxes are grown in the present question
 };
 
 }  // namespace plab::detection

@@ -1,69 +1,61 @@
 #include "collider.h"
 
+#include <cmath>
+
 namespace plab::detection
 {
-
-bool start_ode()
+namespace
 {
-    // Closed when the plugin goes; all spaces are gone by then, with the worlds that held them.
-    struct Ode
-    {
-        bool started = dInitODE2(0) != 0;
-        Ode() = default;
-        Ode(const Ode&) = delete;
-        Ode& operator=(const Ode&) = delete;
-        ~Ode()
-        {
-            if (started) dCloseODE();
-        }
-    };
-    static const Ode ode;
-    return ode.started && dAllocateODEDataForThread(dAllocateFlagCollisionData) != 0;
-}
+bool positive(double a) { return a > 0 && std::isfinite(a); }
+}  // namespace
 
 Collider::Collider(const Geometry& geometry) : source_(geometry)
 {
+    const Vec3& h = geometry.size;
     switch (geometry.kind)
     {
         case GeometryKind::Sphere:
             kind_ = ColliderKind::Sphere;
             break;
         case GeometryKind::Box:
-            make_box();
+            if (positive(h.x) && positive(h.y) && positive(h.z))
+                kind_ = ColliderKind::Box;
+            else
+                complaint_ = "a box without volume does not collide";
             break;
         case GeometryKind::Plane:
             kind_ = ColliderKind::Plane;
             break;
         case GeometryKind::Mesh:
-            if (!geometry.hull_collides) break;
-            if (auto hull = make_hull(geometry.vertices); hull)
-                kind_ = ColliderKind::Hull, hull_ = hull.take();
-            else
-                complaint_ = hull.error().reason;
+            make_hull_of_mesh();
             break;
+        case GeometryKind::Capsule:
+        case GeometryKind::Cylinder:
+            if (positive(h.x) && positive(h.z))
+                kind_ = geometry.kind == GeometryKind::Capsule ? ColliderKind::Capsule : ColliderKind::Cylinder;
+            else
+                complaint_ = "it needs a radius and a length above 0";
+            break;
+        case GeometryKind::Compound:
         case GeometryKind::None:
             break;
     }
 }
 
-void Collider::make_box()
+void Collider::make_hull_of_mesh()
 {
-    const Vec3& h = size();
-    std::array<Vec3, 8> corners;
-    for (std::size_t i = 0; i < 8; ++i) corners[i] = {i & 1 ? h.x : -h.x, i & 2 ? h.y : -h.y, i & 4 ? h.z : -h.z};
-    auto hull = make_hull(corners);
-    if (!hull)
-    {
-        complaint_ = "a box without volume does not collide";
-        return;
-    }
-    kind_ = ColliderKind::Box, hull_ = hull.take();
-    for (GeomHandle& probe : probes_) probe.reset(dCreateBox(nullptr, 2 * h.x, 2 * h.y, 2 * h.z));
+    if (!source_.hull_collides) return;
+    auto hull = make_hull(source_.vertices);
+    if (hull)
+        kind_ = ColliderKind::Hull, hull_ = hull.take();
+    else
+        complaint_ = hull.error().reason;
 }
 
 bool Collider::built_from(const Geometry& g) const
 {
     if (g.kind != source_.kind || g.pose != source_.pose || g.size != source_.size) return false;
+    if (g.kind == GeometryKind::Compound) return g.parts == source_.parts;
     if (g.kind != GeometryKind::Mesh) return true;
     if (g.hull_collides != source_.hull_collides) return false;
     return !g.hull_collides || g.vertices == source_.vertices;
@@ -71,17 +63,22 @@ bool Collider::built_from(const Geometry& g) const
 
 Vec3 Collider::bound_half() const
 {
-    if (kind_ == ColliderKind::Sphere) return {size().x, size().x, size().x};
-    return kind_ == ColliderKind::Box ? size() : (hull_.upper - hull_.lower) * 0.5;
+    const Vec3& h = size();
+    switch (kind_)
+    {
+        case ColliderKind::Sphere:
+            return {h.x, h.x, h.x};
+        case ColliderKind::Box:
+            return h;
+        case ColliderKind::Capsule:
+            return {h.x, h.x, h.x + h.z};
+        case ColliderKind::Cylinder:
+            return {h.x, h.x, h.z};
+        default:
+            return (hull_.upper - hull_.lower) * 0.5;
+    }
 }
 
 Vec3 Collider::bound_center() const { return kind_ == ColliderKind::Hull ? (hull_.upper + hull_.lower) * 0.5 : Vec3{}; }
-
-dxGeom* Collider::probe(int side, const Pose& X) const
-{
-    dxGeom* geom = probes_[static_cast<std::size_t>(side)].get();
-    set_pose(geom, X);
-    return geom;
-}
 
 }  // namespace plab::detection

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "manifold.h"
 #include "spread.h"
 
 namespace plab::detection
@@ -11,36 +12,6 @@ namespace
 {
 /// Upwards, for centres that coincide and so have no direction between them.
 constexpr Vec3 kNoDirection{0, 0, 1};
-
-struct Nearest
-{
-    Vec3 point;
-    double distance_squared = 0;
-};
-
-Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b)
-{
-    const Vec3 ab = b - a;
-    const double t = std::clamp(dot(p - a, ab) / length_squared(ab), 0.0, 1.0);
-    return a + t * ab;
-}
-
-/// The point of a triangle nearest to p, which is above its plane: the foot if it is inside, else on an edge.
-Vec3 nearest_on_triangle(const Vec3& p, const std::array<Vec3, 3>& corner, const Vec3& normal)
-{
-    bool inside = true;
-    Nearest best{corner[0], length_squared(p - corner[0])};
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-        const Vec3& a = corner[i];
-        const Vec3& b = corner[(i + 1) % 3];
-        if (dot(cross(normal, b - a), p - a) >= 0) continue;
-        inside = false;
-        const Vec3 q = nearest_on_segment(p, a, b);
-        if (const double d = length_squared(p - q); d < best.distance_squared) best = {q, d};
-    }
-    return inside ? p - dot(p - corner[0], normal) * normal : best.point;
-}
 
 /// A sphere whose centre is `out` m (< 0: inside) from the nearest point of a solid's surface; n points from solid to
 /// sphere.
@@ -87,33 +58,6 @@ void sphere_box(double radius, const Vec3& center, const Vec3& half, const Pose&
     out.add(sphere_touch(radius, X_box * nearest, rotate(X_box.q, n), outside));
 }
 
-void sphere_hull(double radius, const Vec3& center, const Hull& hull, const Pose& X_hull, Touches& out)
-{
-    const Vec3 c = rotate_back(X_hull.q, center - X_hull.p);
-    std::size_t top = 0;
-    double outside = -HUGE_VAL;
-    for (std::size_t f = 0; f < hull.faces.size(); ++f)
-        if (const double d = dot(hull.normals[f], c) - hull.offsets[f]; d > outside) outside = d, top = f;
-    if (outside >= radius) return;
-    Vec3 n = hull.normals[top];
-    Vec3 nearest = c - n * outside;
-    if (outside > 0)
-    {
-        // The nearest point lies on a face that sees the centre.
-        double best = HUGE_VAL;
-        for (std::size_t f = 0; f < hull.faces.size(); ++f)
-        {
-            if (dot(hull.normals[f], c) <= hull.offsets[f]) continue;
-            const auto& v = hull.faces[f];
-            const Vec3 q = nearest_on_triangle(c, {hull.vertices[v[0]], hull.vertices[v[1]], hull.vertices[v[2]]}, hull.normals[f]);
-            if (const double d = length_squared(c - q); d < best) best = d, nearest = q;
-        }
-        outside = length(c - nearest);
-        if (outside > 0) n = (c - nearest) / outside;
-    }
-    out.add(sphere_touch(radius, X_hull * nearest, rotate(X_hull.q, n), outside));
-}
-
 void box_plane(const Vec3& half, const Pose& X_box, const Pose& X_plane, Touches& out)
 {
     const Vec3 n = rotate(X_plane.q, {0, 0, 1});
@@ -128,7 +72,7 @@ void box_plane(const Vec3& half, const Pose& X_box, const Pose& X_plane, Touches
 void hull_plane(const Hull& hull, const Pose& X_hull, const Pose& X_plane, Touches& out)
 {
     const Vec3 n = rotate(X_plane.q, {0, 0, 1});
-    Spread spread(n);
+    Spread spread(n, out.margin());
     for (std::uint32_t i = 0; i < hull.vertices.size(); ++i)
     {
         const Vec3 p = X_hull * hull.vertices[i];
@@ -136,6 +80,34 @@ void hull_plane(const Hull& hull, const Pose& X_hull, const Pose& X_plane, Touch
         spread.offer({p + n * (0.5 * depth), -n, depth, i % kFeatures});
     }
     spread.take(out);
+}
+
+void capsule_plane(const Solid& capsule, const Pose& X_plane, Touches& out)
+{
+    const Vec3 n = rotate(X_plane.q, {0, 0, 1}), u = capsule.axis(2);
+    for (std::uint32_t i = 0; i < 2; ++i)
+    {
+        const Vec3 end = capsule.pose().p + (i == 0 ? -capsule.size().z : capsule.size().z) * u;
+        const double depth = capsule.radius() - dot(n, end - X_plane.p);
+        out.add({end - n * (capsule.radius() - 0.5 * depth), -n, depth, i});
+    }
+}
+
+void cylinder_plane(const Solid& cylinder, const Pose& X_plane, Touches& out)
+{
+    const Vec3 n = rotate(X_plane.q, {0, 0, 1}), u = cylinder.axis(2);
+    const auto offer = [&](const Vec3& p, std::uint32_t feature)
+    {
+        const double depth = -dot(n, p - X_plane.p);
+        out.add({p + n * (0.5 * depth), -n, depth, feature});
+    };
+    for (std::uint32_t end = 0; end < 2; ++end)
+    {
+        const RimPoints rim = rim_points(cylinder, end == 1, -n);
+        const bool faces_it = dot(n, u) * (end == 1 ? 1 : -1) < -0.5;
+        for (std::uint32_t i = 0; i < rim.count; ++i)
+            if (faces_it || rim.id[i] == RimPoints::kFurthest) offer(rim.p[i], 8 * end + rim.id[i]);
+    }
 }
 
 }  // namespace plab::detection

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "narrow.h"
+#include "solid.h"
 
 namespace plab::detection
 {
@@ -12,10 +13,14 @@ void sphere_sphere(double radius_a, const Vec3& a, double radius_b, const Vec3& 
 void sphere_plane(double radius, const Vec3& center, const Pose& X_plane, Touches& out);
 /// depth = r - |c - nearest point|, or r + distance to the nearest face with the centre inside.
 void sphere_box(double radius, const Vec3& center, const Vec3& half, const Pose& X_box, Touches& out);
-void sphere_hull(double radius, const Vec3& center, const Hull& hull, const Pose& X_hull, Touches& out);
 /// Every corner below the plane; depth = -n . (corner - p).
 void box_plane(const Vec3& half, const Pose& X_box, const Pose& X_plane, Touches& out);
 /// The deepest vertex, and the outermost ones below the plane in 8 directions.
 void hull_plane(const Hull& hull, const Pose& X_hull, const Pose& X_plane, Touches& out);
+/// Both ends of the segment; depth = r - n . (end - p).
+void capsule_plane(const Solid& capsule, const Pose& X_plane, Touches& out);
+/// Of each end the lowest point of its rim, and of the end that looks down four points of the rim that are fixed to the
+/// body: two points carry a cylinder that rolls, four or five one that stands.
+void cylinder_plane(const Solid& cylinder, const Pose& X_plane, Touches& out);
 
 }  // namespace plab::detection

@@ -1,81 +1,96 @@
 #include "narrow.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "exact_pairs.h"
-#include "hull_pairs.h"
+#include "manifold.h"
+#include "separation.h"
 
 namespace plab::detection
 {
 namespace
 {
-/// Which of the 27 regions of a box (inside, faces, edges, corners) a point on its surface is nearest to. Steady under
-/// rounding, where an order of the points by position would not be.
-std::uint32_t region(const Vec3& half, const Vec3& p_S)
+bool collides(const Collider& c) { return c.kind() != ColliderKind::None; }
+
+/// Pairs are computed in this order, whatever order they are given in, so that (b, a) is the mirror of (a, b) to the last
+/// bit: by kind (planes last), then by size and pose.
+bool in_order(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
 {
-    constexpr double kBand = 1e-3;  // of the half extent
-    std::uint32_t code = 0;
-    for (int k = 0; k < 3; ++k)
-    {
-        const bool at_end = std::fabs(p_S[k]) > (1 - kBand) * half[k];
-        code = 3 * code + (at_end ? (p_S[k] < 0 ? 0u : 2u) : 1u);
-    }
-    return code;
+    const auto rank = [](const Collider& c) { return c.kind() == ColliderKind::Plane ? 100 : static_cast<int>(c.kind()); };
+    if (rank(a) != rank(b)) return rank(a) < rank(b);
+    const auto key = [](const Collider& c, const Pose& X) {
+        return std::make_tuple(c.size().x, c.size().y, c.size().z, c.hull().vertices.size(), X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y,
+                               X.q.z);
+    };
+    return !(key(b, X_b) < key(a, X_a));
 }
 
-/// Two boxes by ODE (separating axes, clipped faces). Its normals point from the second geometry to the first.
-void box_box(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out)
+void collide_with_plane(const Collider& a, const Pose& X_a, const Pose& X_plane, Touches& out)
 {
-    constexpr int kMost = 8;
-    std::array<dContactGeom, kMost> found;
-    const int n = dCollide(a.probe(0, X_a), b.probe(1, X_b), kMost, found.data(), sizeof(dContactGeom));
-    for (int i = 0; i < n; ++i)
+    switch (a.kind())
     {
-        const dContactGeom& g = found[static_cast<std::size_t>(i)];
-        const Vec3 point{g.pos[0], g.pos[1], g.pos[2]};
-        const Vec3 normal = normalized(Vec3{-g.normal[0], -g.normal[1], -g.normal[2]});
-        out.add({point, normal, g.depth,
-                 27 * region(a.size(), rotate_back(X_a.q, point - X_a.p)) + region(b.size(), rotate_back(X_b.q, point - X_b.p))});
+        case ColliderKind::Sphere:
+            return sphere_plane(a.size().x, X_a.p, X_plane, out);
+        case ColliderKind::Box:
+            return box_plane(a.size(), X_a, X_plane, out);
+        case ColliderKind::Hull:
+            return hull_plane(a.hull(), X_a, X_plane, out);
+        case ColliderKind::Capsule:
+            return capsule_plane(Solid(a, X_a), X_plane, out);
+        case ColliderKind::Cylinder:
+            return cylinder_plane(Solid(a, X_a), X_plane, out);
+        case ColliderKind::None:
+        case ColliderKind::Plane:
+            break;  // half-spaces do not collide with one another
     }
 }
 
-/// Pairs with the kinds in the order of ColliderKind.
+/// Of round and pointed solids: one point.
+void add_nearest(const Separation& s, Touches& out) { out.add({(s.point_a + s.point_b) * 0.5, s.normal, -s.gap, 0}); }
+
 void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out)
 {
     using enum ColliderKind;
-    if (a.kind() == Sphere)
-    {
-        if (b.kind() == Sphere) return sphere_sphere(a.size().x, X_a.p, b.size().x, X_b.p, out);
-        if (b.kind() == Plane) return sphere_plane(a.size().x, X_a.p, X_b, out);
-        if (b.kind() == Box) return sphere_box(a.size().x, X_a.p, b.size(), X_b, out);
-        return sphere_hull(a.size().x, X_a.p, b.hull(), X_b, out);
-    }
-    if (a.kind() == Plane) return;  // half-spaces do not collide with one another
-    if (b.kind() == Box) return box_box(a, X_a, b, X_b, out);
-    hull_hull(a.hull(), X_a, b.hull(), X_b, out);
+    if (b.kind() == Plane) return collide_with_plane(a, X_a, X_b, out);
+    if (a.kind() == Sphere && b.kind() == Sphere) return sphere_sphere(a.size().x, X_a.p, b.size().x, X_b.p, out);
+    if (a.kind() == Sphere && b.kind() == Box) return sphere_box(a.size().x, X_a.p, b.size(), X_b, out);
+    const Solid A(a, X_a), B(b, X_b);
+    // Balls around them that are apart settle most pairs.
+    const double reach = A.extent() + A.radius() + B.extent() + B.radius() + out.margin();
+    if (length_squared(B.center() - A.center()) > reach * reach) return;
+    if (a.kind() == Sphere) return add_nearest(separation_of(A, B), out);
+    if (a.kind() == Box && b.kind() == Box) return box_box(A, B, out);
+    add_manifold(A, B, separation_of(A, B), out);
 }
 }  // namespace
 
+Separation separation(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
+{
+    const bool planes = a.kind() == ColliderKind::Plane && b.kind() == ColliderKind::Plane;
+    if (!collides(a) || !collides(b) || planes) return {HUGE_VAL, X_a.p, X_b.p, {0, 0, 1}};
+    if (!in_order(a, X_a, b, X_b))
+    {
+        const Separation s = separation(b, X_b, a, X_a);
+        return {s.gap, s.point_b, s.point_a, -s.normal};
+    }
+    const Solid A(a, X_a);
+    return b.kind() == ColliderKind::Plane ? separation_from_plane(A, X_b) : separation_of(A, Solid(b, X_b));
+}
+
 void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out)
 {
-    using enum ColliderKind;
-    if (a.kind() == None || b.kind() == None) return;
-    const auto flip_from = [&](std::size_t first)
-    {
-        for (Touch& t : out.all().subspan(first)) t.normal = -t.normal;
-    };
+    if (!collides(a) || !collides(b)) return;
+    if (in_order(a, X_a, b, X_b)) return collide_ordered(a, X_a, b, X_b, out);
     const std::size_t before = out.all().size();
-    if (a.kind() == Plane && b.kind() != Plane)
-    {
-        collide(b, X_b, a, X_a, out);
-        flip_from(before);
-        return;
-    }
-    if (b.kind() == Plane && a.kind() == Box) return box_plane(a.size(), X_a, X_b, out);
-    if (b.kind() == Plane && a.kind() == Hull) return hull_plane(a.hull(), X_a, X_b, out);
-    if (a.kind() <= b.kind()) return collide_ordered(a, X_a, b, X_b, out);
     collide_ordered(b, X_b, a, X_a, out);
-    flip_from(before);
+    const bool has_sides = a.kind() != ColliderKind::Plane && b.kind() != ColliderKind::Sphere;
+    for (Touch& t : out.all().subspan(before))
+    {
+        t.normal = -t.normal;
+        if (has_sides) t.feature = mirrored_feature(t.feature);
+    }
 }
 
 }  // namespace plab::detection

@@ -14,7 +14,7 @@ struct Touch
 {
     Vec3 point;                 ///< m, half way between the two surfaces
     Vec3 normal;                ///< unit
-    double depth = 0;           ///< m, > 0
+    double depth = 0;           ///< m; < 0: a gap within the margin that was asked for
     std::uint32_t feature = 0;  ///< which corner or edge, < kFeatures; stable while the same ones touch
 };
 
@@ -25,11 +25,15 @@ class Touches
 {
 public:
     static constexpr std::size_t kCapacity = 16;
+    /// m: points with a gap up to this are kept too.
+    explicit Touches(double margin = 0) : margin_(margin) {}
     void clear() { count_ = 0; }
+    void clear(double margin) { count_ = 0, margin_ = margin; }
+    double margin() const { return margin_; }
     /// Keeps points that overlap, as far as there is room.
     void add(const Touch& touch)
     {
-        if (touch.depth > 0 && count_ < kCapacity) touches_[count_++] = touch;
+        if (touch.depth > -margin_ && count_ < kCapacity) touches_[count_++] = touch;
     }
     std::span<Touch> all() { return {touches_.data(), count_}; }
     std::span<const Touch> all() const { return {touches_.data(), count_}; }
@@ -37,7 +41,18 @@ public:
 private:
     std::array<Touch, kCapacity> touches_{};
     std::size_t count_ = 0;
+    double margin_ = 0;
 };
+
+/// The nearest points of two shapes.
+struct Separation
+{
+    double gap = 0;         ///< m; < 0: depth along `normal`
+    Vec3 point_a, point_b;  ///< m
+    Vec3 normal;            ///< unit, from a to b
+};
+/// Right to rounding while the shapes are apart; of overlapping ones `gap` is minus a depth that goes to zero with the overlap.
+Separation separation(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b);
 
 /// Adds the points where `a` at X_a and `b` at X_b overlap. Both poses are relative to an origin near by, so that
 /// distances keep their digits far from the origin of W. The answer depends on nothing but the arguments.

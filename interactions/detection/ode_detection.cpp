@@ -32,9 +32,9 @@ void OdeRows::describe(Schema& s)
         .family("Resolution/")
         .default_type("Resolution/Bisection");
     s.role(response, "response", {Facet::Component}, "answers contacts").family("Response/").default_type("Response/Impulse");
-    s.param(space, "space", unit::one, "ODE's collision space: simple tests all pairs, hash and sweep_and_prune leave out far ones")
+    s.param(space, "space", unit::one, "ODE's collision space: simple tests all pairs, the others leave out far ones")
         .or_else("hash")
-        .one_of({"simple", "hash", "sweep_and_prune"});
+        .one_of({"simple", "hash", "sweep_and_prune", "quadtree"});
     s.output(pairs, "pairs", unit::one, "pairs of shapes whose bounds overlapped, in the last look");
     s.output(penetration, "penetration", unit::metre, "deepest overlap in the last look").reported_as_error();
     s.scratch(scene, "scene", "geometries of ODE, one per body and shape; made anew from bodies and shapes when needed");
@@ -47,10 +47,18 @@ Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bo
     if (!start_ode()) return reason("the ODE library did not start");
     auto& scene = rows.scene[row];
     if (!scene) scene = std::make_unique<OdeScene>();
-    if (scene->update(rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink)) report_complaints(context, row, *scene);
+    if (scene->update(context, rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink)) report_complaints(context, row, *scene);
     scene->detect(context, bodies, sink);
     rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());
     rows.penetration[row] = scene->penetration();
+    return {};
+}
+
+Result<void> measure_gap(Row row, OdeRows& rows, const Bodies& bodies, GapQuery& query)
+{
+    if (!start_ode()) return reason("the ODE library did not start");
+    if (!rows.scene[row]) return reason("a gap can be measured after a look only");
+    rows.scene[row]->measure(query, bodies);
     return {};
 }
 

@@ -25,6 +25,8 @@ struct OdeRows
 
 /// Phase::Prepare: forgets what was built; bodies and shapes may not be ready yet, so detect builds.
 void prepare(Row row, OdeRows& rows);
+/// Phase::Gap: after a look in the same step.
+Result<void> measure_gap(Row row, OdeRows& rows, const Bodies& bodies, GapQuery& query);
 /// Phase::Detect.
 Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes, ContactSink& sink);
 

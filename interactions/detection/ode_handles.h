@@ -5,8 +5,6 @@
 
 #include <memory>
 
-#include "plab/vector.h"
-
 namespace plab::detection
 {
 
@@ -24,12 +22,5 @@ using SpaceHandle = std::unique_ptr<dxSpace, SpaceDestroyer>;
 /// Starts the library once per process and gives the calling thread what it needs there. ODE is never closed: worlds
 /// in other threads may still use it, and it owns nothing but caches.
 bool start_ode();
-
-inline void set_pose(dxGeom* geom, const Pose& X)
-{
-    const dQuaternion q{X.q.w, X.q.x, X.q.y, X.q.z};
-    dGeomSetPosition(geom, X.p.x, X.p.y, X.p.z);
-    dGeomSetQuaternion(geom, q);
-}
 
 }  // namespace plab::detection

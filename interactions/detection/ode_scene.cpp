@@ -1,6 +1,7 @@
 #include "ode_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace plab::detection
@@ -12,6 +13,13 @@ namespace
 std::uint32_t feature_of(std::uint32_t slot_a, std::uint32_t slot_b, std::uint32_t local)
 {
     return ((slot_a & 63u) << 26) | ((slot_b & 63u) << 20) | (local % kFeatures);
+}
+
+/// Half-spaces do not meet one another; what has no volume meets nobody.
+bool meets(ColliderKind a, ColliderKind b)
+{
+    if (a == ColliderKind::None || b == ColliderKind::None) return false;
+    return a != ColliderKind::Plane || b != ColliderKind::Plane;
 }
 
 bool same_shapes(const RefList& now, std::span<const std::uint32_t> built)
@@ -27,7 +35,7 @@ bool OdeScene::is_current(const std::string& space, const RefList& between, cons
     for (std::size_t i = 0; i < members_.size(); ++i)
     {
         const Member& m = members_[i];
-        const std::span built(body_shapes_.data() + m.first_part, m.end_part - m.first_part);
+        const std::span built(body_shapes_.data() + m.first_shape, m.end_shape - m.first_shape);
         if (bodies.dynamic(m.body) != m.membership.dynamic || !same_shapes(bodies.shapes[m.body], built)) return false;
         if (i > 0 && !against.empty() && !order.precedes({Facet::Body, members_[i - 1].body}, {Facet::Body, m.body})) return false;
     }
@@ -36,9 +44,14 @@ bool OdeScene::is_current(const std::string& space, const RefList& between, cons
     return true;
 }
 
-bool OdeScene::update(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies, const Shapes& shapes,
-                      const ContactSink& order)
+bool OdeScene::update(const StepContext& context, const std::string& space, const RefList& between, const RefList& against,
+                      const Bodies& bodies, const Shapes& shapes, const ContactSink& order)
 {
+    if (!context.active_bodies.empty() && !members_.empty())
+    {
+        move_active(context, bodies);
+        return false;
+    }
     const bool rebuilds = !is_current(space, between, against, bodies, shapes, order);
     if (rebuilds)
     {
@@ -56,18 +69,31 @@ void OdeScene::add_members(const RefList& bodies, bool between, const Bodies& ta
         std::uint32_t& index = member_of_body_[r.index];
         if (index != kNoIndex) continue;  // between and against: between says more
         index = static_cast<std::uint32_t>(members_.size());
-        members_.push_back({r.index, {between, table.dynamic(r.index)}, 0, 0, {}, {}});
+        members_.push_back({r.index, {between, table.dynamic(r.index)}, 0, 0, 0, 0, {}, {}});
     }
 }
 
 void OdeScene::add_colliders(const Bodies& bodies, const Shapes& shapes)
 {
     for (const Member& m : members_)
-        for (const Ref& shape : bodies.shapes[m.body]) shape_of_collider_.push_back(shape.index);
+        for (const Ref& shape : bodies.shapes[m.body])
+        {
+            // A compound too, though it does not collide itself: a change of it is seen by its collider.
+            const std::vector<std::uint32_t>& of_compound = shapes.geometry[shape.index].parts;
+            shape_of_collider_.push_back(shape.index);
+            shape_of_collider_.insert(shape_of_collider_.end(), of_compound.begin(), of_compound.end());
+        }
     std::sort(shape_of_collider_.begin(), shape_of_collider_.end());
     shape_of_collider_.erase(std::unique(shape_of_collider_.begin(), shape_of_collider_.end()), shape_of_collider_.end());
     colliders_.reserve(shape_of_collider_.size());
     for (const std::uint32_t shape : shape_of_collider_) colliders_.emplace_back(shapes.geometry[shape]);
+}
+
+void OdeScene::add_part(std::uint32_t member, std::uint32_t shape, const Pose& X_BP)
+{
+    const auto at = std::lower_bound(shape_of_collider_.begin(), shape_of_collider_.end(), shape);
+    const auto collider = static_cast<std::uint32_t>(at - shape_of_collider_.begin());
+    parts_.push_back({member, collider, X_BP * colliders_[collider].pose()});
 }
 
 void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const ContactSink& order)
@@ -86,32 +112,44 @@ void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const Contact
         Member& m = members_[i];
         member_of_body_[m.body] = i;
         m.first_part = static_cast<std::uint32_t>(parts_.size());
+        m.first_shape = static_cast<std::uint32_t>(body_shapes_.size());
         for (const Ref& shape : bodies.shapes[m.body])
         {
-            const auto at = std::lower_bound(shape_of_collider_.begin(), shape_of_collider_.end(), shape.index);
-            parts_.push_back({i, static_cast<std::uint32_t>(at - shape_of_collider_.begin())});
+            const Geometry& geometry = shapes.geometry[shape.index];
             body_shapes_.push_back(shape.index);
+            if (geometry.kind != GeometryKind::Compound) add_part(i, shape.index, {});
+            for (const std::uint32_t part : geometry.parts) add_part(i, part, geometry.pose);
         }
         m.end_part = static_cast<std::uint32_t>(parts_.size());
+        m.end_shape = static_cast<std::uint32_t>(body_shapes_.size());
     }
     broad_.reset(space_, parts_.size());
+    sweep_.reset(parts_.size());
     for (const Part& part : parts_) broad_.add(colliders_[part.collider], part.member, members_[part.member].membership);
+}
+
+void OdeScene::move_member(Member& m, const Bodies& bodies)
+{
+    m.position = bodies.position[m.body], m.orientation = bodies.orientation[m.body];
+    const Pose X_WB = bodies.pose(m.body);
+    for (std::uint32_t p = m.first_part; p < m.end_part; ++p)
+    {
+        const Collider& c = colliders_[parts_[p].collider];
+        broad_.move(p, c, X_WB * c.pose());
+    }
 }
 
 void OdeScene::move_parts(const Bodies& bodies, bool all)
 {
+    // Compared rather than asked who is active: a request or a rewind moves bodies too.
     for (Member& m : members_)
-    {
-        // Compared rather than asked who is active: a request or a rewind moves bodies too.
-        if (!all && m.position == bodies.position[m.body] && m.orientation == bodies.orientation[m.body]) continue;
-        m.position = bodies.position[m.body], m.orientation = bodies.orientation[m.body];
-        const Pose X_WB = bodies.pose(m.body);
-        for (std::uint32_t p = m.first_part; p < m.end_part; ++p)
-        {
-            const Collider& c = colliders_[parts_[p].collider];
-            broad_.move(p, c, X_WB * c.pose());
-        }
-    }
+        if (all || !(m.position == bodies.position[m.body] && m.orientation == bodies.orientation[m.body])) move_member(m, bodies);
+}
+
+void OdeScene::move_active(const StepContext& context, const Bodies& bodies)
+{
+    for (Member& m : members_)
+        if (context.active_bodies[m.body] != 0) move_member(m, bodies);
 }
 
 bool OdeScene::may_meet(const Member& a, const Member& b, const StepContext& context) const
@@ -143,6 +181,13 @@ bool OdeScene::is_standing(std::uint32_t a, std::uint32_t b) const
     return at != standing_.end() && at->a == a && at->b == b;
 }
 
+Pose OdeScene::place(const Part& part, const Vec3& p_OC, const Bodies& bodies) const
+{
+    const std::uint32_t body = members_[part.member].body;
+    const Quat& q = bodies.orientation[body];
+    return {p_OC + rotate(q, part.in_body.p - bodies.center_B[body]), q * part.in_body.q};
+}
+
 void OdeScene::look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies)
 {
     const Part &pa = parts_[part_a], &pb = parts_[part_b];
@@ -150,14 +195,9 @@ void OdeScene::look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shif
     const Collider &ca = colliders_[pa.collider], &cb = colliders_[pb.collider];
     // Everything is seen from the centre of mass of a, so that two bodies far from W's origin keep their digits.
     const Vec3 origin = bodies.position[ma.body];
-    const auto place = [&](const Member& m, const Collider& c, const Vec3& p_OC)
-    {
-        const Quat& q = bodies.orientation[m.body];
-        return Pose{p_OC + rotate(q, c.pose().p - bodies.center_B[m.body]), q * c.pose().q};
-    };
-    const Pose X_a = place(ma, ca, {});
-    const Pose X_b = place(mb, cb, (bodies.position[mb.body] - origin) + shift);
-    touches_.clear();
+    const Pose X_a = place(pa, {}, bodies);
+    const Pose X_b = place(pb, (bodies.position[mb.body] - origin) + shift, bodies);
+    touches_.clear(margin_);
     collide(ca, X_a, cb, X_b, touches_);
     for (Touch touch : touches_.all())
     {
@@ -185,9 +225,51 @@ void OdeScene::flush(const Member& a, const Member& b, double shift, ContactSink
     found_.clear();
 }
 
+void OdeScene::measure(GapQuery& query, const Bodies& bodies) const
+{
+    query.gap = HUGE_VAL;
+    const auto member_of = [&](Ref r) { return r.index < member_of_body_.size() ? member_of_body_[r.index] : kNoIndex; };
+    const std::uint32_t ia = member_of(query.a), ib = member_of(query.b);
+    if (ia == kNoIndex || ib == kNoIndex) return;
+    const Member &a = members_[ia], &b = members_[ib];
+    const Vec3 origin = bodies.position[a.body], p_OC = bodies.position[b.body] - origin;
+    for (std::uint32_t p = a.first_part; p < a.end_part; ++p)
+        for (std::uint32_t q = b.first_part; q < b.end_part; ++q)
+        {
+            const Collider &ca = colliders_[parts_[p].collider], &cb = colliders_[parts_[q].collider];
+            if (!meets(ca.kind(), cb.kind())) continue;
+            const Separation s = separation(ca, place(parts_[p], {}, bodies), cb, place(parts_[q], p_OC, bodies));
+            if (!(s.gap < query.gap)) continue;
+            query.gap = s.gap, query.normal = s.normal;
+            query.point_a = origin + s.point_a, query.point_b = origin + s.point_b;
+        }
+}
+
+void OdeScene::report_near(const StepContext& context, ContactSink& sink)
+{
+    const std::span<const double> reach = sink.reach();
+    const bool all = context.active_bodies.empty();
+    asked_.clear();
+    for (const Member& m : members_)
+    {
+        if (!all && context.active_bodies[m.body] == 0) continue;
+        for (std::uint32_t p = m.first_part; p < m.end_part; ++p) broad_.offer(p, reach[m.body], sweep_), asked_.push_back(p);
+    }
+    const auto& near = all ? sweep_.find_all() : sweep_.find_of(asked_);
+    near_.clear();
+    for (const auto& [p, q] : near) near_.emplace_back(parts_[p].member, parts_[q].member);
+    // Bodies of several parts may have come up several times.
+    std::sort(near_.begin(), near_.end());
+    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+    for (const auto& [i, j] : near_)
+        if (may_meet(members_[i], members_[j], context)) sink.near({Facet::Body, members_[i].body}, {Facet::Body, members_[j].body});
+}
+
 void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactSink& sink)
 {
+    if (!sink.reach().empty()) return report_near(context, sink);
     penetration_ = 0;
+    margin_ = sink.margin();
     collect_standing(context, sink);
     for (std::size_t i = 0; i < standing_.size(); ++i)
     {
@@ -200,7 +282,7 @@ void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactS
     }
 
     if (sink.only_standing()) return;
-    const auto& near = broad_.find_pairs();
+    const auto& near = broad_.find_pairs(margin_);
     pairs_ = near.size();
     const auto members = [&](const BroadPhase::Pair& p) { return BroadPhase::Pair{parts_[p.first].member, parts_[p.second].member}; };
     for (std::size_t i = 0; i < near.size(); ++i)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "narrow.h"
 
@@ -13,13 +14,14 @@ namespace plab::detection
 class Spread
 {
 public:
-    explicit Spread(const Vec3& normal) : t1_(any_perpendicular(normal)), t2_(cross(normal, t1_)) {}
+    /// Points with a gap up to `margin` (m) count.
+    Spread(const Vec3& normal, double margin) : t1_(any_perpendicular(normal)), t2_(cross(normal, t1_)), margin_(margin) {}
 
     void offer(const Touch& touch)
     {
         constexpr double kDiagonal = 0.70710678118654752;
         constexpr std::array<std::array<double, 2>, 4> kAxes{{{1, 0}, {kDiagonal, kDiagonal}, {0, 1}, {-kDiagonal, kDiagonal}}};
-        if (!(touch.depth > 0)) return;
+        if (!(touch.depth > -margin_)) return;
         const double x = dot(t1_, touch.point), y = dot(t2_, touch.point);
         for (std::size_t k = 0; k < kAxes.size(); ++k)
         {
@@ -30,7 +32,7 @@ public:
         keep(kDeepest, touch.depth, touch);
         any_ = true;
     }
-    double deepest() const { return any_ ? best_[kDeepest].value : 0.0; }
+    double deepest() const { return any_ ? best_[kDeepest].value : -HUGE_VAL; }
     /// Adds what was kept, each feature once, in the order of features.
     void take(Touches& out)
     {
@@ -53,6 +55,7 @@ private:
     }
 
     Vec3 t1_, t2_;
+    double margin_;
     bool any_ = false;
     std::array<Best, 9> best_{};
 };

@@ -69,7 +69,7 @@ void apply_airflow(const StepContext& context, Rows rows, const AirflowRows& air
         wrenches.begin(context.component_of_row[row]);
         const Jet jet = jet_of(row, airflow, shafts);
         const double factor = 0.5 * airflow.air_density[row] * airflow.drag_coefficient[row] * airflow.area[row];
-        for (const Ref body : airflow.between[row])
+        for (const Ref body : context.among(airflow.between[row]))
         {
             if (!bodies.dynamic(body.index) || !context.active(body)) continue;
             const Air air = air_at(jet, bodies.position[body.index]);

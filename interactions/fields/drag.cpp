@@ -28,7 +28,7 @@ void apply_drag(const StepContext& context, Rows rows, const DragRows& drag, con
     {
         wrenches.begin(context.component_of_row[row]);
         const double d1 = drag.rotational[row], d2 = drag.rotational_quadratic[row];
-        for (const Ref part : drag.between[row])
+        for (const Ref part : context.among(drag.between[row]))
         {
             if (!context.active(part)) continue;
             const std::uint32_t i = part.index;

@@ -14,7 +14,7 @@ void apply_gravity(const StepContext& context, Rows rows, const GravityRows& gra
     for (const Row row : rows)
     {
         wrenches.begin(context.component_of_row[row]);
-        for (const Ref body : gravity.between[row])
+        for (const Ref body : context.among(gravity.between[row]))
         {
             if (!bodies.dynamic(body.index) || !context.active(body)) continue;
             wrenches.add_force(body, gravity.acceleration[row] * bodies.mass[body.index]);

@@ -3,6 +3,7 @@
 #include "airflow.h"
 #include "drag.h"
 #include "gravity.h"
+#include "load.h"
 
 PLAB_PLUGIN("fields", registrar)
 {
@@ -11,7 +12,13 @@ PLAB_PLUGIN("fields", registrar)
     registrar.component<GravityRows>("Field/Gravity", "weight in a uniform field")
         .family("Field/Gravity")
         .command<apply_gravity>(Phase::Force, "Field/Apply", "adds m g")
-        .command<stored_by_gravity>(Phase::Potential, "Field/Energy", "potential energy, zero at the world's origin");
+        .command<stored_by_gravity>(Phase::Potential, "Field/Energy", "potential energy, zero at the world's origin")
+        .uniform();
+    registrar.component<LoadRows>("Field/Load", "a constant force and torque")
+        .family("Field/Load")
+        .command<apply_load>(Phase::Force, "Field/Apply", "adds the force and the torque")
+        .uniform()
+        .limits("does not turn with the body");
     registrar.component<DragRows>("Field/Drag", "linear and quadratic resistance of a medium that may move")
         .family("Field/Drag")
         .command<apply_drag>(Phase::Force, "Field/Apply", "adds the resistance to motion through the medium")

@@ -1,6 +1,6 @@
 #include "bisection.h"
 
-#include <algorithm>
+#include "bracket.h"
 
 namespace plab::resolution
 {
@@ -18,8 +18,7 @@ void BisectionRows::describe(Schema& s)
 
 void bisect(const StepContext& context, Row row, const BisectionRows& rows, Trial& trial)
 {
-    // Below 2^-48 of the step the time itself has hardly a bit left to choose.
-    const double tolerance = std::max(rows.time_tolerance[row], 0x1p-48 * trial.step);
+    const double tolerance = shortest_bracket(trial, rows.time_tolerance[row]);
     const double length = trial.end - trial.begin;
     const double middle = trial.begin + 0.5 * length;
     trial.decision = Trial::Decision::Accept;

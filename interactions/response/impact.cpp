@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -10,11 +9,8 @@ namespace plab::response
 {
 namespace
 {
-/// What an impulse changes of a body.
-struct Motions
-{
-    Vec3 velocity, spin, momentum;
-};
+/// Patches whose closing speeds differ by less than this share close at one speed.
+constexpr double kSameSpeed = 1e-9;
 
 /// Patch by patch, the one that closes fastest first, until none closes: how Mirtich's bodies meet.
 class ImpactSequence
@@ -32,10 +28,14 @@ private:
     double closing_speed(std::uint32_t contact) const { return -work_.points[contact].velocity(bodies_).z; }
     double closing_speed(const Patch& patch) const;
     bool rests(const Contact& contact, double speed) const;
-    void hit(const Patch& patch, bool plastic);
+    void choose(std::uint32_t fastest, double speed);
+    bool touch_one_body(const Patch& p, const Patch& q) const;
+    void hit(bool plastic);
+    double restitution_of(const Patch& patch, bool plastic) const;
     void hit_point(std::uint32_t contact, double restitution);
-    void hit_face(const Patch& patch, double restitution);
-    double try_face(const Patch& patch, double restitution);
+    void hit_at_once();
+    void save_bodies();
+    double try_at_once(double share);
 
     const ImpactSettings& settings_;
     Workspace& work_;
@@ -93,7 +93,31 @@ bool ImpactSequence::rests(const Contact& contact, double speed) const
     return speed * speed <= 2 * pressing * height;
 }
 
-void ImpactSequence::hit(const Patch& patch, bool plastic)
+bool ImpactSequence::touch_one_body(const Patch& p, const Patch& q) const
+{
+    const Contact &x = contacts_[work_.order[p.first]], &y = contacts_[work_.order[q.first]];
+    const auto same = [&](Ref r, Ref t) { return r == t && bodies_.dynamic(r.index); };
+    return same(x.a, y.a) || same(x.a, y.b) || same(x.b, y.a) || same(x.b, y.b);
+}
+
+/// The patch that closes fastest, and those that close as fast on the same bodies: one after the other they would be
+/// answered in an order that means nothing, and what is symmetric would not stay so.
+void ImpactSequence::choose(std::uint32_t fastest, double speed)
+{
+    auto& chosen = work_.together;
+    chosen.assign(1, fastest);
+    if (work_.patches.size() == 1) return;
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+        for (std::uint32_t p = 0; p < work_.patches.size(); ++p)
+        {
+            const Patch& patch = work_.patches[p];
+            if (std::find(chosen.begin(), chosen.end(), p) != chosen.end() || !touch_one_body(work_.patches[chosen[k]], patch)) continue;
+            if (closing_speed(patch) >= (1 - kSameSpeed) * speed) chosen.push_back(p);
+        }
+    std::sort(chosen.begin(), chosen.end());
+}
+
+double ImpactSequence::restitution_of(const Patch& patch, bool plastic) const
 {
     const double closing = closing_speed(patch);
     double restitution = plastic ? 0.0 : 1.0;
@@ -103,10 +127,22 @@ void ImpactSequence::hit(const Patch& patch, bool plastic)
         restitution = std::min(restitution, c.restitution);
         if (rests(c, c.restitution * closing)) restitution = 0;
     }
-    if (patch.end - patch.first == 1)
-        hit_point(work_.order[patch.first], restitution);
-    else
-        hit_face(patch, restitution);
+    return restitution;
+}
+
+void ImpactSequence::hit(bool plastic)
+{
+    const Patch& first = work_.patches[work_.together.front()];
+    if (work_.together.size() == 1 && first.end - first.first == 1)
+        return hit_point(work_.order[first.first], restitution_of(first, plastic));
+    work_.hit.clear();
+    for (const std::uint32_t p : work_.together)
+    {
+        const Patch& patch = work_.patches[p];
+        const double restitution = restitution_of(patch, plastic);
+        for (std::uint32_t k = patch.first; k < patch.end; ++k) work_.hit.push_back({work_.order[k], restitution});
+    }
+    hit_at_once();
 }
 
 void ImpactSequence::hit_point(std::uint32_t contact, double restitution)
@@ -117,44 +153,49 @@ void ImpactSequence::hit_point(std::uint32_t contact, double restitution)
     contacts_[contact].impulse += point.to_world(r.impulse);
 }
 
-/// Several points of one pair meet at once, u_n' >= -e u_n at each: a box that lands flat bounces flat. With friction
-/// Newton's law may give back more than there was; then less is given back, and nothing at last.
-void ImpactSequence::hit_face(const Patch& patch, double restitution)
+void ImpactSequence::save_bodies()
+{
+    work_.saved.clear();
+    for (const HitContact& h : work_.hit)
+        for (const Ref r : {contacts_[h.contact].a, contacts_[h.contact].b})
+            if (std::none_of(work_.saved.begin(), work_.saved.end(), [&](const HitBody& b) { return b.body == r.index; }))
+                work_.saved.push_back(
+                    {r.index, bodies_.velocity[r.index], bodies_.angular_velocity[r.index], bodies_.angular_momentum[r.index]});
+}
+
+/// Several points meet at once, u_n' >= -e u_n at each: a box that lands flat bounces flat. With friction Newton's law may
+/// give back more than there was; then less is given back, and nothing at last.
+void ImpactSequence::hit_at_once()
 {
     constexpr int kTrials = 6;
-    const Contact& first = contacts_[work_.order[patch.first]];
-    const std::array<std::uint32_t, 2> pair{first.a.index, first.b.index};
-    std::array<Motions, 2> saved;
-    for (std::size_t i = 0; i < 2; ++i)
-        saved[i] = {bodies_.velocity[pair[i]], bodies_.angular_velocity[pair[i]], bodies_.angular_momentum[pair[i]]};
-    for (int trial = 1; try_face(patch, restitution) > 0 && restitution > 0; ++trial)
+    save_bodies();
+    const auto gives_back = [](const HitContact& h) { return h.restitution > 0; };
+    const bool bounces = std::any_of(work_.hit.begin(), work_.hit.end(), gives_back);
+    double share = 1;
+    for (int trial = 1; try_at_once(share) > 0 && bounces && share > 0; ++trial)
     {
-        for (std::size_t i = 0; i < 2; ++i)
+        for (const HitBody& b : work_.saved)
         {
-            bodies_.velocity[pair[i]] = saved[i].velocity;
-            bodies_.angular_velocity[pair[i]] = saved[i].spin;
-            bodies_.angular_momentum[pair[i]] = saved[i].momentum;
+            bodies_.velocity[b.body] = b.velocity;
+            bodies_.angular_velocity[b.body] = b.spin;
+            bodies_.angular_momentum[b.body] = b.momentum;
         }
-        restitution = trial < kTrials ? 0.5 * restitution : 0.0;
+        share = trial < kTrials ? 0.5 * share : 0.0;
     }
-    for (std::uint32_t k = patch.first; k < patch.end; ++k)
-    {
-        const ConeContact& cone = work_.cones[k - patch.first];
-        contacts_[work_.order[k]].impulse += cone.point->to_world(cone.impulse);
-    }
+    for (std::size_t k = 0; k < work_.hit.size(); ++k)
+        contacts_[work_.hit[k].contact].impulse += work_.cones[k].point->to_world(work_.cones[k].impulse);
 }
 
 /// Energy gained beyond rounding, J: the sum of j . (u + u') / 2.
-double ImpactSequence::try_face(const Patch& patch, double restitution)
+double ImpactSequence::try_at_once(double share)
 {
     work_.cones.clear();
     work_.before.clear();
-    for (std::uint32_t k = patch.first; k < patch.end; ++k)
+    for (const HitContact& h : work_.hit)
     {
-        const std::uint32_t i = work_.order[k];
-        const Vec3 u = work_.points[i].velocity(bodies_);
+        const Vec3 u = work_.points[h.contact].velocity(bodies_);
         work_.before.push_back(u);
-        work_.cones.push_back({&work_.points[i], contacts_[i].friction, u.z < 0 ? -restitution * u.z : 0.0, {}});
+        work_.cones.push_back({&work_.points[h.contact], contacts_[h.contact].friction, u.z < 0 ? -share * h.restitution * u.z : 0.0, {}});
     }
     solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations);
     double gain = 0, size = 0;
@@ -176,13 +217,14 @@ void ImpactSequence::run(Impact& impact)
     double fastest = 0;
     for (impact.iterations = 0; impact.iterations < budget; ++impact.iterations)
     {
-        const Patch* next = nullptr;
+        std::uint32_t next = kNoIndex;
         fastest = threshold_;
-        for (const Patch& p : work_.patches)
-            if (const double v = closing_speed(p); v > fastest) fastest = v, next = &p;
-        if (!next) break;
+        for (std::uint32_t p = 0; p < work_.patches.size(); ++p)
+            if (const double v = closing_speed(work_.patches[p]); v > fastest) fastest = v, next = p;
+        if (next == kNoIndex) break;
+        choose(next, fastest);
         // Bodies caught between others may bounce for ever; what is left by then is taken out without bounce.
-        hit(*next, impact.iterations > budget / 2);
+        hit(impact.iterations > budget / 2);
     }
     impact.residual = 0;
     for (const std::uint32_t i : work_.order)

@@ -26,6 +26,18 @@ struct Patch
     std::uint64_t id = 0;              ///< smallest contact id
 };
 
+/// A contact of an impact at several points, and a body as it was before.
+struct HitContact
+{
+    std::uint32_t contact = 0;
+    double restitution = 0;
+};
+struct HitBody
+{
+    std::uint32_t body = 0;
+    Vec3 velocity, spin, momentum;
+};
+
 /// Working memory of one response, kept warm.
 struct Workspace
 {
@@ -33,8 +45,11 @@ struct Workspace
     std::vector<Patch> patches;        ///< by id
     std::vector<ContactPoint> points;  ///< per contact
     std::vector<ConeContact> cones;
-    std::vector<Vec3> before;  ///< m/s, contact velocities ahead of an impact
-    Tick tick = -1;            ///< whose outputs are being summed
+    std::vector<Vec3> before;             ///< m/s, contact velocities ahead of an impact
+    std::vector<std::uint32_t> together;  ///< patches that are hit at once
+    std::vector<HitContact> hit;          ///< and their contacts
+    std::vector<HitBody> saved;           ///< their bodies ahead of an impact
+    Tick tick = -1;                       ///< whose outputs are being summed
 };
 
 struct ImpulseRows

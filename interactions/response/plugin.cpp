@@ -1,5 +1,7 @@
 #include "plab/plugin.h"
 #include "impulse.h"
+#include "penalty.h"
+#include "rows.h"
 
 PLAB_PLUGIN("response", registrar)
 {
@@ -16,4 +18,31 @@ PLAB_PLUGIN("response", registrar)
             "Gauss-Seidel: sweeps grow with the height of a stack and the mass ratio within it; impacts of several "
             "pairs at one time happen one after the other")
         .source("Mirtich (1996) chapter 3; Stronge (2000) chapter 5; Moreau (1988)");
+    registrar
+        .component<PenaltyRows>("Response/Penalty", "contacts are linear springs and dampers, with stiction springs along the surface")
+        .command<touch_penalty>(Phase::Touch, "Response/Touch", "adds the forces of contacts at a solver stage")
+        .command<stored_penalty>(Phase::Potential, "Response/Potential", "energy in the springs")
+        .by_force()
+        .cost("while something touches: the step in pieces of pi / (rate * steps_per_contact), one look at the contacts per force evaluation")
+        .limits(
+            "bodies overlap by force / stiffness; a high stiffness costs sub-steps for as long as a contact lasts "
+            "(contact.stiff); restitution is exact for one central contact point, and no law for several at once")
+        .source("Cundall and Strack, Geotechnique 29 (1979); Schwager and Poeschel, Granular Matter 9 (2007)");
+    registrar
+        .component<HuntCrossleyRows>("Response/HuntCrossley", "contacts are Hertz's springs with Hunt and Crossley's damping: never pull")
+        .command<touch_hunt_crossley>(Phase::Touch, "Response/Touch", "adds the forces of contacts at a solver stage")
+        .command<stored_hunt_crossley>(Phase::Potential, "Response/Potential", "energy in the springs")
+        .by_force()
+        .cost("as Response/Penalty; pow() per contact and evaluation")
+        .limits("as Response/Penalty; the force has no third derivative where a contact begins: methods above order 3 lose order there")
+        .source("Hunt and Crossley, J. Appl. Mech. 42 (1975); Hertz (1882)");
+    registrar
+        .component<RowsRows>("Response/Rows", "contacts are rows of an island that a manager advances; impacts of one instant are answered together")
+        .command<respond_rows>(Phase::Respond, "Response/Respond", "applies the impulses of a located impact to all its contacts at once")
+        .by_rows()
+        .cost("that of its manager; a located impact: some sweeps over the contacts that take part")
+        .limits(
+            "without a resolution that locates impacts they are answered at the start of the step after, with the overlap that came about; bodies that touch "
+            "share an impact at once (Newton's cradle with no gaps: all move). Newton's restitution gives back less where friction would make energy of it")
+        .source("Moreau, Unilateral contact and dry friction (1988); Glocker, Set-Valued Force Laws (2001)");
 }

@@ -19,9 +19,11 @@ void ScriptRows::describe(Schema& s)
     s.state(quarantined, "quarantined", unit::one, "the script failed and is not called; false calls it again");
     s.output(instructions_used, "instructions_used", unit::one, "most instructions that one call of the step took");
     s.output(memory_used, "memory_used", unit::one, "bytes that the script holds");
-    s.role(driver, "driver", {Facet::Body, Facet::Shaft}, "is only read").optional();
-    s.role(driven, "driven", {Facet::Body, Facet::Shaft}, "takes forces").optional().writes();
-    s.role(between, "between", {Facet::Body, Facet::Shaft}, "take forces, as between[i] in the order of ids").optional().writes();
+    s.role(driver, "driver", {Facet::Body, Facet::Shaft, Facet::Quantities}, "is only read").optional();
+    s.role(driven, "driven", {Facet::Body, Facet::Shaft, Facet::Quantities}, "takes forces, or rates").optional().writes();
+    s.role(between, "between", {Facet::Body, Facet::Shaft, Facet::Quantities}, "take forces or rates, as between[i] in the order of ids")
+        .optional()
+        .writes();
     s.scratch(machine, "machine", "the Lua state; made from the fields above by Script/Prepare");
 }
 
@@ -100,6 +102,8 @@ void apply(const Action& action, Wrenches& wrenches)
             return wrenches.add_torque(action.on, action.value);
         case Action::Kind::ShaftTorque:
             return wrenches.add_shaft_torque(action.on, action.value.x);
+        case Action::Kind::Rate:
+            return wrenches.add_rate(action.on, action.place, action.value.x);
     }
 }
 
@@ -114,7 +118,8 @@ Result<void> prepare(const StepContext& context, Row row, ScriptRows& rows)
     return {};
 }
 
-void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodies& bodies, const Shafts& shafts)
+void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
+           const Quantities& quantities)
 {
     for (const Row row : which)
     {
@@ -122,14 +127,15 @@ void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodie
         Machine& machine = *rows.machine[row];
         if (!is_ready(context, rows, row, EntryPoint::Drive)) continue;
         Call call = make_call(EntryPoint::Drive, context, rows, row);
-        call.bodies = &bodies, call.shafts = &shafts;
+        call.bodies = &bodies, call.shafts = &shafts, call.quantities = &quantities;
         call.writable_state = &rows.state[row], call.random_state = &rows.random_state[row];
         if (!machine.has_drive() || machine.drive(call)) continue;
         quarantine(context, row, rows);
     }
 }
 
-void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches)
+void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
+           const Quantities& quantities, Wrenches& wrenches)
 {
     for (const Row row : which)
     {
@@ -137,7 +143,7 @@ void force(const StepContext& context, Rows which, const ScriptRows& rows, const
         Machine& machine = *rows.machine[row];
         if (!acts(context, rows, row) || !is_ready(context, rows, row, EntryPoint::Force) || !machine.has_force()) continue;
         Call call = make_call(EntryPoint::Force, context, rows, row);
-        call.bodies = &bodies, call.shafts = &shafts;
+        call.bodies = &bodies, call.shafts = &shafts, call.quantities = &quantities;
         if (!machine.force(call)) continue;
         wrenches.begin(row < context.component_of_row.size() ? context.component_of_row[row] : kNoIndex);
         for (const Action& action : machine.actions())

@@ -1,7 +1,8 @@
 /// Script/Lua: an interaction written in Lua.
 ///
 ///   drive(step)      once per step: may change its declared state, set parameters, emit events
-///   force(t, state)  at every solver stage: adds forces (N) and torques (N m) to driven and between; pure
+///   force(t, state)  at every solver stage: adds forces (N), torques (N m) and rates (of quantities) to driven and
+///                    between; pure
 ///
 /// All that lives across calls is in the columns below. The machine is built from them by Prepare and holds nothing
 /// that would have to be saved (see README.md).
@@ -43,8 +44,10 @@ struct ScriptRows
 
 /// Builds the machine anew. On an error the old one stays.
 Result<void> prepare(const StepContext& context, Row row, ScriptRows& rows);
-void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodies& bodies, const Shafts& shafts);
-void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts, Wrenches& wrenches);
+void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
+           const Quantities& quantities);
+void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
+           const Quantities& quantities, Wrenches& wrenches);
 /// Books what force could not: outputs, and the quarantine of a script that failed in it.
 void finish(const StepContext& context, Rows which, ScriptRows& rows);
 

@@ -39,6 +39,12 @@ const char* word(GeometryKind kind)
             return "plane";
         case GeometryKind::Mesh:
             return "mesh";
+        case GeometryKind::Capsule:
+            return "capsule";
+        case GeometryKind::Cylinder:
+            return "cylinder";
+        case GeometryKind::Compound:
+            return "compound";
     }
     return "";
 }

@@ -49,9 +49,18 @@ bool is_listed(const world::World& world, std::uint32_t i)
     return publish::is_interaction(world.component(i)) && !publish::is_solver(world, i);
 }
 
+/// What has motion, or values, of its own.
+bool is_told(const world::Component& c) { return publish::is_object(c) || c.facet == Facet::Quantities; }
+
 std::string object_json(const world::World& world, std::uint32_t i)
 {
     const world::Component& c = world.component(i);
+    if (c.facet == Facet::Quantities)
+    {
+        std::string values;
+        for (const double v : world.host().quantities.value[c.host_index]) values += (values.empty() ? "" : ", ") + number(v);
+        return "{\"values\": [" + values + "]}";
+    }
     if (c.facet == Facet::Shaft)
         return "{\"angle\": " + number(world.host().shafts.angle[c.host_index]) +
                ", \"angular_velocity\": " + number(world.host().shafts.speed[c.host_index]) + "}";
@@ -110,7 +119,7 @@ std::string end_state_json(const simulation::Simulation& s)
     std::string objects, interactions;
     for (const std::uint32_t i : world.in_id_order())
     {
-        if (publish::is_object(world.component(i)))
+        if (is_told(world.component(i)))
             objects += (objects.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + object_json(world, i);
         if (is_listed(world, i))
             interactions += (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " +
@@ -145,7 +154,14 @@ Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simula
     for (const std::uint32_t i : s.world().in_id_order())
     {
         const world::Component& c = s.world().component(i);
-        if (!publish::is_object(c)) continue;
+        if (!is_told(c)) continue;
+        if (c.facet == Facet::Quantities)
+        {
+            const std::size_t count = s.world().host().quantities.value[c.host_index].size();
+            trace->objects_.push_back({c.id, count});
+            for (std::size_t k = 1; k <= count; ++k) header += "," + c.id + ".values." + std::to_string(k);
+            continue;
+        }
         trace->objects_.push_back({c.id, c.facet == Facet::Shaft ? 2u : 13u});
         const char* const shaft[] = {"angle", "angular_velocity"};
         const char* const body[] = {"position.x",        "position.y",        "position.z",         "orientation.w",
@@ -173,7 +189,14 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     for (const auto& [id, columns] : objects_)
     {
         const std::uint32_t i = s.world().find(id);
-        if (i == kNoIndex || !publish::is_object(s.world().component(i)))
+        const bool there = i != kNoIndex && is_told(s.world().component(i));
+        if (there && s.world().component(i).facet == Facet::Quantities)
+        {
+            const std::vector<double>& values = s.world().host().quantities.value[s.world().component(i).host_index];
+            for (std::size_t k = 0; k < columns; ++k) row += "," + (k < values.size() ? number(values[k]) : std::string());
+            continue;
+        }
+        if (!there)
         {
             row += std::string(columns, ',');  // gone: its columns stay empty
             continue;

@@ -59,7 +59,7 @@ std::string describe_wanted(const Role& role)
     std::string out;
     for (const Facet facet : role.facets)
     {
-        constexpr std::string_view words[] = {"a component", "a body", "a shaft", "a shape"};
+        constexpr std::string_view words[] = {"a component", "a body", "a shaft", "a shape", "quantities"};
         out += (out.empty() ? "" : " or ") + std::string(words[static_cast<int>(facet)]);
         if (facet == Facet::Component && !role.family.empty())
             out += " of type " + role.family + (role.family.ends_with('/') ? "..." : "/...");
@@ -72,7 +72,7 @@ namespace
 
 std::string describe(const Draft& draft)
 {
-    constexpr std::string_view words[] = {"", ", a body", ", a shaft", ", a shape"};
+    constexpr std::string_view words[] = {"", ", a body", ", a shaft", ", a shape", ", quantities"};
     if (!draft.type) return quoted(draft.id);
     return quoted(draft.id) + " is " + draft.type->info.name + std::string(words[static_cast<int>(draft.type->info.facet)]);
 }

@@ -122,7 +122,7 @@ bool ComponentType::takes_part(Phase phase) const
 
 std::string ComponentType::why_not_exchangeable(const ComponentType& other) const
 {
-    constexpr std::string_view facets[] = {"a component", "a body", "a shaft", "a shape"};
+    constexpr std::string_view facets[] = {"a component", "a body", "a shaft", "a shape", "quantities"};
     if (info.family != other.info.family)
         return info.name + " is of family " + info.family + ", " + other.info.name + " of family " + other.info.family;
     if (info.facet != other.info.facet)
@@ -135,9 +135,13 @@ std::string ComponentType::why_not_exchangeable(const ComponentType& other) cons
         if (a.facets != b->facets || a.family != b->family) return "role " + a.name + " takes other kinds of participants";
         if ((a.one == nullptr) != (b->one == nullptr)) return "role " + a.name + " is of one in the one and of many in the other";
     }
-    // An optional role that only one of them has is lost or left empty; a required one must have somebody in it.
+    // An optional role that only one of them has is lost or left empty; a required one must have somebody in it, or a
+    // type of which somebody can be made.
     const auto lacks_required = [](const Schema& from, const Schema& in)
-    { return std::any_of(from.roles().begin(), from.roles().end(), [&](const Role& r) { return r.min > 0 && !in.find_role(r.name); }); };
+    {
+        return std::any_of(from.roles().begin(), from.roles().end(),
+                           [&](const Role& r) { return r.min > 0 && r.default_type.empty() && !in.find_role(r.name); });
+    };
     if (!lacks_required(schema, other.schema) && !lacks_required(other.schema, schema)) return {};
     return info.name + " has the roles " + role_list(schema) + ", " + other.info.name + " has " + role_list(other.schema);
 }

@@ -80,7 +80,7 @@ std::string rules_in_words(const Field& field)
 
 std::string facets_in_words(const Role& role)
 {
-    constexpr std::string_view names[] = {"component", "body", "shaft", "shape"};
+    constexpr std::string_view names[] = {"component", "body", "shaft", "shape", "quantities"};
     std::string out;
     for (const Facet f : role.facets) out += (out.empty() ? "" : " or ") + std::string(names[static_cast<std::size_t>(f)]);
     return out;

@@ -8,7 +8,8 @@ namespace
 Roster::Kind kind_of(Facet facet)
 {
     if (facet == Facet::Shape) return Roster::Kind::Shape;
-    return facet == Facet::Component ? Roster::Kind::Interaction : Roster::Kind::Object;
+    // Quantities have no place in space: they are told with their fields, as interactions are.
+    return facet == Facet::Body || facet == Facet::Shaft ? Roster::Kind::Object : Roster::Kind::Interaction;
 }
 
 }  // namespace

@@ -130,8 +130,23 @@ std::vector<Batch*> Batches::all()
     return out;
 }
 
+/// A barrel and two balls: no form of its own, since its ends keep their shape where it is long.
+void Batches::add_capsule(const Item& item, const Frame& frame)
+{
+    Item part = item;
+    part.form = Form::Cylinder;
+    add(part, frame);
+    part.form = Form::Sphere;
+    for (const double end : {-item.size.z, item.size.z})
+    {
+        part.pose.p = item.pose * Vec3{0, 0, end};
+        add(part, frame);
+    }
+}
+
 void Batches::add(const Item& item, const Frame& frame)
 {
+    if (item.form == Form::Capsule) return add_capsule(item, frame);
     const Instance instance = instance_of(item, frame);
     if (item.form == Form::Mesh) return meshes_[item.mesh].add(instance);
     if (item.form != Form::Sphere) return box_and_cylinder_[item.form == Form::Box ? 0 : 1].add(instance);

@@ -58,6 +58,7 @@ public:
 private:
     Batches() = default;
     void add(const Item& item, const Frame& frame);
+    void add_capsule(const Item& item, const Frame& frame);
     std::vector<Batch*> all();
 
     std::vector<Batch> balls_;    ///< squares, coarse discs, round discs

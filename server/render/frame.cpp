@@ -95,6 +95,8 @@ double radius_of(const Item& item, const std::vector<double>& mesh_radii)
             return length(item.size);
         case Form::Cylinder:
             return length({item.size.x, item.size.z, 0});
+        case Form::Capsule:
+            return item.size.x + item.size.z;
         case Form::Plane:
             return 0;
         case Form::Mesh:

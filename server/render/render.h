@@ -24,7 +24,8 @@ enum class Form : std::uint8_t
 {
     Sphere,    ///< size.x: radius
     Box,       ///< size: half extents
-    Cylinder,  ///< size.x: radius, size.z: half length along z; for shafts without shapes
+    Cylinder,  ///< size.x: radius, size.z: half length along z
+    Capsule,   ///< size.x: radius, size.z: half length of its straight part along z
     Plane,     ///< z = 0 of its pose, as far as one can see
     Mesh,
 };

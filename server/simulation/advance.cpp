@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "plab/rotation.h"
+#include "simulation/island_step.h"
 #include "simulation/stepper.h"
 
 namespace plab::simulation
@@ -9,60 +10,35 @@ namespace plab::simulation
 
 void Stepper::advance_all()
 {
-    const bool contacts_rest = std::any_of(cache_.pairs().begin(), cache_.pairs().end(), [](const PairState& p) { return p.resting; });
-    if (contacts_rest || std::any_of(groups_.all.begin(), groups_.all.end(),
-                                     [](const Group& g) { return g.solver == kNoIndex && !(g.bodies.empty() && g.shafts.empty()); }))
+    cache_.forget_parked();
+    if (forces_.any()) forces_.begin_step();
+    if (held_->any()) held_->begin_step();
+    const bool contacts_rest =
+        held_->holds_joints() || std::any_of(cache_.pairs().begin(), cache_.pairs().end(), [](const PairState& p) { return p.resting; });
+    if (contacts_rest || (forces_.any() && forces_.may_touch()) ||
+        std::any_of(groups_.all.begin(), groups_.all.end(),
+                    [](const Group& g) { return g.solver == kNoIndex && !(g.bodies.empty() && g.shafts.empty() && g.quantities.empty()); }))
     {
         advance(island_all_, 0, frame_.step, {&work_, 1}, false);
     }
     else
         advance_batches();
-    if (rewinds_possible_) end_.save(world_.host());
+    if (!rewinds_possible_) return;
+    end_.save(world_.host());
+    if (forces_.any()) forces_.save_ends();
 }
 
-void Stepper::advance_batches()
+bool Stepper::run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events)
 {
-    if (!batches_ready_)
-    {
-        plan_batches();
-        for (std::size_t b = 0; b < batches_.size(); ++b) batch_systems_[b]->configure(frame_, batches_[b]);
-        batches_ready_ = true;
-    }
-    // The frame is new in each step; its pointers are the same.
-    for (std::size_t b = 0; b < batches_.size(); ++b) batch_systems_[b]->set_frame(frame_);
-    const auto job = [this](std::size_t b)
-    {
-        std::vector<double>& work = batches_.size() == 1 ? work_ : batch_work_[b];
-        batch_fine_[b] = run_clusters(*batch_systems_[b], batches_[b], {&work, 1}) ? 1 : 0;
-    };
-    if (batches_.size() == 1)
-        job(0);
-    else
-        workers_.run(batches_.size(), job);
-    for (std::size_t b = 0; b < batches_.size(); ++b)
-    {
-        if (!batch_fine_[b]) freeze(*batch_systems_[b]);
-        batch_systems_[b]->add_reactions(reactions_);
-        if (batches_.size() == 1) continue;
-        for (std::size_t i = 0; i < work_.size(); ++i) work_[i] += batch_work_[b][i];
-        std::fill(batch_work_[b].begin(), batch_work_[b].end(), 0.0);
-    }
-}
-
-bool Stepper::run_clusters(GroupSystem& system, const std::vector<std::uint32_t>& groups, WorkBook book)
-{
-    return run_solver(system, groups_.all[groups.front()].solver, 0, frame_.step, book, false);
-}
-
-bool Stepper::run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, bool trial)
-{
-    system.begin(from, to, book, trial ? nullptr : this);
+    system.begin(from, to, book, events);
     if (system.needs_solver() && solver != kNoIndex)
     {
         const world::Component& c = world_.component(solver);
         world::Table& table = *world_.tables()[c.table];
+        StepContext context = system.context();  // the solver's own rows: evaluations set it to those of forces
+        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
         PhaseCall call;
-        call.context = &system.context();
+        call.context = &context;
         call.rows = Rows(&c.row, 1);
         call.system = &system;
         for (const CommandInfo& command : table.type().info.commands)
@@ -79,6 +55,8 @@ void Stepper::split_by_contact(std::span<const std::uint32_t> groups)
         if (p.resting)
             for (const Ref r : {p.a, p.b})
                 if (const std::uint32_t g = groups_.of(r); g != kNoIndex && group_flags_[g]) group_flags_[g] = 2;
+    for (const std::uint32_t g : groups)
+        if (held_->holds_joints_of(g)) group_flags_[g] = 2;
     smooth_.clear(), in_contact_.clear();
     for (const std::uint32_t g : groups)
     {
@@ -103,23 +81,6 @@ void Stepper::collect_shadows(std::span<const std::uint32_t> groups)
     std::sort(shadows_.begin(), shadows_.end());
 }
 
-GroupSystem& Stepper::system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
-{
-    for (Cached& c : cached_systems_)
-        if (c.system && std::equal(c.groups.begin(), c.groups.end(), groups.begin(), groups.end()) &&
-            std::equal(c.shadows.begin(), c.shadows.end(), shadows.begin(), shadows.end()))
-        {
-            c.system->set_frame(frame_);
-            return *c.system;
-        }
-    Cached& c = cached_systems_[next_cached_++ % cached_systems_.size()];
-    if (!c.system) c.system = std::make_unique<GroupSystem>();
-    c.groups.assign(groups.begin(), groups.end());
-    c.shadows.assign(shadows.begin(), shadows.end());
-    c.system->configure(frame_, groups, shadows);
-    return *c.system;
-}
-
 void Stepper::advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial)
 {
     collect_shadows(groups);
@@ -133,37 +94,54 @@ void Stepper::advance(std::span<const std::uint32_t> groups, double from, double
             if (!together && segment_begin_[g] < from) advance_smooth(std::span(&g, 1), {}, segment_begin_[g], from, {}, true);
     }
     split_by_contact(groups);
+    if (forces_.any())
+    {
+        forces_.take(groups, smooth_, in_contact_, from, to);
+        forces_.advance(shadows_, from, to, book, trial);
+    }
     if (!in_contact_.empty()) advance_contacts(in_contact_, shadows_, from, to, book, trial);
     if (!smooth_.empty()) advance_smooth(smooth_, shadows_, from, to, book, trial);
     for (const std::uint32_t g : shadows_) restore_end(g);
 }
 
+bool Stepper::goes_alone(const Group& group) const
+{
+    return !group.rows.empty() || (group.solver != kNoIndex && !world_.type_of(group.solver)->info.elementwise);
+}
+
+/// Groups that are advanced in one system without changing a bit: those of one elementwise solver; the members of one
+/// cluster where the solver looks at its system as a whole, or joints do.
+void Stepper::collect_units(std::span<const std::uint32_t> groups)
+{
+    units_.clear();
+    const auto cluster_goes_alone = [&](std::uint32_t cluster)
+    {
+        return std::any_of(groups.begin(), groups.end(),
+                           [&](std::uint32_t g) { return groups_.all[g].cluster == cluster && goes_alone(groups_.all[g]); });
+    };
+    for (const std::uint32_t g : groups)
+    {
+        const Group& group = groups_.all[g];
+        const std::uint32_t rank = group.solver == kNoIndex ? kNoIndex : world_.rank(group.solver);
+        const bool alone = goes_alone(group) || (!group.upstream.empty() && cluster_goes_alone(group.cluster));
+        units_.push_back({rank, alone ? group.cluster : kNoIndex, g});
+    }
+    std::sort(units_.begin(), units_.end());
+}
+
 void Stepper::advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
                              WorkBook book, bool trial)
 {
-    // One system for each solver that occurs, in id order of the solvers.
-    solvers_.clear();
-    for (const std::uint32_t g : groups)
-        if (std::find(solvers_.begin(), solvers_.end(), groups_.all[g].solver) == solvers_.end()) solvers_.push_back(groups_.all[g].solver);
-    std::sort(solvers_.begin(), solvers_.end(),
-              [&](std::uint32_t a, std::uint32_t b)
-              {
-                  const auto rank = [&](std::uint32_t s) { return s == kNoIndex ? kNoIndex : world_.rank(s); };
-                  return rank(a) < rank(b);
-              });
-    if (solvers_.size() == 1)
+    collect_units(groups);
+    for (std::size_t i = 0; i < units_.size();)
     {
-        GroupSystem& system = system_for(groups, shadows);
-        finish_advance(system, run_solver(system, solvers_.front(), from, to, book, trial), to, trial);
-        return;
-    }
-    for (std::size_t i = 0; i < solvers_.size(); ++i)
-    {
-        same_solver_.clear();
-        for (const std::uint32_t g : groups)
-            if (groups_.all[g].solver == solvers_[i]) same_solver_.push_back(g);
-        GroupSystem& system = system_for(same_solver_, shadows);
-        finish_advance(system, run_solver(system, solvers_[i], from, to, book, trial), to, trial);
+        const std::size_t first = i;
+        same_unit_.clear();
+        for (; i < units_.size() && units_[i].solver_rank == units_[first].solver_rank && units_[i].cluster == units_[first].cluster; ++i)
+            same_unit_.push_back(units_[i].group);
+        GroupSystem& system = system_for(same_unit_, shadows);
+        const std::uint32_t solver = groups_.all[same_unit_.front()].solver;
+        finish_advance(system, run_solver(system, solver, from, to, book, sink_for(trial)), to, trial);
     }
 }
 
@@ -171,7 +149,9 @@ void Stepper::finish_advance(GroupSystem& system, bool finite, double to, bool t
 {
     if (trial) return;
     if (!finite) freeze(system);
-    if (to == frame_.step) system.add_reactions(reactions_);
+    if (to != frame_.step) return;
+    system.add_reactions(reactions_);
+    system.add_reports(row_reports_);
 }
 
 void Stepper::rewind(std::uint32_t g)
@@ -179,6 +159,8 @@ void Stepper::rewind(std::uint32_t g)
     const Group& group = groups_.all[g];
     for (const std::uint32_t b : group.bodies) segment_.restore_body(world_.host(), b);
     for (const std::uint32_t s : group.shafts) segment_.restore_shaft(world_.host(), s);
+    for (const std::uint32_t q : group.quantities) segment_.restore_quantities(world_.host(), q);
+    if (forces_.any()) forces_.rewind(g);
 }
 
 void Stepper::save_segment(std::uint32_t g)
@@ -186,6 +168,8 @@ void Stepper::save_segment(std::uint32_t g)
     const Group& group = groups_.all[g];
     for (const std::uint32_t b : group.bodies) segment_.save_body(world_.host(), b);
     for (const std::uint32_t s : group.shafts) segment_.save_shaft(world_.host(), s);
+    for (const std::uint32_t q : group.quantities) segment_.save_quantities(world_.host(), q);
+    if (forces_.any()) forces_.save_segment(g);
 }
 
 void Stepper::save_end(std::uint32_t g)
@@ -195,6 +179,8 @@ void Stepper::save_end(std::uint32_t g)
         for (const std::uint32_t b : *list) end_.save_body(world_.host(), b);
     for (const auto* list : {&group.shafts, &group.prescribed_shafts})
         for (const std::uint32_t s : *list) end_.save_shaft(world_.host(), s);
+    for (const std::uint32_t q : group.quantities) end_.save_quantities(world_.host(), q);
+    if (forces_.any()) forces_.save_end(g);
 }
 
 void Stepper::restore_end(std::uint32_t g)
@@ -204,6 +190,8 @@ void Stepper::restore_end(std::uint32_t g)
         for (const std::uint32_t b : *list) end_.restore_body(world_.host(), b);
     for (const auto* list : {&group.shafts, &group.prescribed_shafts})
         for (const std::uint32_t s : *list) end_.restore_shaft(world_.host(), s);
+    for (const std::uint32_t q : group.quantities) end_.restore_quantities(world_.host(), q);
+    if (forces_.any()) forces_.restore_end(g);
 }
 
 void Stepper::freeze(GroupSystem& system)
@@ -231,6 +219,12 @@ void Stepper::freeze(GroupSystem& system)
         start_.restore_shaft(host, s);
         host.shafts.speed[s] = 0;
         report({Facet::Shaft, s});
+    }
+    for (const std::uint32_t q : system.quantities())
+    {
+        if (is_finite(host.quantities, q)) continue;
+        start_.restore_quantities(host, q);
+        report({Facet::Quantities, q});
     }
 }
 

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "simulation/event_locator.h"
+#include "simulation/island_step.h"
 
 namespace plab::simulation
 {
@@ -14,11 +15,16 @@ Event Stepper::contact_event(const char* kind, const PairState& pair, double tim
     return e;
 }
 
-void Stepper::locate_events() { EventLocator(*this).run(found_); }
+void Stepper::locate_events()
+{
+    if (!locator_) locator_ = std::make_shared<EventLocator>(*this);
+    locator_->run(found_);
+}
 
 void Stepper::update_pair(PairState& pair, std::size_t begin, std::size_t end)
 {
     bool overlaps = false;
+    const std::uint32_t known = pair.count;
     for (std::size_t i = begin; i < end; ++i)
     {
         const Contact& c = found_[i].contact;
@@ -30,6 +36,7 @@ void Stepper::update_pair(PairState& pair, std::size_t begin, std::size_t end)
         return std::any_of(found_.begin() + static_cast<std::ptrdiff_t>(begin), found_.begin() + static_cast<std::ptrdiff_t>(end),
                            [&](const FoundContact& f) { return f.contact.feature == k.feature; });
     };
+    if (pair.resting) held_->pass_on(pair, known, std::span(found_).subspan(begin, end - begin));
     const auto past =
         std::remove_if(pair.contacts.begin(), pair.contacts.begin() + pair.count, [&](const KnownContact& k) { return !seen(k); });
     pair.count = static_cast<std::uint32_t>(past - pair.contacts.begin());
@@ -56,6 +63,13 @@ std::size_t Stepper::first_of_pair(const PairState& pair, std::size_t from) cons
 
 void Stepper::finish_contacts()
 {
+    if (forces_.any()) forces_.finish_step(found_);
+    if (held_->any())
+    {
+        held_->note_state();
+        held_->adopt(found_, frame_.start_time + frame_.step);
+    }
+    ease_overlaps();
     correct_positions();
     std::vector<PairState>& pairs = cache_.pairs();
     const double time = frame_.start_time + frame_.step;

@@ -4,20 +4,22 @@
 
 #include "plab/rotation.h"
 #include "simulation/clock.h"
+#include "simulation/island_step.h"
+#include "simulation/speculation.h"
 #include "simulation/stepper.h"
 
 namespace plab::simulation
 {
 
 void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
-                     std::vector<FoundContact>& out)
+                     std::vector<FoundContact>& out, double margin)
 {
     world::Table& table = *world_.tables()[detector.table];
     StepContext context;
     context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick, context.events = this;
     context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
     ContactCollector sink(world_, out);
-    sink.look_for(index, standing, only_standing);
+    sink.look_for(index, standing, only_standing, margin);
     PhaseCall call;
     call.context = &context, call.rows = Rows(&detector.row, 1);
     call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
@@ -33,12 +35,45 @@ void Stepper::detect_all(std::vector<FoundContact>& out)
     out.clear();
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
+        if (detectors_[d].by_rows && detectors_[d].persists())
+        {
+            detect_with_gaps(d, out);
+            continue;
+        }
         standing_.clear();
         for (const PairState& p : cache_.pairs())
             if (p.resting && p.detector == detectors_[d].component) standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
         detect(detectors_[d], d, standing_, false, out);
     }
     sort_contacts(out, world_);
+}
+
+/// Contacts of pairs that stand as soon as they touch: with the gaps that count as touching, or may close within the step. A
+/// function of poses (and speeds, where it speculates) alone, whatever was known before.
+void Stepper::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
+{
+    const Detector& detector = detectors_[index];
+    const Bodies& bodies = world_.host().bodies;
+    double margin = kOverlapTolerance;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+        if (bodies.dynamic(b) && std::isfinite(radius_of_body_[b])) margin = std::max(margin, kStandingShare * radius_of_body_[b]);
+    const double acceleration = detector.speculates ? speculative_acceleration(detector) : 0.0;
+    if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, frame_.step));
+    const std::size_t first = out.size();
+    detect(detector, index, {}, false, out, margin);
+    const auto far = [&](const FoundContact& f)
+    {
+        if (f.contact.depth > -standing_margin(f.contact.a, f.contact.b)) return false;
+        return !detector.speculates || !may_close(bodies, radius_of_body_, f.contact, acceleration, frame_.step);
+    };
+    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
+}
+
+double Stepper::speculative_acceleration(const Detector& detector) const
+{
+    const Field* field = world_.table_of(detector.resolution).schema().find_field("acceleration");
+    const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
+    return column ? (*column)[world_.component(detector.resolution).row] : 0.0;
 }
 
 void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out)
@@ -63,6 +98,7 @@ void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vect
         PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_);
         const KnownContact& known = cache_.contact_of(*pair, f.contact.feature);
         f.contact.id = known.id, f.contact.impulse = known.impulse;
+        f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
         // Seen with b moved towards a: half of the way back is where the two surfaces meet.
         f.contact.point += pair->normal * (0.5 * standing_margin(*pair));
         fill_material(f);
@@ -78,8 +114,15 @@ void Stepper::fill_material(FoundContact& f) const
         f.contact.friction = law->friction, f.contact.restitution = law->restitution;
         return;
     }
-    const std::uint32_t response = detectors_[f.detector].response;
-    if (response == kNoIndex) return;
+    const SurfaceLaw law = response_law(f.detector);
+    f.contact.friction = law.friction, f.contact.restitution = law.restitution;
+}
+
+/// Where no Material/Pair says otherwise.
+SurfaceLaw Stepper::response_law(std::uint32_t detector) const
+{
+    const std::uint32_t response = detectors_[detector].response;
+    if (response == kNoIndex) return {};
     const Row row = world_.component(response).row;
     const auto number = [&](const char* name)
     {
@@ -87,12 +130,14 @@ void Stepper::fill_material(FoundContact& f) const
         const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
         return column ? (*column)[row] : 0.0;
     };
-    f.contact.friction = number("friction"), f.contact.restitution = number("restitution");
+    return {number("friction"), number("restitution")};
 }
 
-double Stepper::standing_margin(const PairState& pair) const
+double Stepper::standing_margin(const PairState& pair) const { return standing_margin(pair.a, pair.b); }
+
+double Stepper::standing_margin(Ref a, Ref b) const
 {
-    const double radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
+    const double radius = std::min(radius_of_body_[a.index], radius_of_body_[b.index]);
     return std::max(kOverlapTolerance, std::isfinite(radius) ? kStandingShare * radius : 0.0);
 }
 
@@ -155,8 +200,11 @@ void Stepper::advance_contacts(std::span<const std::uint32_t> groups, std::span<
     for (const PairState& p : cache_.pairs())
         if (p.resting && world_.host().bodies.dynamic(p.a.index) && world_.host().bodies.dynamic(p.b.index))
             islands_.join(groups_.of(p.a), groups_.of(p.b));
-    // Islands in the order of their first group; members keep their order.
+    if (extra_) forces_.join(islands_);
     contact_groups_.assign(groups.begin(), groups.end());
+    held_->take(contact_groups_, islands_);
+    if (held_->holds_any()) held_->advance(shadows, islands_, from, to, book, trial);
+    // Islands in the order of their first group; members keep their order.
     done_.assign(groups_.all.size(), 0);
     for (const std::uint32_t first : contact_groups_)
     {

@@ -39,6 +39,19 @@ PairState& ContactCache::get_or_add(std::uint32_t detector, Ref a, Ref b, const 
     return *pairs_.insert(at, fresh);
 }
 
+void ContactCache::add_sorted(std::span<const PairState> fresh, const world::World& world)
+{
+    if (fresh.empty()) return;
+    // Merged from the back, so that each pair moves once.
+    std::size_t old = pairs_.size(), at = old + fresh.size();
+    pairs_.resize(at);
+    for (std::size_t next = fresh.size(); next > 0;)
+    {
+        const bool old_is_later = old > 0 && key_of(world, fresh[next - 1]) < key_of(world, pairs_[old - 1]);
+        pairs_[--at] = old_is_later ? pairs_[--old] : fresh[--next];
+    }
+}
+
 KnownContact& ContactCache::contact_of(PairState& pair, std::uint32_t feature)
 {
     for (std::uint32_t i = 0; i < pair.count; ++i)
@@ -46,7 +59,8 @@ KnownContact& ContactCache::contact_of(PairState& pair, std::uint32_t feature)
     // A full manifold gives its last place away: ids beyond it are of no use to anybody.
     const std::uint32_t place = std::min<std::uint32_t>(pair.count, PairState::kMostContacts - 1);
     pair.count = place + 1;
-    pair.contacts[place] = {feature, next_id_++, {}};
+    pair.contacts[place] = {};
+    pair.contacts[place].feature = feature, pair.contacts[place].id = next_id_++;
     return pair.contacts[place];
 }
 
@@ -64,9 +78,11 @@ void ContactCache::refresh(const world::World& world, const std::vector<Detector
     {
         // Where nobody responds any more nothing stands: a sensor holds no body up.
         const bool answered =
-            std::any_of(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == p.detector && d.responds; });
+            std::any_of(detectors.begin(), detectors.end(),
+                        [&](const Detector& d) { return d.component == p.detector && (d.responds || d.by_rows || d.by_force); });
         if (answered) continue;
         p.resting = false;
+        p.bounces = {};
         for (KnownContact& k : p.contacts) k.impulse = {};
     }
     std::sort(pairs_.begin(), pairs_.end(), [&](const PairState& x, const PairState& y) { return key_of(world, x) < key_of(world, y); });
@@ -86,22 +102,87 @@ void ContactCache::save(const world::World& world, ByteWriter& out) const
             write(out, p.contacts[i].feature);
             write(out, p.contacts[i].id);
             write(out, p.contacts[i].impulse);
+            // Only where somebody remembers: contacts that do not keep the bytes that they always had.
+            const KnownContact& k = p.contacts[i];
+            if (k.stretch == Vec3{} && k.rest_depth == 0 && k.preload == 0) continue;
+            write(out, k.stretch);
+            write(out, k.rest_depth);
+            write(out, k.preload);
+        }
+        if (p.bounces == BounceHistory{}) continue;
+        write(out, p.bounces.time);
+        write(out, p.bounces.interval);
+        write(out, p.bounces.previous);
+    }
+    save_force_pairs(world, out);
+}
+
+void ContactCache::save_force_pairs(const world::World& world, ByteWriter& out) const
+{
+    for (const ForcePair& p : force_pairs_)
+    {
+        // By name: who else there is in the scene is no part of their state.
+        write(out, world.id_of(p.a));
+        write(out, world.id_of(p.b));
+        for (const ForceContact& c : p.all())
+        {
+            write(out, c.feature);
+            write(out, c.id);
+            for (const Vec3& v : {c.stretch, c.impulse, c.force}) write(out, v);
+            for (const double x : {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.lively, c.liveliest})
+                write(out, x);
+            write(out, c.told);
         }
     }
 }
 
+namespace
+{
+
+/// The first command of a phase that takes part; null if there is none.
+const CommandInfo* find_command(const world::World& world, std::uint32_t component, Phase phase)
+{
+    if (component == kNoIndex || world.component(component).quarantined) return nullptr;
+    const auto& c = world.component(component);
+    const auto& commands = world.type_of(component)->info.commands;
+    for (std::size_t k = 0; k < commands.size(); ++k)
+        if (commands[k].phase == phase && commands[k].run && (c.commands & (1ull << k))) return &commands[k];
+    return nullptr;
+}
+
+std::uint32_t manager_of(const world::World& world, std::uint32_t response)
+{
+    for (const Role& role : world.table_of(response).schema().roles())
+        if (role.name == "manager" && role.one) return (*role.one)[world.component(response).row].index;
+    return kNoIndex;
+}
+
+/// What the detector's resolution and response say of themselves.
+void describe(Detector& d, const world::World& world)
+{
+    d.responds = find_command(world, d.response, Phase::Respond) != nullptr;
+    // A gap is measured wherever there is a resolution that needs it, whatever the stage lists select.
+    for (const CommandInfo& command : world.type_of(d.component)->info.commands)
+        if (command.phase == Phase::Gap && command.run) d.gap = &command;
+    if (d.response != kNoIndex && !world.component(d.response).quarantined)
+    {
+        const TypeInfo& response = world.type_of(d.response)->info;
+        d.by_rows = response.by_rows, d.by_force = response.by_force;
+        if (d.by_rows) d.manager = manager_of(world, d.response);
+    }
+    if (!find_command(world, d.resolution, Phase::Locate)) return;
+    const TypeInfo& resolution = world.type_of(d.resolution)->info;
+    d.speculates = resolution.speculates;
+    d.locates = resolution.locates && !d.by_force;
+    d.local = d.locates && resolution.local;
+    d.certifies = d.local && resolution.certifies && d.gap;
+}
+
+}  // namespace
+
 std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule)
 {
     std::vector<Detector> out;
-    const auto runs = [&](std::uint32_t component, Phase phase)
-    {
-        if (component == kNoIndex || world.component(component).quarantined) return false;
-        const auto& c = world.component(component);
-        const auto& commands = world.type_of(component)->info.commands;
-        for (std::size_t k = 0; k < commands.size(); ++k)
-            if (commands[k].phase == phase && commands[k].run && (c.commands & (1ull << k))) return true;
-        return false;
-    };
     for (const Block& block : schedule.of(Phase::Detect))
         for (const Row row : block.rows)
         {
@@ -113,9 +194,7 @@ std::vector<Detector> find_detectors(const world::World& world, const Schedule& 
                 if (role.name == "resolution" && role.one) d.resolution = (*role.one)[row].index;
                 if (role.name == "response" && role.one) d.response = (*role.one)[row].index;
             }
-            d.responds = runs(d.response, Phase::Respond);
-            d.locates = runs(d.resolution, Phase::Locate) && world.type_of(d.resolution)->info.locates;
-            d.local = d.locates && world.type_of(d.resolution)->info.local;
+            describe(d, world);
             out.push_back(d);
         }
     std::sort(out.begin(), out.end(),
@@ -127,7 +206,10 @@ void sort_contacts(std::vector<FoundContact>& contacts, const world::World& worl
 {
     const auto key = [&](const FoundContact& f)
     { return std::tuple(f.detector, world.rank(f.contact.a), world.rank(f.contact.b), f.contact.feature); };
-    std::sort(contacts.begin(), contacts.end(), [&](const FoundContact& x, const FoundContact& y) { return key(x) < key(y); });
+    // Detectors mostly deliver in this order already.
+    const auto before = [&](const FoundContact& x, const FoundContact& y) { return key(x) < key(y); };
+    if (std::is_sorted(contacts.begin(), contacts.end(), before)) return;
+    std::sort(contacts.begin(), contacts.end(), before);
 }
 
 }  // namespace plab::simulation

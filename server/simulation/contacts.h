@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "simulation/contact_force_pair.h"
 #include "simulation/group_system.h"
 
 namespace plab::simulation
@@ -21,8 +22,16 @@ struct Detector
     const CommandInfo* command = nullptr;
     std::uint32_t resolution = kNoIndex;  ///< component
     std::uint32_t response = kNoIndex;    ///< component
+    std::uint32_t manager = kNoIndex;     ///< component; of a response by rows
+    const CommandInfo* gap = nullptr;     ///< measures how far two bodies are apart; null: it cannot
     bool locates = false, local = false;
-    bool responds = false;  ///< the response has a command and takes part
+    bool certifies = false;   ///< the resolution looks inside the step
+    bool speculates = false;  ///< gaps that may close within the step are contacts, with depth < 0
+    bool responds = false;    ///< the response has a command for impacts and takes part
+    bool by_rows = false;     ///< the response leaves contacts to a manager
+    bool by_force = false;    ///< the response is a force
+    /// Contacts are no events: a touching pair is a standing pair at once, and a manager or a force answers it.
+    bool persists() const { return by_force || (by_rows && !locates); }
 };
 
 /// A contact as found now, with the index of its detector.
@@ -36,7 +45,19 @@ struct KnownContact
 {
     std::uint32_t feature = 0;
     std::uint64_t id = 0;
-    Vec3 impulse;  ///< N s per step on b, for warm starts
+    Vec3 impulse;           ///< N s per step on b, for warm starts
+    Vec3 stretch;           ///< m, as in Contact: what contacts that are forces remember
+    double rest_depth = 0;  ///< m
+    double preload = 0;     ///< N
+};
+
+/// The last impacts of a pair, to see where a sequence of bounces ends.
+struct BounceHistory
+{
+    double time = 0;      ///< s, of the last impact
+    double interval = 0;  ///< s, between the last two; 0: none yet
+    double previous = 0;  ///< s, the interval before
+    friend bool operator==(const BounceHistory&, const BounceHistory&) = default;
 };
 
 struct PairState
@@ -51,6 +72,9 @@ struct PairState
     Vec3 normal;               ///< of the last contact seen, a to b
     std::uint32_t count = 0;
     std::array<KnownContact, kMostContacts> contacts;
+    BounceHistory bounces;
+    std::uint32_t impacts = 0;  ///< in the step `impacts_tick`; not saved: a step begins with none
+    Tick impacts_tick = -1;
 };
 
 /// All known pairs, sorted by detector, a and b in id order.
@@ -59,17 +83,30 @@ class ContactCache
 public:
     PairState* find(std::uint32_t detector, Ref a, Ref b, const world::World& world);
     PairState& get_or_add(std::uint32_t detector, Ref a, Ref b, const world::World& world, Tick now, bool& added);
+    /// Adds pairs that are not known yet, in one pass. `fresh` is sorted as pairs() are.
+    void add_sorted(std::span<const PairState> fresh, const world::World& world);
     std::vector<PairState>& pairs() { return pairs_; }
     const std::vector<PairState>& pairs() const { return pairs_; }
     /// The id under which a feature of the pair is known; a new one if it is new.
     KnownContact& contact_of(PairState& pair, std::uint32_t feature);
     /// Drops pairs whose detector or bodies are gone and sorts the rest anew, after a structural change.
     void refresh(const world::World& world, const std::vector<Detector>& detectors);
-    void clear() { pairs_.clear(), next_id_ = 1; }
+    void clear() { *this = {}; }
+    std::uint64_t new_id() { return next_id_++; }
+    /// Pairs whose contacts are forces, in the same order.
+    std::vector<ForcePair>& force_pairs() { return force_pairs_; }
+    const std::vector<ForcePair>& force_pairs() const { return force_pairs_; }
+    /// Pairs as they were before a swap made other ones of them at the present boundary: swapping back brings them back.
+    std::vector<PairState>& parked_pairs() { return parked_pairs_; }
+    std::vector<ForcePair>& parked_force_pairs() { return parked_force_pairs_; }
+    void forget_parked() { parked_pairs_.clear(), parked_force_pairs_.clear(); }
     void save(const world::World& world, ByteWriter& out) const;
 
 private:
-    std::vector<PairState> pairs_;
+    void save_force_pairs(const world::World& world, ByteWriter& out) const;
+
+    std::vector<PairState> pairs_, parked_pairs_;
+    std::vector<ForcePair> force_pairs_, parked_force_pairs_;
     std::uint64_t next_id_ = 1;
 };
 
@@ -81,12 +118,13 @@ class ContactCollector final : public ContactSink
 {
 public:
     ContactCollector(const world::World& world, std::vector<FoundContact>& out) : world_(&world), out_(&out) {}
-    void look_for(std::uint32_t detector, std::span<const StandingPair> standing, bool only_standing)
+    void look_for(std::uint32_t detector, std::span<const StandingPair> standing, bool only_standing, double margin = 0)
     {
-        detector_ = detector, standing_ = standing, only_standing_ = only_standing;
+        detector_ = detector, standing_ = standing, only_standing_ = only_standing, margin_ = margin;
     }
     std::span<const StandingPair> standing() const override { return standing_; }
     bool only_standing() const override { return only_standing_; }
+    double margin() const override { return margin_; }
     void add(const Contact& contact) override { out_->push_back({contact, detector_}); }
     bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
 
@@ -96,6 +134,31 @@ private:
     std::uint32_t detector_ = 0;
     std::span<const StandingPair> standing_;
     bool only_standing_ = false;
+    double margin_ = 0;
+};
+
+/// Collects the pairs that may meet, given how far each body may get.
+class NearCollector final : public ContactSink
+{
+public:
+    struct Pair
+    {
+        Ref a, b;
+    };
+    NearCollector(const world::World& world, std::span<const double> reach, std::vector<Pair>& out)
+        : world_(&world), reach_(reach), out_(&out)
+    {
+    }
+    std::span<const StandingPair> standing() const override { return {}; }
+    std::span<const double> reach() const override { return reach_; }
+    void near(Ref a, Ref b) override { out_->push_back({a, b}); }
+    void add(const Contact&) override {}
+    bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
+
+private:
+    const world::World* world_;
+    std::span<const double> reach_;
+    std::vector<Pair>* out_;
 };
 
 /// By detector, bodies in id order, feature: no library's order reaches the state.

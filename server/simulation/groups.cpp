@@ -41,8 +41,8 @@ Participation participation(const world::World& world, std::uint32_t component)
     Participation p;
     for (const Role& role : world.table_of(component).schema().roles())
     {
-        const bool in_space =
-            std::any_of(role.facets.begin(), role.facets.end(), [](Facet f) { return f == Facet::Body || f == Facet::Shaft; });
+        const bool in_space = std::any_of(role.facets.begin(), role.facets.end(),
+                                          [](Facet f) { return f == Facet::Body || f == Facet::Shaft || f == Facet::Quantities; });
         if (!in_space) continue;
         for (const Ref ref : world.participants(component, role)) (role.writes ? p.acts_on : p.reads).push_back(ref);
         if (role.writes && !role.independent) p.joins = true;
@@ -52,11 +52,13 @@ Participation participation(const world::World& world, std::uint32_t component)
 
 bool is_dynamic(const world::HostTables& host, Ref ref)
 {
+    if (ref.facet == Facet::Quantities) return true;
     return ref.facet == Facet::Body ? host.bodies.dynamic(ref.index) : host.shafts.dynamic(ref.index);
 }
 
 Motion motion_of(const world::HostTables& host, Ref ref)
 {
+    if (ref.facet == Facet::Quantities) return Motion::Dynamic;
     return ref.facet == Facet::Body ? host.bodies.motion[ref.index] : host.shafts.motion[ref.index];
 }
 
@@ -81,7 +83,7 @@ private:
     template <class Visit>
     void for_each_interaction(Visit visit) const
     {
-        for (const Phase phase : {Phase::Force, Phase::Couple, Phase::Connect}) for_each_row(phase, visit);
+        for (const Phase phase : {Phase::Force, Phase::Couple, Phase::Constrain, Phase::Connect}) for_each_row(phase, visit);
     }
 
     template <class Visit>
@@ -109,11 +111,12 @@ private:
     {
         groups_.group_of_body.assign(world_.host().bodies.size(), kNoIndex);
         groups_.group_of_shaft.assign(world_.host().shafts.size(), kNoIndex);
+        groups_.group_of_quantities.assign(world_.host().quantities.size(), kNoIndex);
         std::vector<std::uint32_t> group_of_rank(world_.in_id_order().size(), kNoIndex);
         for (const std::uint32_t i : world_.in_id_order())
         {
             const world::Component& c = world_.component(i);
-            if (c.facet != Facet::Body && c.facet != Facet::Shaft) continue;
+            if (c.facet != Facet::Body && c.facet != Facet::Shaft && c.facet != Facet::Quantities) continue;
             const Ref ref = c.ref(i);
             const Motion motion = motion_of(world_.host(), ref);
             if (motion == Motion::Static) continue;
@@ -124,6 +127,12 @@ private:
                 groups_.all.emplace_back();
             }
             Group& group = groups_.all[g];
+            if (c.facet == Facet::Quantities)
+            {
+                groups_.group_of_quantities[ref.index] = g;
+                group.quantities.push_back(ref.index);
+                continue;
+            }
             const bool body = c.facet == Facet::Body;
             (body ? groups_.group_of_body : groups_.group_of_shaft)[ref.index] = g;
             if (motion == Motion::Kinematic)
@@ -135,7 +144,7 @@ private:
 
     void link_rows()
     {
-        for (const Phase phase : {Phase::Force, Phase::Couple})
+        for (const Phase phase : {Phase::Force, Phase::Couple, Phase::Constrain})
             for_each_row(phase,
                          [&](std::uint32_t component, std::uint32_t block, Row row)
                          {
@@ -143,8 +152,9 @@ private:
                              for (const Ref ref : p.acts_on)
                              {
                                  if (groups_.of(ref) == kNoIndex) continue;
+                                 if (phase == Phase::Constrain && !is_dynamic(world_.host(), ref)) continue;
                                  Group& group = groups_.all[groups_.of(ref)];
-                                 auto& rows = phase == Phase::Force ? group.forces : group.couplings;
+                                 auto& rows = phase == Phase::Force ? group.forces : phase == Phase::Couple ? group.couplings : group.rows;
                                  rows.push_back({block, world_.rank(component), row});
                                  // A participant that is acted on is read as well: a force between two feels both.
                                  for (const auto* others : {&p.reads, &p.acts_on})
@@ -155,7 +165,7 @@ private:
                              }
                          });
         for (Group& group : groups_.all)
-            for (auto* list : {&group.forces, &group.couplings})
+            for (auto* list : {&group.forces, &group.couplings, &group.rows})
             {
                 std::sort(list->begin(), list->end());
                 list->erase(std::unique(list->begin(), list->end()), list->end());
@@ -214,6 +224,7 @@ private:
         {
             for (const std::uint32_t b : group.bodies) consider(group, {Facet::Body, b});
             for (const std::uint32_t s : group.shafts) consider(group, {Facet::Shaft, s});
+            for (const std::uint32_t q : group.quantities) consider(group, {Facet::Quantities, q});
         }
         for (Group& group : groups_.all)
         {

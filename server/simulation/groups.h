@@ -12,7 +12,7 @@
 namespace plab::simulation
 {
 
-/// A row of Schedule::of(Phase::Force) or Couple that acts on a group.
+/// A row of Schedule::of(Phase::Force), Couple or Constrain that acts on a group.
 struct BlockRow
 {
     std::uint32_t block = 0;
@@ -25,9 +25,10 @@ struct Group
 {
     std::vector<std::uint32_t> bodies;                                ///< dynamic, in id order
     std::vector<std::uint32_t> shafts;                                ///< dynamic, in id order
+    std::vector<std::uint32_t> quantities;                            ///< in id order
     std::vector<std::uint32_t> prescribed_bodies, prescribed_shafts;  ///< a group of its own for each
     std::vector<std::uint32_t> upstream;                              ///< groups whose state its forces read, ascending
-    std::vector<BlockRow> forces, couplings;
+    std::vector<BlockRow> forces, couplings, rows;
     std::uint32_t solver = kNoIndex;  ///< component; kNoIndex for prescribed motion
     bool mixed_solvers = false;       ///< members named different ones; the one of highest order was taken
     std::uint32_t cluster = 0;        ///< groups joined by reading, advanced in one batch
@@ -36,7 +37,7 @@ struct Group
 struct Groups
 {
     std::vector<Group> all;
-    std::vector<std::uint32_t> group_of_body, group_of_shaft;  ///< kNoIndex: static
+    std::vector<std::uint32_t> group_of_body, group_of_shaft, group_of_quantities;  ///< kNoIndex: static
     std::uint32_t clusters = 0;
     std::vector<std::uint8_t> cluster_has_couplings;  ///< by cluster: sweeps are needed
 
@@ -44,6 +45,7 @@ struct Groups
     {
         if (ref.facet == Facet::Body) return group_of_body[ref.index];
         if (ref.facet == Facet::Shaft) return group_of_shaft[ref.index];
+        if (ref.facet == Facet::Quantities) return group_of_quantities[ref.index];
         return kNoIndex;
     }
 };

@@ -22,7 +22,7 @@ void ShaftSystem::configure(const world::World& world, const Schedule& schedule,
 {
     world_ = &world, schedule_ = &schedule, graph_ = &graph;
     count_ = 0;
-    part_of_shaft_.assign(world.host().shafts.size(), kNoIndex);
+    part_of_shaft_.clear();
     for (const std::uint32_t g : members)
     {
         const Group& group = groups.all[g];
@@ -34,6 +34,8 @@ void ShaftSystem::configure(const world::World& world, const Schedule& schedule,
         part.prescribed.insert(part.prescribed.end(), group.prescribed_shafts.begin(), group.prescribed_shafts.end());
         part.couplings.insert(part.couplings.end(), group.couplings.begin(), group.couplings.end());
     }
+    if (count_ == 0) return;
+    part_of_shaft_.assign(world.host().shafts.size(), kNoIndex);
     const auto by_rank = [&](std::uint32_t a, std::uint32_t b) {
         return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b});
     };

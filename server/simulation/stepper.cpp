@@ -30,11 +30,21 @@ void Stepper::step(Tick tick, double start_time, double dt)
     frame_ = {&world_, &schedule_, &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed};
     for (const StepNode& node : kStepTree)
         if ((this->*node.needed)()) (this->*node.run)();
-    for (const auto& system : batch_systems_) system->collect_cost(cost_.by_table);
-    for (Cached& c : cached_systems_)
-        if (c.system) c.system->collect_cost(cost_.by_table);
+    collect_cost();
     ++cost_.steps;
     cost_.total += now_ns() - before;
+}
+
+void Stepper::collect_cost()
+{
+    report_.evaluations += pool_.scratch().evaluations;
+    pool_.scratch().collect(cost_.by_table);
+    for (Batch& batch : batches_)
+    {
+        if (!batch.scratch) continue;
+        report_.evaluations += batch.scratch->evaluations;
+        batch.scratch->collect(cost_.by_table);
+    }
 }
 
 void Stepper::save_start()
@@ -54,6 +64,7 @@ void Stepper::drive()
     PhaseCall call;
     call.context = &context;
     call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
+    call.quantities = &world_.host().quantities;
     for (const Block& block : schedule_.of(Phase::Drive))
     {
         world::Table& table = *world_.tables()[block.table];
@@ -82,6 +93,19 @@ void Stepper::couple_speeds()
     emit(std::move(e));
 }
 
+void Stepper::project_speeds()
+{
+    // Joints that came, or speeds that a request has set: what cannot move together gets common speeds by impulses.
+    joints_are_new_ = false;
+    for (std::uint32_t g = 0; g < groups_.all.size(); ++g)
+    {
+        if (groups_.all[g].rows.empty()) continue;
+        GroupSystem& system = system_for(std::span(&g, 1), {});
+        system.begin(0, frame_.step, {}, nullptr);
+        (void)system.rows()->project_speeds(system.context(), &work_);
+    }
+}
+
 void Stepper::draw()
 {
     const Sight sight = sight_.look(world_);
@@ -108,7 +132,8 @@ void Stepper::finish()
     PhaseCall call;
     call.context = &context;
     call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
-    call.reactions = &reactions_;
+    call.quantities = &world_.host().quantities;
+    call.reactions = &reactions_, call.row_reports = &row_reports_;
     for (const Block& block : schedule_.of(Phase::Finish))
     {
         world::Table& table = *world_.tables()[block.table];

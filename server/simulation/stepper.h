@@ -4,9 +4,11 @@
 #include <array>
 #include <memory>
 
+#include "simulation/contact_forces.h"
 #include "simulation/contacts.h"
 #include "simulation/shaft_reactions.h"
 #include "simulation/sight.h"
+#include "simulation/system_pool.h"
 #include "simulation/worker_pool.h"
 
 namespace plab::simulation
@@ -19,10 +21,11 @@ struct StepReport
     int trials = 0;   ///< trial advances made to locate them
     int rewinds = 0;  ///< groups rewound
     int resting_pairs = 0;
-    double worst_residual = 0;     ///< m/s, left over by contact responses
-    double coupling_residual = 0;  ///< relative, left over by shaft couplings
-    double deepest = 0;            ///< m, overlap left at the end of the step
-    std::vector<Ref> frozen;       ///< objects whose state was not finite any more
+    std::uint64_t evaluations = 0;  ///< of forces, summed over the systems that solvers advanced, trials included
+    double worst_residual = 0;      ///< m/s, left over by contact responses
+    double coupling_residual = 0;   ///< relative, left over by shaft couplings
+    double deepest = 0;             ///< m, overlap left at the end of the step
+    std::vector<Ref> frozen;        ///< objects whose state was not finite any more
 };
 
 /// CPU time by component type and phase, and per step; ns.
@@ -32,6 +35,38 @@ struct CostBook
     std::uint64_t steps = 0;
     std::uint64_t total = 0;
 };
+
+/// Events of one thread, until all threads are done.
+class EventBuffer final : public EventSink
+{
+public:
+    void emit(Event event) override { events.push_back(std::move(event)); }
+    std::vector<Event> events;
+};
+
+/// What one thread advances: whole clusters of groups.
+struct Batch
+{
+    struct Part
+    {
+        std::uint32_t solver = kNoIndex;
+        std::vector<std::uint32_t> groups;
+        std::unique_ptr<GroupSystem> system;
+        bool fine = true;
+    };
+    /// Clusters of one solver share a part where that changes no bit (`together`).
+    void add(std::span<const std::uint32_t> cluster, std::uint32_t solver, bool together);
+
+    std::vector<Part> parts;
+    std::size_t load = 0;
+    std::vector<double> work;
+    std::unique_ptr<StageScratch> scratch;
+    EventBuffer events;
+};
+
+class EventLocator;
+
+class HeldIslands;
 
 class Stepper final : public EventSink
 {
@@ -51,6 +86,7 @@ public:
     const ConstraintGraph& graph() const { return graph_; }
     const std::vector<Detector>& detectors() const { return detectors_; }
     ContactCache& contacts() { return cache_; }
+    const ContactForces& forces() const { return forces_; }
     const ContactCache& contacts() const { return cache_; }
     const std::vector<FoundContact>& touching() const { return found_; }
     std::vector<double>& work() { return work_; }  ///< J by component, since the run began
@@ -84,6 +120,7 @@ public:
     void save_start();
     void drive();
     void couple_speeds();
+    void project_speeds();
     void advance_all();
     void locate_events();
     void finish_contacts();
@@ -92,6 +129,7 @@ public:
 
     bool anything_moves() const { return !groups_.all.empty(); }
     bool anything_drives() const { return !schedule_.of(Phase::Drive).empty(); }
+    bool joints_are_new() const { return joints_are_new_; }
     bool anything_couples() const { return !schedule_.of(Phase::Couple).empty() || !graph_.trees().empty(); }
     bool anything_collides() const { return !detectors_.empty(); }
     bool anything_finishes() const { return !schedule_.of(Phase::Finish).empty(); }
@@ -99,6 +137,8 @@ public:
 
 private:
     friend class EventLocator;
+    friend class ContactForces;
+    friend class HeldIslands;
 
     // stepper_build.cpp
     void connect_materials(Errors& errors);
@@ -106,16 +146,22 @@ private:
     Errors run_connect(const Block& block, PhaseCall call);
     void measure_bodies();
     void plan_batches();
+    Batch& lightest_batch(std::size_t total_load);
+    void run_batch(Batch& batch, std::vector<double>& work);
+    void emit_in_order();
+    void collect_cost();
 
     // advance.cpp. A trial emits no events and freezes nobody.
     void advance_batches();
-    bool run_clusters(GroupSystem& system, const std::vector<std::uint32_t>& groups, WorkBook book);
     void advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial);
     void advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
                         WorkBook book, bool trial);
     void advance_contacts(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
                           WorkBook book, bool trial);
-    bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, bool trial);
+    bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events);
+    bool goes_alone(const Group& group) const;
+    void collect_units(std::span<const std::uint32_t> groups);
+    EventSink* sink_for(bool trial) { return trial ? nullptr : this; }
     void split_by_contact(std::span<const std::uint32_t> groups);
     void collect_shadows(std::span<const std::uint32_t> groups);
     void finish_advance(GroupSystem& system, bool finite, double to, bool trial);
@@ -128,10 +174,14 @@ private:
 
     // contact_step.cpp
     void detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
-                std::vector<FoundContact>& out);
+                std::vector<FoundContact>& out, double margin = 0);
+    double speculative_acceleration(const Detector& detector) const;
+    void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
     void detect_all(std::vector<FoundContact>& out);
     void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out);
     void fill_material(FoundContact& found) const;
+    SurfaceLaw response_law(std::uint32_t detector) const;
+    double standing_margin(Ref a, Ref b) const;
     void respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book);
     void advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
                         WorkBook book, bool trial);
@@ -141,6 +191,17 @@ private:
         return x.detector == y.detector && x.contact.a == y.contact.a && x.contact.b == y.contact.b;
     }
     void correct_positions();
+
+    // contact_force_swap.cpp
+    struct Eased
+    {
+        KnownContact* known = nullptr;
+        FoundContact* found = nullptr;
+    };
+    void ease_overlaps();
+    void ease_pair(PairState& pair);
+    double share_of_overlap_left(const PairState& pair, std::span<const Eased> eased) const;
+
     void part(std::size_t begin, std::size_t end);
     bool is_of_pair(const FoundContact& f, const PairState& pair) const;
     std::size_t first_of_pair(const PairState& pair, std::size_t from) const;
@@ -158,32 +219,35 @@ private:
     Groups groups_;
     ConstraintGraph graph_;
     ShaftTorques reactions_;
+    RowReportTable row_reports_;
     std::vector<Detector> detectors_;
     ContactCache cache_;
+    ContactForces forces_{*this};
+    std::shared_ptr<HeldIslands> held_;   ///< likewise
+    ExtraForces* extra_ = nullptr;        ///< of all systems that are set up now
     std::vector<double> radius_of_body_;  ///< m, about C; infinite for planes
     WorkerPool workers_;
+
+    std::shared_ptr<EventLocator> locator_;  ///< shared only so that its type need not be known here
 
     StepFrame frame_;
     world::MotionMemento start_, segment_, end_;
     std::vector<double> segment_begin_;  ///< s, by group: where its present smooth piece began
     bool rewinds_possible_ = false;
 
-    std::vector<std::vector<std::uint32_t>> batches_;  ///< groups, by whole clusters
-    std::vector<std::unique_ptr<GroupSystem>> batch_systems_;
-    std::vector<std::uint8_t> batch_fine_;
-    std::vector<std::vector<double>> batch_work_;
+    std::vector<Batch> batches_;
     bool batches_ready_ = false;
-
-    struct Cached
-    {
-        std::vector<std::uint32_t> groups, shadows;
-        std::unique_ptr<GroupSystem> system;
-    };
-    std::array<Cached, 4> cached_systems_;
-    std::size_t next_cached_ = 0;
+    bool joints_are_new_ = false;  ///< the structure has changed, and there are joints
+    SystemPool pool_;
 
     // Working lists, kept warm.
-    std::vector<std::uint32_t> smooth_, in_contact_, shadows_, island_, island_all_, solvers_, same_solver_;
+    struct Unit
+    {
+        std::uint32_t solver_rank = 0, cluster = kNoIndex, group = 0;  ///< kNoIndex: whatever cluster
+        friend auto operator<=>(const Unit&, const Unit&) = default;
+    };
+    std::vector<Unit> units_;
+    std::vector<std::uint32_t> smooth_, in_contact_, shadows_, island_, island_all_, same_unit_;
     ShaftSystem speed_system_;
     std::vector<std::uint8_t> group_flags_;
     std::vector<std::uint32_t> contact_groups_;
@@ -192,6 +256,7 @@ private:
     DisjointSets islands_;
     std::vector<StandingPair> standing_;
     std::vector<FoundContact> found_, touching_;
+    std::vector<Eased> eased_;
     std::vector<Contact> impact_contacts_;
     std::vector<Vec3> old_velocity_, old_spin_;
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "simulation/contact_rules.h"
+#include "simulation/island_step.h"
 #include "simulation/stepper.h"
 
 namespace plab::simulation
@@ -90,8 +92,13 @@ Result<void> Stepper::rebuild()
     if (!errors.empty()) return errors;
     groups_ = build_groups(world_, schedule_);
     detectors_ = find_detectors(world_, schedule_);
+    if (Errors refused = check_contacts(world_, detectors_); !refused.empty()) return refused;
     cache_.refresh(world_, detectors_);
+    locator_.reset();
+    if (!held_) held_ = std::make_shared<HeldIslands>(*this);
+    held_->rebuild();
     measure_bodies();
+    forces_.rebuild();
     island_all_.resize(groups_.all.size());
     for (std::uint32_t g = 0; g < island_all_.size(); ++g) island_all_[g] = g;
     speed_system_.configure(world_, schedule_, groups_, island_all_, graph_);
@@ -100,8 +107,10 @@ Result<void> Stepper::rebuild()
     cost_.by_table.resize(world_.tables().size());
     segment_begin_.assign(groups_.all.size(), 0.0);
     found_.clear();
-    for (Cached& c : cached_systems_) c.groups.clear(), c.shadows.clear(), c.system.reset();
+    pool_.clear(world_);
     batches_ready_ = false;
+    joints_are_new_ = !schedule_.of(Phase::Constrain).empty();
+    row_reports_.clear(world_.components().size());
     sight_.structure_changed();
     start_.save(world_.host()), segment_.save(world_.host()), end_.save(world_.host());
     return {};
@@ -116,6 +125,8 @@ void Stepper::measure_bodies()
         if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
         if (g.kind == GeometryKind::Sphere) r = g.size.x;
         if (g.kind == GeometryKind::Box) r = length(g.size);
+        if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
+        if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
         for (const Vec3& v : g.vertices) r = std::max(r, length(v));
         return r;
     };
@@ -126,46 +137,6 @@ void Stepper::measure_bodies()
             const Geometry& g = host.shapes.geometry[shape.index];
             radius_of_body_[b] = std::max(radius_of_body_[b], length(g.pose.p - host.bodies.center_B[b]) + radius_of(g));
         }
-}
-
-void Stepper::plan_batches()
-{
-    // One batch for each thread, in whole clusters: what reads another group must share its stage times. Groups with
-    // resting contacts advance by themselves. Partition never shows in the state: groups do not feel one another.
-    const auto threads = static_cast<std::size_t>(workers_.threads());
-    std::vector<std::size_t> weight(groups_.clusters, 0);
-    std::size_t total = 0;
-    for (const Group& g : groups_.all)
-    {
-        weight[g.cluster] += g.bodies.size() + g.shafts.size() + 1;
-        total += g.bodies.size() + g.shafts.size() + 1;
-    }
-    struct Slot
-    {
-        std::uint32_t solver;
-        std::size_t load;
-        std::vector<std::uint32_t> groups;
-    };
-    std::vector<Slot> slots;
-    std::vector<std::size_t> slot_of_cluster(groups_.clusters, SIZE_MAX);
-    for (std::uint32_t g = 0; g < groups_.all.size(); ++g)
-    {
-        const Group& group = groups_.all[g];
-        std::size_t& slot = slot_of_cluster[group.cluster];
-        if (slot == SIZE_MAX)
-        {
-            for (slot = 0; slot < slots.size(); ++slot)
-                if (slots[slot].solver == group.solver && slots[slot].load * threads < total) break;
-            if (slot == slots.size()) slots.push_back({group.solver, 0, {}});
-            slots[slot].load += weight[group.cluster];
-        }
-        slots[slot].groups.push_back(g);
-    }
-    batches_.clear();
-    for (Slot& slot : slots) batches_.push_back(std::move(slot.groups));
-    while (batch_systems_.size() < batches_.size()) batch_systems_.push_back(std::make_unique<GroupSystem>());
-    batch_fine_.assign(batches_.size(), 1);
-    batch_work_.assign(batches_.size(), std::vector<double>(work_.size(), 0.0));
 }
 
 }  // namespace plab::simulation

@@ -42,6 +42,7 @@ private:
     Result<std::uint32_t> find_typed(const std::string& id) const;
     Result<model::ComponentSpec> spec_for_swap(std::uint32_t component, const SwapOperation& op, SwapReport& report);
     void fit_roles(model::ComponentSpec& spec, const Schema& schema, SwapReport& report) const;
+    Result<void> make_missing(model::ComponentSpec& spec, const Schema& schema, SwapReport& report);
     Result<void> exchange(std::uint32_t component, const model::ComponentSpec& spec, const SwapReport& report);
     Result<Value> new_value(std::uint32_t component, const Field& field, const SetOperation& op) const;
 
@@ -56,6 +57,8 @@ private:
     /// One step with the new ones, withheld and taken back; an error if something fails that did not fail before.
     Result<void> try_new();
     StepOutcome try_step(std::string& failure);
+    /// Standing contacts that went over from hard to soft or back, in the reports of the swaps that did it.
+    void tell_converted_contacts();
     /// The cost of that step from `state` once more, warm.
     void measure_again(const State& state, StepOutcome& outcome);
 

@@ -72,9 +72,20 @@ void Transaction::compare_with_old(const State& before)
     }();
 }
 
+void Transaction::tell_converted_contacts()
+{
+    for (SwapReport& report : reply_.swaps)
+    {
+        const std::uint32_t i = s_->world_->find(report.id);
+        const std::size_t n = i == kNoIndex ? 0 : s_->stepper_->forces().converted(i);
+        if (n > 0) report.fields.push_back({"contacts (" + std::to_string(n) + " points)", Fate::Converted});
+    }
+}
+
 Result<void> Transaction::try_new()
 {
     if (auto built = s_->stepper_->rebuild(); !built) return built;
+    tell_converted_contacts();
     const State after = capture();
     std::string failure;
     StepOutcome outcome = try_step(failure);

@@ -63,6 +63,29 @@ void Transaction::fit_roles(model::ComponentSpec& spec, const Schema& schema, Sw
     }
 }
 
+/// A required role that the old type did not have is filled as the short form of a blueprint would: by a part of its
+/// default type. It stays when the component is exchanged back, and serves again.
+Result<void> Transaction::make_missing(model::ComponentSpec& spec, const Schema& schema, SwapReport& report)
+{
+    for (const Role& role : schema.roles())
+    {
+        const bool given = std::any_of(spec.roles.begin(), spec.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
+        if (given || role.min == 0 || role.default_type.empty()) continue;
+        model::ComponentSpec part;
+        part.id = spec.id + "." + role.name, part.type = role.default_type, part.generated = true;
+        if (s_->world_->find(part.id) == kNoIndex)
+        {
+            model::SceneSpec fragment;
+            fragment.components.push_back(part);
+            if (auto added = s_->world_->add(fragment); !added) return added;
+            touched_.push_back(part.id);
+        }
+        spec.roles.push_back({role.name, {part.id}, false, {}});
+        report.fields.push_back({role.name, Fate::Fresh});
+    }
+    return {};
+}
+
 Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component, const SwapOperation& op, SwapReport& report)
 {
     world::World& world = *s_->world_;
@@ -99,6 +122,7 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
             errors.push_back({{}, element, op.type + " has no parameter '" + v.name + "'" + model::did_you_mean(v.name, names)});
     if (!errors.empty()) return errors;
     fit_roles(spec, type.schema, report);
+    if (auto done = make_missing(spec, type.schema, report); !done) return done.errors();
     // A scene that selects commands keeps selecting the same ones where the new type has them.
     if (spec.explicit_commands) std::erase_if(spec.commands, [&](const std::string& c) { return type.find_command(c) < 0; });
     return spec;

@@ -129,6 +129,11 @@ std::uint32_t HostTables::add(Facet facet, std::uint32_t component)
                      [&](std::size_t n) { shapes.geometry.resize(n), shapes.solid.resize(n), shapes.unmeasurable.resize(n); });
         shapes.geometry[i] = {}, shapes.solid[i] = {}, shapes.unmeasurable[i] = {};
     }
+    if (facet == Facet::Quantities)
+    {
+        i = take_row(free_quantities, component_of_quantities, component, [&](std::size_t n) { quantities.value.resize(n); });
+        quantities.value[i].clear();
+    }
     return i;
 }
 
@@ -141,6 +146,8 @@ void HostTables::remove(Facet facet, std::uint32_t index)
         shapes.geometry[index] = {}, shapes.solid[index] = {}, shapes.unmeasurable[index] = {};
         component_of_shape[index] = kNoIndex, free_shapes.push_back(index);
     }
+    if (facet == Facet::Quantities)
+        quantities.value[index].clear(), component_of_quantities[index] = kNoIndex, free_quantities.push_back(index);
 }
 
 void HostTables::disown(Facet facet, std::uint32_t index)
@@ -148,6 +155,7 @@ void HostTables::disown(Facet facet, std::uint32_t index)
     if (facet == Facet::Body) component_of_body[index] = kNoIndex;
     if (facet == Facet::Shaft) component_of_shaft[index] = kNoIndex;
     if (facet == Facet::Shape) component_of_shape[index] = kNoIndex;
+    if (facet == Facet::Quantities) component_of_quantities[index] = kNoIndex;
 }
 
 std::uint32_t HostTables::component_of(Ref ref) const
@@ -160,6 +168,8 @@ std::uint32_t HostTables::component_of(Ref ref) const
             return component_of_shaft[ref.index];
         case Facet::Shape:
             return component_of_shape[ref.index];
+        case Facet::Quantities:
+            return component_of_quantities[ref.index];
         case Facet::Component:
             break;
     }
@@ -173,6 +183,7 @@ Value get_hosted(const HostTables& t, Facet facet, std::uint32_t i, std::string_
         if (name == "angle") return t.shafts.angle[i];
         if (name == "angular_velocity") return t.shafts.speed[i];
     }
+    if (facet == Facet::Quantities && name == "values") return Value(std::in_place_type<Reals>, t.quantities.value[i]);
     if (facet != Facet::Body) return {};
     const BodyMotion m = authored_motion(t.bodies, i);
     if (name == "position") return m.position;
@@ -185,6 +196,7 @@ Value get_hosted(const HostTables& t, Facet facet, std::uint32_t i, std::string_
 bool set_hosted(HostTables& t, Facet facet, std::uint32_t i, std::string_view name, const Value& value)
 {
     if (facet == Facet::Body) return set_body(t.bodies, i, name, value);
+    if (facet == Facet::Quantities && name == "values") return t.quantities.value[i] = std::get<Reals>(value), true;
     if (facet != Facet::Shaft) return false;
     if (name == "angle")
         t.shafts.angle[i] = std::get<double>(value);
@@ -211,6 +223,7 @@ void save_state(const HostTables& t, Ref ref, ByteWriter& out)
         write(out, t.shafts.angle[i]);
         write(out, t.shafts.speed[i]);
     }
+    if (ref.facet == Facet::Quantities) write(out, t.quantities.value[i]);
 }
 
 void MotionMemento::save(const HostTables& t)
@@ -219,6 +232,7 @@ void MotionMemento::save(const HostTables& t)
     angular_velocity_ = t.bodies.angular_velocity, angular_momentum_ = t.bodies.angular_momentum;
     angle_ = t.shafts.angle, speed_ = t.shafts.speed;
     anchor_ = t.shafts.anchor, root_anchor_ = t.shafts.root_anchor;
+    quantities_ = t.quantities.value;
 }
 
 void MotionMemento::restore(HostTables& t) const
@@ -227,6 +241,7 @@ void MotionMemento::restore(HostTables& t) const
     t.bodies.angular_velocity = angular_velocity_, t.bodies.angular_momentum = angular_momentum_;
     t.shafts.angle = angle_, t.shafts.speed = speed_;
     t.shafts.anchor = anchor_, t.shafts.root_anchor = root_anchor_;
+    t.quantities.value = quantities_;
 }
 
 void MotionMemento::save_body(const HostTables& t, std::uint32_t i)
@@ -252,5 +267,9 @@ void MotionMemento::restore_shaft(HostTables& t, std::uint32_t i) const
     t.shafts.angle[i] = angle_[i], t.shafts.speed[i] = speed_[i];
     t.shafts.anchor[i] = anchor_[i], t.shafts.root_anchor[i] = root_anchor_[i];
 }
+
+void MotionMemento::save_quantities(const HostTables& t, std::uint32_t i) { quantities_[i] = t.quantities.value[i]; }
+
+void MotionMemento::restore_quantities(HostTables& t, std::uint32_t i) const { t.quantities.value[i] = quantities_[i]; }
 
 }  // namespace plab::world

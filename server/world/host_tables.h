@@ -15,10 +15,11 @@ struct HostTables
 {
     Bodies bodies;
     Shafts shafts;
+    Quantities quantities;
     Shapes shapes;
     Materials materials;
-    std::vector<std::uint32_t> free_bodies, free_shafts, free_shapes;
-    std::vector<std::uint32_t> component_of_body, component_of_shaft, component_of_shape;  ///< directory indices
+    std::vector<std::uint32_t> free_bodies, free_shafts, free_shapes, free_quantities;
+    std::vector<std::uint32_t> component_of_body, component_of_shaft, component_of_shape, component_of_quantities;  ///< directory indices
 
     /// A new row for a component with this facet; kNoIndex where the facet has no table.
     std::uint32_t add(Facet facet, std::uint32_t component);
@@ -47,11 +48,14 @@ public:
     void save_shaft(const HostTables& tables, std::uint32_t i);
     void restore_body(HostTables& tables, std::uint32_t i) const;
     void restore_shaft(HostTables& tables, std::uint32_t i) const;
+    void save_quantities(const HostTables& tables, std::uint32_t i);
+    void restore_quantities(HostTables& tables, std::uint32_t i) const;
 
 private:
     std::vector<Vec3> position_, velocity_, angular_velocity_, angular_momentum_;
     std::vector<Quat> orientation_;
     std::vector<double> angle_, speed_, anchor_, root_anchor_;
+    std::vector<std::vector<double>> quantities_;
 };
 
 }  // namespace plab::world

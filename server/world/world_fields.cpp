@@ -100,7 +100,8 @@ Result<void> World::run(std::uint32_t component, Phase phase)
     PhaseCall call;
     call.context = &context;
     call.rows = Rows(&c.row, 1);
-    call.bodies = &host_.bodies, call.shafts = &host_.shafts, call.shapes = &host_.shapes, call.materials = &host_.materials;
+    call.bodies = &host_.bodies, call.shafts = &host_.shafts, call.quantities = &host_.quantities, call.shapes = &host_.shapes;
+    call.materials = &host_.materials;
     if (phase == Phase::Measure) call.solid = &host_.shapes.solid[c.host_index];
     for (const CommandInfo& command : table.type().info.commands)
         if (command.phase == phase && command.run)

@@ -9,11 +9,13 @@ namespace
 {
 
 /// Counts what commands do to the host. Each stands for an empty scene.
-struct Recorder final : ShaftMotion, RatioGraph, ContactSink, EventSink
+struct Recorder final : ShaftMotion, RatioGraph, RowSink, ContactSink, EventSink
 {
     int calls = 0;
 
     void begin(std::uint32_t, Ref) override { ++calls; }
+    void begin(std::uint32_t) override { ++calls; }
+    void add(const ConstraintRow&) override { ++calls; }
     double rate(Ref) const override { return 0; }
     double mobility(Ref) const override { return 1; }
     void apply(Ref, double) override { ++calls; }
@@ -40,6 +42,16 @@ struct EmptySystem final : DynamicSystem
     void evaluate(double, double) override {}
     void evaluate_kinematics() override {}
     std::span<double> workspace(int) override { return {}; }
+    std::size_t body_count() const override { return 0; }
+    RigidMember rigid(std::size_t) const override { return {}; }
+    std::size_t quantity_count() const override { return 0; }
+    bool forces_are_uniform() const override { return true; }
+    bool is_constrained() const override { return false; }
+};
+
+struct NoReports final : RowReports
+{
+    RowReport of(std::uint32_t) const override { return {}; }
 };
 
 /// All that a command may ask for, with two bodies, two shafts and two shapes that it must leave alone.
@@ -57,6 +69,8 @@ struct Host
         call.materials = &tables.materials, call.wrenches = &wrenches;
         call.shaft_motion = &recorder, call.ratios = &recorder, call.contacts = &recorder;
         call.reactions = &reactions, call.system = &system;
+        call.quantities = &tables.quantities, call.rows_out = &recorder, call.row_reports = &reports;
+        call.island = &island, call.gap = &gap;
         call.trial = &trial, call.impact = &impact, call.solid = &solid, call.stored = &stored;
     }
     /// State of all rows, as a hash would see it.
@@ -81,7 +95,10 @@ struct Host
     NoReactions reactions;
     EmptySystem system;
     std::vector<ParameterChange> changes;
-    Trial trial{0, 0.01, 0.001, 1, 0.01, 0, Trial::Decision::Accept, 0};
+    NoReports reports;
+    Trial trial;
+    Island island;
+    GapQuery gap;
     Impact impact;
     MassProperties solid;
     StoredEnergy stored;

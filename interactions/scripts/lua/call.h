@@ -27,6 +27,7 @@ struct Call
     Row row = 0;
     const Bodies* bodies = nullptr;  ///< null while loading
     const Shafts* shafts = nullptr;
+    const Quantities* quantities = nullptr;
     Ref driver, driven;
     const RefList* between = nullptr;
     const Entries* parameters = nullptr;
@@ -44,11 +45,13 @@ struct Action
         ForceAt,
         Torque,
         ShaftTorque,
+        Rate,
     };
     Kind kind = Kind::Force;
     Ref on;
-    Vec3 value;  ///< N or N m, W; ShaftTorque: x
-    Vec3 at;     ///< m, W; ForceAt
+    Vec3 value;               ///< N or N m, W; ShaftTorque, Rate: x
+    Vec3 at;                  ///< m, W; ForceAt
+    std::uint32_t place = 0;  ///< which value; Rate
 };
 
 }  // namespace plab::scripts

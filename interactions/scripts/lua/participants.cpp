@@ -32,13 +32,18 @@ struct RoleName
     char text[24];
 };
 
+std::size_t rows_of(const Call& call, Facet facet)
+{
+    if (facet == Facet::Quantities) return call.quantities->size();
+    return facet == Facet::Body ? call.bodies->size() : call.shafts->size();
+}
+
 /// Where the participant can be read. Host tables only grow while a script lives, so a bad index is a host's mistake
 /// or a participant that is gone.
 const Call& readable(lua_State* lua, const ParticipantObject& p)
 {
     const Call& call = running_call(lua, "participants");
-    const std::size_t size = p.ref.facet == Facet::Body ? call.bodies->size() : call.shafts->size();
-    if (p.ref.index >= size) luaL_error(lua, "%s has no participant", RoleName(p.place).text);
+    if (p.ref.index >= rows_of(call, p.ref.facet)) luaL_error(lua, "%s has no participant", RoleName(p.place).text);
     return call;
 }
 
@@ -47,6 +52,12 @@ int push_shaft_field(lua_State* lua, const Shafts& shafts, std::uint32_t i, std:
     if (name == "angle") return lua_pushnumber(lua, shafts.angle[i]), 1;
     if (name == "speed") return lua_pushnumber(lua, shafts.speed[i]), 1;
     if (name == "inertia") return lua_pushnumber(lua, shafts.inertia[i]), 1;
+    return 0;
+}
+
+int push_quantities_field(lua_State* lua, const Quantities& quantities, std::uint32_t i, std::string_view name)
+{
+    if (name == "count") return lua_pushinteger(lua, static_cast<lua_Integer>(quantities.value[i].size())), 1;
     return 0;
 }
 
@@ -60,6 +71,13 @@ int push_body_field(lua_State* lua, const Bodies& bodies, std::uint32_t i, std::
     return 0;
 }
 
+int push_field(lua_State* lua, const Call& call, Ref ref, std::string_view name)
+{
+    if (ref.facet == Facet::Shaft) return push_shaft_field(lua, *call.shafts, ref.index, name);
+    if (ref.facet == Facet::Quantities) return push_quantities_field(lua, *call.quantities, ref.index, name);
+    return push_body_field(lua, *call.bodies, ref.index, name);
+}
+
 int participant_index(lua_State* lua)
 {
     const auto& p = *static_cast<ParticipantObject*>(lua_touserdata(lua, 1));
@@ -71,16 +89,14 @@ int participant_index(lua_State* lua)
         if (!name.starts_with("add_"))
         {
             const Call& call = readable(lua, p);
-            if (p.ref.facet == Facet::Shaft ? push_shaft_field(lua, *call.shafts, p.ref.index, name)
-                                            : push_body_field(lua, *call.bodies, p.ref.index, name))
-                return 1;
+            if (push_field(lua, call, p.ref, name)) return 1;
         }
         lua_pushvalue(lua, 2);
         if (lua_rawget(lua, lua_upvalueindex(1)) != LUA_TNIL) return 1;
     }
     return luaL_error(lua,
                       "%s has no '%s'; a shaft has angle, speed, inertia, a body has position, velocity, "
-                      "angular_velocity, orientation, mass",
+                      "angular_velocity, orientation, mass, quantities have count and value(i)",
                       RoleName(p.place).text, lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
 }
 
@@ -103,7 +119,8 @@ const ParticipantObject& check_target(lua_State* lua)
 const ParticipantObject& check_body_target(lua_State* lua)
 {
     const ParticipantObject& p = check_target(lua);
-    if (p.ref.facet != Facet::Body) luaL_error(lua, "%s is a shaft: it takes add_torque(number)", RoleName(p.place).text);
+    if (p.ref.facet == Facet::Shaft) luaL_error(lua, "%s is a shaft: it takes add_torque(number)", RoleName(p.place).text);
+    if (p.ref.facet == Facet::Quantities) luaL_error(lua, "%s are quantities: they take add_rate(i, number)", RoleName(p.place).text);
     return p;
 }
 
@@ -124,7 +141,7 @@ int add_force(lua_State* lua)
 {
     charge(lua, 1);
     const ParticipantObject& p = check_body_target(lua);
-    return act(lua, {Action::Kind::Force, p.ref, check_finite(lua, p, 2, "force"), {}});
+    return act(lua, {Action::Kind::Force, p.ref, check_finite(lua, p, 2, "force"), {}, 0});
 }
 
 int add_force_at(lua_State* lua)
@@ -132,20 +149,56 @@ int add_force_at(lua_State* lua)
     charge(lua, 1);
     const ParticipantObject& p = check_body_target(lua);
     const Vec3& force = check_finite(lua, p, 2, "force");
-    return act(lua, {Action::Kind::ForceAt, p.ref, force, check_finite(lua, p, 3, "point of the force")});
+    return act(lua, {Action::Kind::ForceAt, p.ref, force, check_finite(lua, p, 3, "point of the force"), 0});
 }
 
 int add_torque(lua_State* lua)
 {
     charge(lua, 1);
     const ParticipantObject& p = check_target(lua);
-    if (p.ref.facet == Facet::Body) return act(lua, {Action::Kind::Torque, p.ref, check_finite(lua, p, 2, "torque"), {}});
+    if (p.ref.facet != Facet::Shaft)
+    {
+        const ParticipantObject& body = check_body_target(lua);
+        return act(lua, {Action::Kind::Torque, body.ref, check_finite(lua, body, 2, "torque"), {}, 0});
+    }
     const double torque = luaL_checknumber(lua, 2);
     if (!std::isfinite(torque)) return luaL_error(lua, "torque on %s is not finite", RoleName(p.place).text);
-    return act(lua, {Action::Kind::ShaftTorque, p.ref, {torque, 0, 0}, {}});
+    return act(lua, {Action::Kind::ShaftTorque, p.ref, {torque, 0, 0}, {}, 0});
 }
 
-constexpr NativeFunction kMethods[] = {{"add_force", add_force}, {"add_force_at", add_force_at}, {"add_torque", add_torque}};
+/// The place, from 0, that argument 2 names, from 1, among the values of quantities.
+std::uint32_t check_place(lua_State* lua, const Call& call, const ParticipantObject& p)
+{
+    if (p.ref.facet != Facet::Quantities) luaL_error(lua, "%s has no numbered values: those are quantities", RoleName(p.place).text);
+    const lua_Integer i = luaL_checkinteger(lua, 2);
+    const auto count = static_cast<lua_Integer>(call.quantities->value[p.ref.index].size());
+    if (i < 1 || i > count) luaL_error(lua, "%s has values 1 to %I, not %I", RoleName(p.place).text, count, i);
+    return static_cast<std::uint32_t>(i - 1);
+}
+
+int value_of(lua_State* lua)
+{
+    charge(lua, 1);
+    const auto* p = to_object<ParticipantObject>(lua, 1, Tag::Participant);
+    if (!p) return luaL_typeerror(lua, 1, "participant");
+    const Call& call = readable(lua, *p);
+    const std::uint32_t place = check_place(lua, call, *p);
+    lua_pushnumber(lua, call.quantities->value[p->ref.index][place]);
+    return 1;
+}
+
+int add_rate(lua_State* lua)
+{
+    charge(lua, 1);
+    const ParticipantObject& p = check_target(lua);
+    const std::uint32_t place = check_place(lua, readable(lua, p), p);
+    const double rate = luaL_checknumber(lua, 3);
+    if (!std::isfinite(rate)) return luaL_error(lua, "rate of %s is not finite", RoleName(p.place).text);
+    return act(lua, {Action::Kind::Rate, p.ref, {rate, 0, 0}, {}, place});
+}
+
+constexpr NativeFunction kMethods[] = {
+    {"add_force", add_force}, {"add_force_at", add_force_at}, {"add_torque", add_torque}, {"value", value_of}, {"add_rate", add_rate}};
 
 /// The global `name` is the object in `slot`, or nil without participant.
 void bind_one(lua_State* lua, int slot, const char* name, Ref ref)

@@ -2,6 +2,7 @@
 
 #include "kinematic.h"
 #include "material_pair.h"
+#include "quantities.h"
 #include "rigid_body.h"
 #include "shaft.h"
 #include "static.h"
@@ -31,6 +32,8 @@ PLAB_PLUGIN("bodies", registrar)
     add_state<prepare_rigid_body, RigidBodyRows>(registrar, "State/RigidBody", Facet::Body, "State/Body", "a body that moves by forces");
     add_state<prepare_shaft, ShaftRows>(registrar, "State/Shaft", Facet::Shaft, "State/Shaft",
                                         "one degree of freedom about an axle: a gear, a motor, a fan");
+    add_state<prepare_quantities, QuantitiesRows>(registrar, "State/Quantities", Facet::Quantities, "State/Quantities",
+                                                  "numbers that change at the rates that interactions add");
     registrar.component<MaterialPairRows>("Material/Pair", "friction and restitution between two materials")
         .family("Material/Pair")
         .command<connect_material_pair>(plab::Phase::Connect, "Material/Connect", "tells the host the law of the pair");

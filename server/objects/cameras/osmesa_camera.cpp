@@ -22,6 +22,9 @@ std::int64_t picture_at(double time, double frames_per_second)
     return static_cast<std::int64_t>(std::floor(time * frames_per_second * (1 + 1e-12) + 1e-9));
 }
 
+/// A compound shows the triangles of all its parts.
+bool is_mesh(const Geometry& geometry) { return geometry.kind == GeometryKind::Mesh || geometry.kind == GeometryKind::Compound; }
+
 void keep_meshes(const Sight& sight, Studio& studio)
 {
     render::Drawing& drawing = studio.drawing;
@@ -29,7 +32,7 @@ void keep_meshes(const Sight& sight, Studio& studio)
     drawing.meshes.clear(), studio.mesh_of_shape.clear();
     for (const Visual& visual : sight.visuals)
     {
-        if (!visual.geometry || visual.geometry->kind != GeometryKind::Mesh) continue;
+        if (!visual.geometry || !is_mesh(*visual.geometry)) continue;
         const auto number = static_cast<std::uint32_t>(drawing.meshes.size());
         if (!studio.mesh_of_shape.try_emplace(visual.shape, number).second) continue;
         drawing.meshes.push_back({visual.geometry->vertices, visual.geometry->triangles});
@@ -48,10 +51,17 @@ Form form_of(const Visual& visual)
         case GeometryKind::Plane:
             return Form::Plane;
         case GeometryKind::Mesh:
+        case GeometryKind::Compound:
             return Form::Mesh;
-        default:
-            return Form::Sphere;
+        case GeometryKind::Cylinder:
+            return Form::Cylinder;
+        case GeometryKind::Capsule:
+            return Form::Capsule;
+        case GeometryKind::Sphere:
+        case GeometryKind::None:
+            break;
     }
+    return Form::Sphere;
 }
 
 void place_items(const Sight& sight, Studio& studio)

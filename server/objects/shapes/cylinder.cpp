@@ -1,32 +1,33 @@
 #include "cylinder.h"
 
+#include "picture.h"
 #include "volume_integration.h"
 
 namespace plab::shapes
 {
-namespace
-{
-
-constexpr std::uint32_t kSides = 64;
-
-}  // namespace
 
 void CylinderRows::describe(Schema& schema)
 {
     shape.describe(schema);
     schema.param(radius, "radius", unit::metre, "radius").positive();
     schema.param(height, "height", unit::metre, "length along z, half of it on either side").positive();
-    schema
-        .param(hull_collides, "hull_collides", unit::one, "it collides as the prism of 64 sides that is drawn (true) or not at all (false)")
+    schema.param(hull_collides, "hull_collides", unit::one, "it collides, as the true cylinder (true), or is only drawn (false)")
         .or_else(true);
 }
 
 void prepare_cylinder(const StepContext& context, Row row, const CylinderRows& cylinders, Shapes& shapes)
 {
-    const double radius = cylinders.radius[row], half = 0.5 * cylinders.height[row];
-    const ProfilePoint profile[] = {{0, -half}, {radius, -half}, {radius, half}, {0, half}};
-    shapes.geometry[context.facet_of_row[row]] =
-        turned_profile(profile, kSides).geometry(cylinders.shape.pose(row), cylinders.hull_collides[row]);
+    Geometry geometry;
+    geometry.kind = GeometryKind::Cylinder;
+    geometry.pose = cylinders.shape.pose(row);
+    geometry.size = {cylinders.radius[row], 0, 0.5 * cylinders.height[row]};
+    if (!cylinders.hull_collides[row])
+    {
+        // What is only drawn is a mesh that does not collide.
+        geometry.pose = {};
+        geometry = picture_of(geometry).geometry(cylinders.shape.pose(row), false);
+    }
+    shapes.geometry[context.facet_of_row[row]] = std::move(geometry);
 }
 
 void measure_cylinder(Row row, const CylinderRows& cylinders, MassProperties& solid)

@@ -1,8 +1,6 @@
-/// Shape/Cylinder: x^2 + y^2 <= radius^2, |z| <= height / 2 in S. Drawn and colliding as a prism of many sides,
-/// integrated as the true solid.
+/// Shape/Cylinder: x^2 + y^2 <= radius^2, |z| <= height / 2 in S. Collides and is integrated as the true solid.
 #pragma once
 
-#include "built_mesh.h"
 #include "shape_columns.h"
 
 namespace plab::shapes

@@ -1,6 +1,9 @@
 #include "plab/plugin.h"
 
 #include "box.h"
+#include "capsule.h"
+#include "compound.h"
+#include "convex_hull.h"
 #include "cylinder.h"
 #include "gear.h"
 #include "mesh.h"
@@ -41,6 +44,14 @@ PLAB_PLUGIN("shapes", registrar)
                                                     "volume, centre and inertia, exact for closed triangle meshes");
     add_shape<prepare_cylinder, measure_cylinder, CylinderRows>(registrar, "Shape/Cylinder", "a solid cylinder along z",
                                                                 "volume, centre and inertia, in closed form");
+    add_shape<prepare_capsule, measure_capsule, CapsuleRows>(registrar, "Shape/Capsule", "a cylinder along z with half balls as ends",
+                                                             "volume, centre and inertia, in closed form");
+    add_shape<prepare_convex_hull, measure_convex_hull, ConvexHullRows>(
+        registrar, "Shape/ConvexHull", "the smallest convex solid around points; collides, is drawn and integrated as that",
+        "volume, centre and inertia, exact for the hull");
+    add_shape<prepare_compound, measure_compound, CompoundRows>(registrar, "Shape/Compound",
+                                                                "several shapes as one, each with its own pose",
+                                                                "the parts' sum by parallel axes; where they overlap, mass counts twice");
     add_shape<prepare_gear, measure_gear, GearRows>(registrar, "Shape/Gear", "a spur wheel with straight-flanked teeth, about z",
                                                     "volume, centre and inertia, exact for the wheel as drawn");
     add_shape<prepare_rotor, measure_rotor, RotorRows>(registrar, "Shape/Rotor", "a fan's wheel: hub and twisted blades, about z",

@@ -90,6 +90,33 @@ MassProperties solid_cylinder(double radius, double height)
     return {mass, {}, Mat3::diagonal(across, across, 0.5 * mass * radius * radius)};
 }
 
+MassProperties solid_capsule(double radius, double length)
+{
+    const double rr = radius * radius;
+    const double barrel = std::numbers::pi * rr * length, ball = 4.0 / 3 * std::numbers::pi * rr * radius;
+    const double along = 0.5 * barrel * rr + 0.4 * ball * rr;
+    const double across = barrel * (3 * rr + length * length) / 12 + ball * (0.4 * rr + 0.25 * length * length + 0.375 * length * radius);
+    return {barrel + ball, {}, Mat3::diagonal(across, across, along)};
+}
+
+MassProperties joined(std::span<const MassProperties> parts)
+{
+    MassProperties out;
+    if (parts.empty()) return out;
+    // From the first centre: far from the origin the differences keep their digits.
+    const Vec3 origin = parts.front().center;
+    Vec3 first;
+    for (const MassProperties& p : parts) out.mass += p.mass, first += p.mass * (p.center - origin);
+    out.center = origin + first / out.mass;
+    for (const MassProperties& p : parts)
+    {
+        const Vec3 d = (p.center - origin) - first / out.mass;
+        const double dd = length_squared(d);
+        out.inertia = out.inertia + p.inertia + (Mat3::diagonal(dd, dd, dd) - outer(d, d)) * p.mass;
+    }
+    return out;
+}
+
 Result<MassProperties> solid_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles)
 {
     if (auto closed = check_closed(vertices, triangles); !closed) return closed.error();

@@ -1,15 +1,30 @@
 #include "plab/plugin.h"
 
+#include "automatic.h"
+#include "dormand_prince54.h"
+#include "exact.h"
+#include "exponential.h"
+#include "implicit_midpoint.h"
+#include "radau5.h"
+#include "rotation_splitting.h"
 #include "runge_kutta4.h"
 #include "semi_implicit_euler.h"
+#include "stoermer_verlet.h"
 
-PLAB_PLUGIN("solvers", registrar)
+namespace
 {
-    using namespace plab::solvers;
-    using plab::Phase;
+
+using namespace plab::solvers;
+using plab::Phase;
+
+constexpr const char* kAdvance = "Solver/Advance";
+constexpr const char* kAdvanceDoc = "advances its group over the step";
+
+void declare_fixed_steps(plab::Registrar& registrar)
+{
     registrar.component<SemiImplicitEulerRows>("Solver/SemiImplicitEuler", "one force evaluation per step; order 1")
         .family("Solver")
-        .command<advance_semi_implicit_euler>(Phase::Advance, "Solver/Advance", "advances its group over the step")
+        .command<advance_semi_implicit_euler>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(1)
         .elementwise()
         .cost("1 force evaluation per step")
@@ -17,7 +32,7 @@ PLAB_PLUGIN("solvers", registrar)
         .source("Hairer, Lubich, Wanner, Geometric numerical integration, eq. (I.1.9)");
     registrar.component<RungeKutta4Rows>("Solver/RungeKutta4", "the classical method; order 4")
         .family("Solver")
-        .command<advance_runge_kutta4>(Phase::Advance, "Solver/Advance", "advances its group over the step")
+        .command<advance_runge_kutta4>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(4)
         .elementwise()
         .cost("4 force evaluations per step")
@@ -25,4 +40,92 @@ PLAB_PLUGIN("solvers", registrar)
         .source(
             "Hairer, Norsett, Wanner, Solving ordinary differential equations I, table II.1.2; "
             "Munthe-Kaas, Appl. Numer. Math. 29 (1999)");
+    registrar
+        .component<StoermerVerletRows>("Solver/StoermerVerlet",
+                                       "half a kick, a drift, half a kick; order 2, symplectic for points and shafts")
+        .family("Solver")
+        .command<advance_stoermer_verlet>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(2)
+        .elementwise()
+        .cost("2 force evaluations per step")
+        .limits("stiff forces: h below 2/w; drag is of order 2 but not dissipated exactly; the energy of free rotation drifts")
+        .source("Hairer, Lubich, Wanner, Acta Numerica 12 (2003) 399, eq. (1.18)");
+    registrar
+        .component<RotationSplittingRows>(
+            "Solver/RotationSplitting",
+            "kicks and free flights, rotations split by principal axes; order 2 or 4; angular momentum to rounding")
+        .family("Solver")
+        .command<prepare_rotation_splitting>(Phase::Prepare, "Solver/Prepare", "checks the order")
+        .command<advance_rotation_splitting>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(4)
+        .cost("kicks per step: 1 (order 2), 6 (order 4), 1 where forces are uniform; 2 evaluations per kick, 4 if forces depend on speed")
+        .limits("stiff forces: h below 2/w (order 2), 4/w (order 4); for one fast axle among slow ones RungeKutta4 is cheaper")
+        .source(
+            "McLachlan, SIAM J. Sci. Comput. 16 (1995) 151; Reich, Physica D 76 (1994) 375; Blanes, Moan, J. Comput. Appl. Math. 142 "
+            "(2002) 313");
+    registrar.component<ImplicitMidpointRows>("Solver/ImplicitMidpoint", "implicit, symplectic, A-stable; order 2")
+        .family("Solver")
+        .command<advance_implicit_midpoint>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(2)
+        .cost("5 to 13 force evaluations per step; 2 n + 5 for stiff groups of n coordinates, and dense LU")
+        .limits(
+            "oscillations that the step does not resolve stay, slowed down; cost grows with n^3; jumps of forces: parts of 1/64 step, then "
+            "it fails")
+        .source("Hairer, Lubich, Wanner, Geometric numerical integration, eq. (II.1.5) and section VIII.6");
+}
+
+void declare_adaptive(plab::Registrar& registrar)
+{
+    registrar.component<ExactRows>("Solver/Exact", "closed forms for free flight in a uniform field: machine precision at any step")
+        .family("Solver")
+        .command<advance_exact>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(4)
+        .cost("2 force evaluations and about 1 us per body and step, whatever the step")
+        .limits(
+            "other forces: RotationSplitting of order 4 is used, joints: RungeKutta4, and an event says so; a spin about an unstable "
+            "axis multiplies rounding errors as the motion itself does")
+        .source("Jacobi, Crelle 39 (1849); Celledoni, Fasso, Saefstroem, Zanna, SIAM J. Sci. Comput. 30 (2008) 2084");
+    registrar.component<DormandPrince54Rows>("Solver/DormandPrince54", "explicit with error control: chooses internal steps; order 5")
+        .family("Solver")
+        .command<advance_dormand_prince54>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(5)
+        .cost("8 force evaluations per step where the whole step fits; 7 per internal step")
+        .limits("stiff forces: many internal steps, then max_substeps ends it; each step starts anew")
+        .source(
+            "Dormand, Prince, J. Comput. Appl. Math. 6 (1980) 19; Hairer, Norsett, Wanner, Solving ordinary differential equations I, "
+            "II.4");
+    registrar.component<Radau5Rows>("Solver/Radau5", "stiff solver with error control: implicit, L-stable; order 5")
+        .family("Solver")
+        .command<advance_radau5>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(5)
+        .cost("about 2 n + 15 force evaluations per step for n coordinates, two dense LU of size 2 n; more with internal steps")
+        .limits("cost grows with n^3; oscillations are resolved to the tolerance or damped away")
+        .source("Hairer, Wanner, Solving ordinary differential equations II, section IV.8; program RADAU5");
+    registrar
+        .component<ExponentialRows>("Solver/Exponential", "exponential Rosenbrock method: exact for linear forces at any step; order 4")
+        .family("Solver")
+        .command<advance_exponential>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(4)
+        .cost("4 n + 9 force evaluations per step for n coordinates, more where forces bend; one or two exponentials of size 2 n + 3")
+        .limits("cost grows with n^3: above max_size Radau5 is used; the energy ledger is sampled at most 128 times per step")
+        .source("Luan, Appl. Math. Lett. 65 (2017) 132; Hochbruck, Ostermann, Acta Numerica 19 (2010) 209");
+    registrar
+        .component<AutomaticRows>("Solver/Automatic",
+                                  "picks a method for each group by measured spin and stiffness, and says which and why")
+        .family("Solver")
+        .command<advance_automatic>(Phase::Advance, kAdvance, kAdvanceDoc)
+        .order(4)
+        .cost("that of the method; 7 evaluations more in every 16th step, none for free flight")
+        .limits(
+            "stiffness that appears between two looks (16 steps) is met by RungeKutta4 till then; groups that share one component share "
+            "its most demanding choice")
+        .source("Hairer, Wanner, Solving ordinary differential equations II, section IV.2");
+}
+
+}  // namespace
+
+PLAB_PLUGIN("solvers", registrar)
+{
+    declare_fixed_steps(registrar);
+    declare_adaptive(registrar);
 }

@@ -25,6 +25,11 @@ struct Contact
     double restitution = 0;          ///< Newton's coefficient
     double normal_acceleration = 0;  ///< m/s^2 of separation that the forces alone would give; < 0 presses together
     bool resting = false;            ///< persists; not an impact
+    double approach = 0;             ///< m/s: closing speed at which it began, in the step in which it begins; else 0
+    // Kept by the host from step to step, for responses that remember; changed in the last evaluation of a step only:
+    Vec3 stretch;           ///< m, W: how far a stiction spring is stretched
+    double rest_depth = 0;  ///< m: the depth at which a contact spring gives no force beyond its equilibrium
+    double preload = 0;     ///< N: the force that it gives at rest_depth
     // Filled by the response:
     Vec3 impulse;     ///< N s on b, W
     double slip = 0;  ///< m/s, tangential speed after the response
@@ -46,10 +51,26 @@ public:
     virtual std::span<const StandingPair> standing() const = 0;
     /// Only the standing pairs are asked for: no broad phase is needed (trial times of one pair).
     virtual bool only_standing() const { return false; }
+    /// m: contacts whose gap is up to this are wanted too, with depth < 0.
+    virtual double margin() const { return 0; }
+    /// m, by body: how far its surface may get from where it is now. Not empty: pairs of bodies whose bounds, grown by
+    /// that, overlap are wanted by near(), and no contacts.
+    virtual std::span<const double> reach() const { return {}; }
+    virtual void near(Ref /*a*/, Ref /*b*/) {}
     /// normal from a to b; a and b in the order in which `precedes` says they stand.
     virtual void add(const Contact& contact) = 0;
     /// The order of two bodies by component id: pairs must be formed in it *before* a library computes contacts.
     virtual bool precedes(Ref a, Ref b) const = 0;
+};
+
+/// Phase::Gap: how far two bodies are apart at their present poses.
+struct GapQuery
+{
+    Ref a, b;
+    // out
+    double gap = 0;         ///< m; < 0: depth of the overlap
+    Vec3 point_a, point_b;  ///< W, m: the nearest points
+    Vec3 normal;            ///< W, unit, from a to b
 };
 
 /// Phase::Locate: a step [0, h] is known to hold an event; the resolution picks the next time to try.
@@ -62,6 +83,10 @@ struct Trial
     double closing = 0;  ///< m/s, closing speed there
     double step = 0;     ///< s, h
     int iteration = 0;   ///< trials so far
+    // Signed gaps, m (depth is a negative gap), and their rates, m/s (closing is negative); NaN: not known
+    double gap_begin = 0, gap_end = 0;
+    double rate_begin = 0, rate_end = 0;
+    double last = 0, last_gap = 0, last_rate = 0;  ///< of the last trial, at s
     // out
     enum class Decision : std::uint8_t
     {

@@ -1,7 +1,9 @@
 /// What a phase function may ask of the host: time, who is being advanced, events.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,6 +51,14 @@ struct ParameterChange
     Value value;
 };
 
+/// Of a long list of participants, those that are being advanced: so that a field over ten thousand bodies costs a group
+/// of one no more than one.
+struct Shortlist
+{
+    const RefList* all = nullptr;
+    RefList active;
+};
+
 /// Time and scope of one call. `time` is the solver stage's own.
 struct StepContext
 {
@@ -64,6 +74,15 @@ struct StepContext
     std::span<const std::uint8_t> active_bodies;      ///< empty: all
     std::span<const std::uint8_t> active_shafts;
 
+    std::span<const Shortlist> shortlists;  ///< by address of `all`
+
+    /// The participants of a list that is a column's cell, or those of them that may be active, in the same order.
+    std::span<const Ref> among(const RefList& all) const
+    {
+        const auto before = [](const Shortlist& s, const RefList* list) { return std::less<>()(s.all, list); };
+        const auto found = std::lower_bound(shortlists.begin(), shortlists.end(), &all, before);
+        return found != shortlists.end() && found->all == &all ? found->active : all;
+    }
     /// Whether r is being advanced now. Forces on others are wasted work; adding them does no harm.
     bool active(Ref r) const
     {

@@ -19,10 +19,11 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 /// What a component is to others; a role names the facets that it accepts.
 enum class Facet : std::uint8_t
 {
-    Component,  ///< any component; index into the world's directory
-    Body,       ///< pose and velocity in space; row of Bodies
-    Shaft,      ///< one degree of freedom about an axle; row of Shafts
-    Shape,      ///< geometry; row of Shapes
+    Component,   ///< any component; index into the world's directory
+    Body,        ///< pose and velocity in space; row of Bodies
+    Shaft,       ///< one degree of freedom about an axle; row of Shafts
+    Shape,       ///< geometry; row of Shapes
+    Quantities,  ///< numbers that change at rates; row of Quantities
 };
 
 /// A participant: a row of the host table that its facet names. Default: nobody.

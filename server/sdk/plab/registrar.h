@@ -13,8 +13,10 @@
 #include "plab/collision.h"
 #include "plab/context.h"
 #include "plab/dynamics.h"
+#include "plab/island.h"
 #include "plab/picture.h"
 #include "plab/result.h"
+#include "plab/rows.h"
 #include "plab/schema.h"
 #include "plab/shafts.h"
 #include "plab/stage.h"
@@ -57,16 +59,21 @@ struct PhaseCall
     Rows rows;
     Bodies* bodies = nullptr;
     Shafts* shafts = nullptr;
+    Quantities* quantities = nullptr;
     Shapes* shapes = nullptr;
     Materials* materials = nullptr;
     Wrenches* wrenches = nullptr;               // Force
     ShaftMotion* shaft_motion = nullptr;        // Couple
     RatioGraph* ratios = nullptr;               // Connect
     const ShaftReactions* reactions = nullptr;  // Finish
+    RowSink* rows_out = nullptr;                // Constrain
+    const RowReports* row_reports = nullptr;    // Finish
     DynamicSystem* system = nullptr;            // Advance
+    Island* island = nullptr;                   // Solve
+    GapQuery* gap = nullptr;                    // Gap
     ContactSink* contacts = nullptr;            // Detect
     Trial* trial = nullptr;                     // Locate
-    Impact* impact = nullptr;                   // Respond
+    Impact* impact = nullptr;                   // Respond, Touch
     MassProperties* solid = nullptr;            // Measure
     StoredEnergy* stored = nullptr;             // Potential
     const Sight* sight = nullptr;               // Draw
@@ -105,6 +112,11 @@ struct TypeInfo
     bool elementwise = false;  ///< solver: groups may be advanced together without changing a bit
     bool local = false;        ///< resolution: rewinds the touched group only, not the whole world
     bool locates = false;      ///< resolution: finds the time of an event inside the step
+    bool certifies = false;    ///< resolution: looks inside the step for events that its ends do not show
+    bool speculates = false;   ///< resolution: gaps that may close within the step become rows
+    bool by_rows = false;      ///< response: contacts are rows that a manager holds, impacts included
+    bool by_force = false;     ///< response: contacts are forces, at every solver stage
+    bool uniform = false;      ///< force: the same whatever time and state
     std::string cost;          ///< e.g. "4 force evaluations per step"
     std::string limits;        ///< where it fails
     std::string source;        ///< paper or book, with the equation
@@ -127,6 +139,8 @@ PLAB_ARGUMENT(Bodies&, bodies, "Bodies");
 PLAB_ARGUMENT(const Bodies&, bodies, "Bodies");
 PLAB_ARGUMENT(Shafts&, shafts, "Shafts");
 PLAB_ARGUMENT(const Shafts&, shafts, "Shafts");
+PLAB_ARGUMENT(Quantities&, quantities, "Quantities");
+PLAB_ARGUMENT(const Quantities&, quantities, "Quantities");
 PLAB_ARGUMENT(Shapes&, shapes, "Shapes");
 PLAB_ARGUMENT(const Shapes&, shapes, "Shapes");
 PLAB_ARGUMENT(Materials&, materials, "Materials");
@@ -134,7 +148,11 @@ PLAB_ARGUMENT(Wrenches&, wrenches, "Wrenches");
 PLAB_ARGUMENT(ShaftMotion&, shaft_motion, "ShaftMotion");
 PLAB_ARGUMENT(RatioGraph&, ratios, "RatioGraph");
 PLAB_ARGUMENT(const ShaftReactions&, reactions, "ShaftReactions");
+PLAB_ARGUMENT(RowSink&, rows_out, "Rows");
+PLAB_ARGUMENT(const RowReports&, row_reports, "RowReports");
 PLAB_ARGUMENT(DynamicSystem&, system, "DynamicSystem");
+PLAB_ARGUMENT(Island&, island, "Island");
+PLAB_ARGUMENT(GapQuery&, gap, "Gap");
 PLAB_ARGUMENT(ContactSink&, contacts, "Contacts");
 PLAB_ARGUMENT(Trial&, trial, "Trial");
 PLAB_ARGUMENT(Impact&, impact, "Impact");
@@ -234,6 +252,11 @@ public:
     TypeBuilder& elementwise() { return info_->elementwise = true, *this; }
     TypeBuilder& local() { return info_->local = true, *this; }
     TypeBuilder& locates() { return info_->locates = true, *this; }
+    TypeBuilder& certifies() { return info_->certifies = true, *this; }
+    TypeBuilder& speculates() { return info_->speculates = true, *this; }
+    TypeBuilder& by_rows() { return info_->by_rows = true, *this; }
+    TypeBuilder& by_force() { return info_->by_force = true, *this; }
+    TypeBuilder& uniform() { return info_->uniform = true, *this; }
     TypeBuilder& cost(std::string text) { return info_->cost = std::move(text), *this; }
     TypeBuilder& limits(std::string text) { return info_->limits = std::move(text), *this; }
     TypeBuilder& source(std::string text) { return info_->source = std::move(text), *this; }

@@ -26,8 +26,12 @@ enum class Phase : std::uint8_t
     Drive,      ///< PreStep: once per step; may change own declared state
     Force,      ///< Step: add wrenches; a pure function of time and state, at every solver stage
     Couple,     ///< Step: relate speeds of shafts, at every solver stage and after impulses
+    Constrain,  ///< Step: constraint rows at the present state, at every solver stage
+    Touch,      ///< Step: contacts that are forces add their wrenches, at every solver stage
     Advance,    ///< Step: a solver advances its group
+    Solve,      ///< Step: a manager advances an island of one-sided rows and contacts
     Detect,     ///< PostStep: find contacts
+    Gap,        ///< PostStep: how far two bodies are apart
     Locate,     ///< PostStep: choose trial times within a step that holds an event
     Respond,    ///< PostStep: apply impulses to touching bodies
     Finish,     ///< PostStep: outputs and history of a finished step
@@ -49,7 +53,10 @@ constexpr Stage stage_of(Phase phase)
             return Stage::PreStep;
         case Phase::Force:
         case Phase::Couple:
+        case Phase::Constrain:
+        case Phase::Touch:
         case Phase::Advance:
+        case Phase::Solve:
             return Stage::Step;
         case Phase::Restore:
             return Stage::Rewind;
@@ -66,8 +73,8 @@ constexpr std::string_view name_of(Stage stage)
 
 constexpr std::string_view name_of(Phase phase)
 {
-    constexpr std::string_view names[] = {"measure", "prepare", "connect", "drive",  "force",     "couple", "advance",
-                                          "detect",  "locate",  "respond", "finish", "potential", "draw",   "restore"};
+    constexpr std::string_view names[] = {"measure", "prepare", "connect", "drive",  "force",   "couple", "constrain", "touch", "advance",
+                                          "solve",   "detect",  "gap",     "locate", "respond", "finish", "potential", "draw",  "restore"};
     return names[static_cast<int>(phase)];
 }
 

@@ -110,6 +110,14 @@ struct Shafts
     double kinetic_energy(std::uint32_t i) const { return dynamic(i) ? 0.5 * inertia[i] * speed[i] * speed[i] : 0.0; }
 };
 
+/// Numbers that are no place in space: z' = r, with rates r that interactions add. Temperatures, concentrations, currents.
+struct Quantities
+{
+    std::vector<std::vector<double>> value;  ///< units are the scene's own
+
+    std::size_t size() const { return value.size(); }
+};
+
 /// Volume, centre and inertia of a solid of density 1 kg/m^3, in the shape's parent (body) frame.
 struct MassProperties
 {
@@ -124,7 +132,10 @@ enum class GeometryKind : std::uint8_t
     Sphere,
     Box,
     Plane,
-    Mesh,  ///< triangles for drawing and integration; collides as its convex hull where `hull_collides`
+    Mesh,      ///< triangles for drawing and integration; collides as its convex hull where `hull_collides`
+    Capsule,   ///< all points within size.x of the segment from -size.z to size.z along z of S
+    Cylinder,  ///< radius size.x, from -size.z to size.z along z of S
+    Compound,  ///< `parts`, each with its own pose in S
 };
 
 struct Geometry
@@ -132,6 +143,7 @@ struct Geometry
     GeometryKind kind = GeometryKind::None;
     Pose pose;                             ///< X_BS of the shape in its body
     Vec3 size;                             ///< sphere: x = radius; box: half extents; plane: nothing (normal is z of S)
+    std::vector<std::uint32_t> parts;      ///< compound: rows of Shapes, none of them a compound or a plane
     std::vector<Vec3> vertices;            ///< mesh, in S, m
     std::vector<std::uint32_t> triangles;  ///< mesh: index triples, counter-clockwise seen from outside
     bool hull_collides = false;

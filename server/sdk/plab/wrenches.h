@@ -14,9 +14,10 @@ namespace plab
 class Wrenches
 {
 public:
-    std::vector<Vec3> force;           ///< N, in W, per body
-    std::vector<Vec3> torque;          ///< N m about C, in W, per body
-    std::vector<double> shaft_torque;  ///< N m about the axle, per shaft
+    std::vector<Vec3> force;                         ///< N, in W, per body
+    std::vector<Vec3> torque;                        ///< N m about C, in W, per body
+    std::vector<double> shaft_torque;                ///< N m about the axle, per shaft
+    std::vector<std::vector<double>> quantity_rate;  ///< 1/s of the value's unit, per row of Quantities and value
 
     Wrenches() = default;
     Wrenches(const Bodies& bodies, const Shafts& shafts) : bodies_(&bodies), shafts_(&shafts) {}
@@ -49,6 +50,9 @@ public:
         shaft_torque[shaft.index] += t;
         if (accounted(shaft)) account(t * shafts_->speed[shaft.index]);
     }
+
+    /// Adds to the rate of value i of a row of Quantities. Does no work.
+    void add_rate(Ref quantities, std::size_t i, double rate) { quantity_rate[quantities.index][i] += rate; }
 
     /// Power by component, W; null while nobody accounts (trial steps).
     std::vector<double>* power = nullptr;

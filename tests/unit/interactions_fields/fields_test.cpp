@@ -7,6 +7,7 @@
 #include "interactions/fields/airflow.h"
 #include "interactions/fields/drag.h"
 #include "interactions/fields/gravity.h"
+#include "interactions/fields/load.h"
 #include "plab/plugin.h"
 #include "unit/objects/table.h"
 
@@ -120,6 +121,30 @@ TEST_CASE("drag is linear and quadratic in the velocity against the medium")
     CHECK(scene.wrenches.shaft_torque[0] == 0);
 }
 
+TEST_CASE("a load acts in full on each dynamic body and shaft")
+{
+    Scene scene;
+    TableFixture<LoadRows> load;
+    load.rows.between[0] = {{Facet::Body, 0}, {Facet::Body, 1}, {Facet::Shaft, 0}};
+    load.rows.force[0] = {1, 2, 3};
+    load.rows.torque[0] = {0, -4, 0};
+    load.rows.shaft_torque[0] = 5;
+    scene.bodies.velocity[0] = {2, 0, 1};
+    scene.bodies.angular_velocity[0] = {0, 1, 0};
+    scene.shafts.speed[0] = 3;
+    apply_load(load.context(), kFirst, load.rows, scene.bodies, scene.shafts, scene.wrenches);
+    CHECK(scene.wrenches.force[0] == Vec3{1, 2, 3});
+    CHECK(scene.wrenches.torque[0] == Vec3{0, -4, 0});
+    CHECK(scene.wrenches.force[1] == Vec3{});
+    CHECK(scene.wrenches.shaft_torque[0] == 5);
+    CHECK(scene.power[0] == 5.0 - 4 + 15);
+
+    scene.clear();
+    scene.shafts.motion[0] = Motion::Kinematic;
+    apply_load(load.context(), kFirst, load.rows, scene.bodies, scene.shafts, scene.wrenches);
+    CHECK(scene.wrenches.shaft_torque[0] == 0);
+}
+
 TEST_CASE("a falling body with quadratic drag reaches its terminal velocity")
 {
     // m v' = m g - c v |v|: v = v_t tanh(g t / v_t), z = v_t^2/g ln cosh(g t / v_t).
@@ -223,11 +248,11 @@ TEST_CASE("a fan pushes with its usual drag at rest, and nothing moves with the 
     CHECK(scene.power[0] == doctest::Approx(0.5 * f.z).epsilon(1e-15));
 }
 
-TEST_CASE("the plugin declares three fields of force, each acting on each participant by itself")
+TEST_CASE("the plugin declares four fields of force, each acting on each participant by itself")
 {
     Registrar registrar;
     plab_plugin_register(registrar);
-    REQUIRE(registrar.types().size() == 3);
+    REQUIRE(registrar.types().size() == 4);
     for (const TypeInfo& type : registrar.types())
     {
         CAPTURE(type.name);

@@ -23,6 +23,7 @@ struct Lab
     Schema schema;
     Bodies bodies;
     Shafts shafts;
+    Quantities quantities;
     Wrenches wrenches;
     Events events;
     std::vector<ParameterChange> changes;
@@ -53,6 +54,8 @@ struct Lab
     void clear()
     {
         wrenches.force.assign(2, {}), wrenches.torque.assign(2, {}), wrenches.shaft_torque.assign(2, 0);
+        wrenches.quantity_rate.assign(quantities.size(), {});
+        for (std::size_t i = 0; i < quantities.size(); ++i) wrenches.quantity_rate[i].assign(quantities.value[i].size(), 0);
         power.assign(8, 0);
     }
     /// The reason why the code is refused, or nothing.
@@ -64,13 +67,13 @@ struct Lab
     void drive()
     {
         context.changes = &changes;
-        scripts::drive(context, kRows, rows, bodies, shafts);
+        scripts::drive(context, kRows, rows, bodies, shafts, quantities);
         context.changes = nullptr;
     }
     void force()
     {
         clear();
-        scripts::force(context, kRows, rows, bodies, shafts, wrenches);
+        scripts::force(context, kRows, rows, bodies, shafts, quantities, wrenches);
     }
     void finish() { scripts::finish(context, kRows, rows); }
     void step()

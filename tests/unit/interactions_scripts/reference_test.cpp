@@ -121,7 +121,7 @@ TEST_CASE("a warm script allocates nothing")
         lab.wrenches.force[0] = {};
         static constexpr Row row[] = {0};
         for (int stage = 0; stage < 4; ++stage)
-            scripts::force(lab.context, row, lab.rows, lab.bodies, lab.shafts, lab.wrenches);
+            scripts::force(lab.context, row, lab.rows, lab.bodies, lab.shafts, lab.quantities, lab.wrenches);
     }
     CHECK(allocations == before);
     CHECK(lab.events.all.empty());
@@ -141,7 +141,7 @@ TEST_CASE("what a call costs")
         {
             const auto start = std::chrono::steady_clock::now();
             for (int i = 0; i < calls; ++i)
-                scripts::force(lab.context, row, lab.rows, lab.bodies, lab.shafts, lab.wrenches);
+                scripts::force(lab.context, row, lab.rows, lab.bodies, lab.shafts, lab.quantities, lab.wrenches);
             best = std::min(best, seconds_since(start) / calls * 1e9);
         }
         CHECK(lab.events.all.empty());

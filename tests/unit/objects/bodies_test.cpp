@@ -269,7 +269,7 @@ TEST_CASE("the plugin declares its states with the commands of the paper")
 {
     Registrar registrar;
     plab_plugin_register(registrar);
-    REQUIRE(registrar.types().size() == 5);
+    REQUIRE(registrar.types().size() == 6);
     const char* names[] = {"State/Static", "State/Kinematic", "State/RigidBody", "State/Shaft"};
     for (std::size_t i = 0; i < 4; ++i)
     {
@@ -281,5 +281,5 @@ TEST_CASE("the plugin declares its states with the commands of the paper")
         CHECK(type.commands[1].name == "State/Restore");
         CHECK(type.commands[1].phase == Phase::Restore);
     }
-    CHECK(registrar.types()[4].commands[0].phase == Phase::Connect);
+    CHECK(registrar.types()[5].commands[0].phase == Phase::Connect);
 }

@@ -120,23 +120,28 @@ TEST_CASE("a cylinder weighs what the closed form says, where its pose puts it")
     CHECK(solid.inertia(0, 0) == doctest::Approx(mass * 0.02).epsilon(1e-14));
 }
 
-TEST_CASE("the cylinder that is drawn is closed, inside the true one, and collides unless told otherwise")
+TEST_CASE("a cylinder is handed over as what it is; one that is only drawn as a closed mesh inside it")
 {
     TableFixture<CylinderRows> table;
     table.rows.radius[0] = 0.2, table.rows.height[0] = 0.7;
+    table.rows.shape.position[0] = {0.5, 0, 0};
     Shapes host = make_shapes(1);
     prepare_cylinder(table.context(), 0, table.rows, host);
     const Geometry& g = host.geometry[0];
+    CHECK(g.kind == GeometryKind::Cylinder);
+    CHECK(g.size.x == 0.2);
+    CHECK(g.size.z == 0.35);
+    table.rows.hull_collides[0] = false;
+    prepare_cylinder(table.context(), 0, table.rows, host);
     CHECK(g.kind == GeometryKind::Mesh);
-    CHECK(g.hull_collides);
+    CHECK_FALSE(g.hull_collides);
+    CHECK(g.pose.p.x == 0.5);
     const auto prism = solid_mesh(g.vertices, g.triangles);
     REQUIRE(prism.ok());
     // A prism of n sides has n/(2 pi) sin(2 pi/n) of the circle's area.
     const double share = 64 / (2 * kPi) * std::sin(2 * kPi / 64);
     CHECK(prism->mass == doctest::Approx(solid_cylinder(0.2, 0.7).mass * share).epsilon(1e-13));
-    table.rows.hull_collides[0] = false;
-    prepare_cylinder(table.context(), 0, table.rows, host);
-    CHECK_FALSE(host.geometry[0].hull_collides);
+    CHECK(length(prism->center) < 1e-14);
 }
 
 TEST_CASE("a gear is a closed mesh between the cylinders of its roots and tips")

@@ -88,10 +88,10 @@ TEST_CASE("every form is drawn where its pose puts it, and as large as it is")
     rod.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
     drawing.meshes = {rod};
     drawing.meshes_revision = 7;
-    for (const Form form : {Form::Box, Form::Cylinder, Form::Mesh})
+    for (const Form form : {Form::Box, Form::Cylinder, Form::Capsule, Form::Mesh})
     {
         CAPTURE(static_cast<int>(form));
-        drawing.items = {item(form, {0.3, 0, 0}, {0.2, 0.2, 1}, kGreen)};
+        drawing.items = {item(form, {0.3, 0, 0}, {0.2, 0.2, form == Form::Capsule ? 0.8 : 1}, kGreen)};
         drawing.items[0].pose.q = along_x;
         const Picture picture = drawn(drawing);
         const auto differs = [&](double x, double z)

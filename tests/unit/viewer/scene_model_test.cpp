@@ -90,6 +90,23 @@ TEST_CASE("a body is drawn where its state says, its shape turned with it; a sta
     CHECK(floor->pose.p.z == 9);
 }
 
+TEST_CASE("capsules and cylinders are forms of their own; a compound is drawn as its triangles")
+{
+    link::Snapshot snapshot = sample();
+    snapshot.shapes["round"].form = "capsule";
+    CHECK(find_form(model_of(snapshot).draw(at(0)), render::Form::Capsule) != nullptr);
+    snapshot.shapes["round"].form = "compound";
+    snapshot.shapes["round"].vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    snapshot.shapes["round"].triangles = {{0, 1, 2}};
+    SceneModel model = model_of(snapshot);
+    const render::Drawing& drawing = model.draw(at(0));
+    REQUIRE(find_form(drawing, render::Form::Mesh) != nullptr);
+    CHECK(drawing.meshes.size() == 1);
+    snapshot.objects["wheel"].shapes = {"round"};
+    snapshot.shapes["round"].form = "cylinder";
+    CHECK(find_form(model_of(snapshot).draw(at(0)), render::Form::Cylinder) != nullptr);
+}
+
 TEST_CASE("a shaft without shapes is an axle with a mark that turns by its angle about the axle")
 {
     SceneModel model = model_of(sample());

@@ -1,0 +1,65 @@
+/// Gears between bodies and shafts, in any mixture: a pair at a ratio, and the planetary train of three.
+///
+///   Gear        C = angle_b - f angle_a - offset = 0                      J = [ -f | 1 ] on spins; a carrier takes the rest
+///   Planetary   C = N_s angle_s + N_r angle_r - (N_s + N_r) angle_c - offset = 0, divided by N_s + N_r
+///               (R. Willis, Principles of mechanism, 1841: (w_s - w_c)/(w_r - w_c) = -N_r/N_s)
+///
+/// Angles count whole turns, so C holds over any number of them. For shafts alone, Constraint/AngularVelocity/Graph is
+/// cheaper and has no drift at all.
+#pragma once
+
+#include "angular_velocity/ratio.h"
+#include "joints/spin.h"
+
+namespace plab::constraints
+{
+
+/// What gears put out.
+struct GearOutputs
+{
+    Column<double> phase_offset, phase_factor;  // rad, 1
+    Column<double> phase_error, velocity_error, torque;
+    Column<std::int64_t> redundant;
+
+    void describe_gear(Schema& s, const std::string& last);
+    /// The offset counts from when the gear began, and anew when its factor changed.
+    void engage(Row row, double factor, double phase)
+    {
+        if (phase_factor[row] != factor) phase_offset[row] = phase, phase_factor[row] = factor;
+    }
+};
+
+struct GearRows : GearOutputs
+{
+    Column<Ref> driver, driven, carrier;
+    Column<double> velocity_factor;
+    Column<std::int64_t> driver_teeth, driven_teeth;
+    Column<std::string> mesh;
+    SpinColumns driver_spin, driven_spin;
+    Column<Ratio> ratio;
+
+    void describe(Schema& s);
+};
+struct PlanetaryRows : GearOutputs
+{
+    Column<Ref> sun, ring, carrier;
+    Column<std::int64_t> sun_teeth, ring_teeth;
+    SpinColumns sun_spin, ring_spin, carrier_spin;
+
+    void describe(Schema& s);
+};
+
+Result<void> prepare_gear(Row row, GearRows& rows, const Bodies& bodies);
+void begin_gear(const StepContext& step, Rows which, GearRows& rows, const Bodies& bodies, const Shafts& shafts);
+void constrain_gear(const StepContext& step, Rows which, const GearRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink);
+void finish_gear(const StepContext& step, Rows which, GearRows& rows, const Bodies& bodies, const Shafts& shafts,
+                 const RowReports& reports);
+
+Result<void> prepare_planetary(Row row, PlanetaryRows& rows, const Bodies& bodies);
+void begin_planetary(const StepContext& step, Rows which, PlanetaryRows& rows, const Bodies& bodies, const Shafts& shafts);
+void constrain_planetary(const StepContext& step, Rows which, const PlanetaryRows& rows, const Bodies& bodies, const Shafts& shafts,
+                         RowSink& sink);
+void finish_planetary(const StepContext& step, Rows which, PlanetaryRows& rows, const Bodies& bodies, const Shafts& shafts,
+                      const RowReports& reports);
+
+}  // namespace plab::constraints

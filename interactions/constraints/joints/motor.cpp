@@ -1,0 +1,163 @@
+#include "joints/motor.h"
+
+#include <algorithm>
+
+#include "joints/distance.h"
+
+namespace plab::constraints
+{
+
+void MotorRows::describe(Schema& s)
+{
+    describe_coordinate(s, {"turn", "slide"});
+    s.param(mode, "mode", unit::one, "rate: moves at speed; servo: goes to target, at most at speed")
+        .or_else("rate")
+        .one_of({"rate", "servo"});
+    s.param(speed, "speed", unit::one, "rad/s or m/s; infinite for a servo: any").or_else(0).may_be_infinite();
+    s.param(target, "target", unit::one, "of a servo, rad or m").or_else(0);
+    s.param(gain, "gain", unit::one, "of a servo, 1/s: it comes nearer as exp(-gain t)").or_else(10).positive();
+    s.param(max_effort, "max_effort", unit::one, "largest torque or force, N m or N; infinite: whatever it takes")
+        .or_else(kInfinity)
+        .not_negative()
+        .may_be_infinite();
+    describe_reaction(s, "b");
+}
+
+void constrain_motor(const StepContext& step, Rows which, const MotorRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink)
+{
+    for (const Row row : which)
+    {
+        Coordinate c = look_at(rows, row, bodies, shafts, step.time);
+        c.row.kind = RowKind::Rate;
+        c.row.rate = rows.speed[row];
+        if (rows.mode[row] == "servo")
+        {
+            const double most = std::fabs(rows.speed[row]) > 0 ? std::fabs(rows.speed[row]) : kInfinity;
+            const double wanted = rows.gain[row] * (rows.target[row] - c.x);
+            c.row.rate = std::clamp(wanted, -most, most);
+            if (c.row.rate == wanted) c.row.bias -= rows.gain[row] * c.speed;
+        }
+        c.row.lower = -rows.max_effort[row], c.row.upper = rows.max_effort[row];
+        sink.begin(step.component_of_row[row]);
+        sink.add(c.row);
+    }
+}
+
+void TorsionSpringRows::describe(Schema& s)
+{
+    describe_coordinate(s, {"turn", "slide"});
+    s.param(stiffness, "stiffness", unit::one, "k, N m/rad or N/m").or_else(0).not_negative();
+    s.param(damping, "damping", unit::one, "c, N m s/rad or N s/m").or_else(0).not_negative();
+    s.param(rest, "rest", unit::one, "position without force, rad or m").or_else(0);
+    s.output(effort, "effort", unit::one, "torque or force on b along the axis, N m or N");
+}
+
+namespace
+{
+
+double effort_of(const TorsionSpringRows& rows, Row row, const Coordinate& c)
+{
+    return -rows.stiffness[row] * (c.x - rows.rest[row]) - rows.damping[row] * c.speed;
+}
+
+}  // namespace
+
+void apply_torsion(const StepContext& step, Rows which, const TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts,
+                   Wrenches& wrenches)
+{
+    for (const Row row : which)
+    {
+        const Coordinate c = look_at(rows, row, bodies, shafts, step.time);
+        const double effort = effort_of(rows, row, c);
+        wrenches.begin(step.component_of_row[row]);
+        for (std::uint32_t k = 0; k < c.row.count; ++k)
+        {
+            const RowBlock& block = c.row.blocks[k];
+            if (block.who.facet == Facet::Shaft)
+            {
+                if (shafts.dynamic(block.who.index)) wrenches.add_shaft_torque(block.who, block.angular.x * effort);
+                continue;
+            }
+            if (!bodies.dynamic(block.who.index)) continue;
+            wrenches.add_force(block.who, block.linear * effort);
+            wrenches.add_torque(block.who, block.angular * effort);
+        }
+    }
+}
+
+void stored_by_torsion(const StepContext& step, Rows which, const TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts,
+                       StoredEnergy& stored)
+{
+    for (const Row row : which)
+    {
+        const double stretch = look_at(rows, row, bodies, shafts, step.time).x - rows.rest[row];
+        stored.joule += 0.5 * rows.stiffness[row] * stretch * stretch;
+    }
+}
+
+void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts)
+{
+    for (const Row row : which)
+    {
+        keep_coordinate(rows, row, bodies, shafts, step.time);
+        rows.effort[row] = effort_of(rows, row, look_at(rows, row, bodies, shafts, step.time));
+    }
+}
+
+void LimitRows::describe(Schema& s)
+{
+    describe_coordinate(s, {"turn", "slide", "distance"});
+    s.param(lower, "lower", unit::one, "least position, rad or m; -inf: none").or_else(-kInfinity).may_be_infinite();
+    s.param(upper, "upper", unit::one, "largest position, rad or m; inf: none").or_else(kInfinity).may_be_infinite();
+    s.param(restitution, "restitution", unit::one, "share of the speed with which it comes back from its limit")
+        .or_else(0)
+        .not_negative()
+        .at_most(1);
+    describe_reaction(s, "b");
+}
+
+Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies)
+{
+    if (!(rows.lower[row] <= rows.upper[row])) return reason("lower must not be above upper");
+    return rows.place_coordinate(row, bodies);
+}
+
+namespace
+{
+
+/// Rows come in this much before they could act, rad or m, and twice as early as the present speed would have it: what
+/// accelerates within the step is met as well.
+constexpr double kReach = 1e-4;
+
+void add_side(const LimitRows& rows, Row row, const StepContext& step, ConstraintRow side, double gap, double speed, RowSink& sink)
+{
+    if (gap > kReach + 2 * step.dt * std::fmax(0.0, -speed)) return;
+    side.kind = RowKind::OneSided;
+    side.error = gap, side.lower = 0, side.restitution = rows.restitution[row];
+    sink.add(side);
+}
+
+}  // namespace
+
+void constrain_limit(const StepContext& step, Rows which, const LimitRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink)
+{
+    for (const Row row : which)
+    {
+        Coordinate c;
+        if (rows.along[row] == "distance")
+        {
+            const Stretch s = stretch_of(rows.sides(row, bodies));
+            c.row = stretch_row(s, 0, 1, 0), c.x = s.distance, c.speed = s.rate;
+        }
+        else
+            c = look_at(rows, row, bodies, shafts, step.time);
+        sink.begin(step.component_of_row[row]);
+        add_side(rows, row, step, c.row, c.x - rows.lower[row], c.speed, sink);
+        for (std::uint32_t k = 0; k < c.row.count; ++k)
+            c.row.blocks[k].linear = -c.row.blocks[k].linear, c.row.blocks[k].angular = -c.row.blocks[k].angular;
+        c.row.bias = -c.row.bias, c.row.feature = 1;
+        add_side(rows, row, step, c.row, rows.upper[row] - c.x, -c.speed, sink);
+    }
+}
+
+}  // namespace plab::constraints

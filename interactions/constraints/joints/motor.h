@@ -1,0 +1,91 @@
+/// Motor: makes b turn against a, or slide along it, at a speed; or brings it to a target and keeps it there.
+///
+///   rate      J v = speed
+///   servo     J v = gain (target - x), within +-speed: x nears its target as exp(-gain t)      bias = -gain J v
+///
+/// J v is the turning speed about the axis or the rate of travel along it. What a motor can do may be limited: then a manager
+/// holds its row.
+#pragma once
+
+#include "joints/spin.h"
+
+namespace plab::constraints
+{
+
+/// A coordinate between a and b, over bodies or shafts: turning about an axis or travel along it.
+struct CoordinateRows : PairRows, SpinColumns
+{
+    Column<std::string> along;
+    Column<Vec3> travel_axis_a, placed_travel_axis;  // fixed in a
+    Column<double> position, speed_now;              // rad or m, rad/s or m/s
+
+    void describe_coordinate(Schema& s, std::vector<std::string> ways);
+    Result<void> place_coordinate(Row row, const Bodies& bodies);
+    bool turns(Row row) const { return along[row] == "turn"; }
+    bool of_shafts(Row row) const { return b[row].facet == Facet::Shaft; }
+};
+
+/// The coordinate at the present state, with a row for it: J, bias; no error yet.
+struct Coordinate
+{
+    double x = 0, speed = 0;
+    ConstraintRow row;
+};
+Coordinate look_at(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
+/// Phase::Drive and Phase::Finish of turning.
+void begin_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
+void keep_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
+
+template <class Table>
+void begin_turning(const StepContext& step, Rows which, Table& rows, const Bodies& bodies, const Shafts& shafts)
+{
+    for (const Row row : which) begin_coordinate(rows, row, bodies, shafts, step.time);
+}
+template <class Table>
+Result<void> prepare_coordinate(Row row, Table& rows, const Bodies& bodies)
+{
+    return rows.place_coordinate(row, bodies);
+}
+template <class Table>
+void finish_coordinate(const StepContext& step, Rows which, Table& rows, const Bodies& bodies, const Shafts& shafts,
+                       const RowReports& reports)
+{
+    for (const Row row : which)
+    {
+        keep_coordinate(rows, row, bodies, shafts, step.time);
+        rows.take_report(row, reports, step.component_of_row[row]);
+    }
+}
+
+struct MotorRows : CoordinateRows, ReactionColumns
+{
+    Column<std::string> mode;
+    Column<double> speed, target, gain, max_effort;
+    void describe(Schema& s);
+};
+void constrain_motor(const StepContext& step, Rows which, const MotorRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink);
+
+/// TorsionSpring: torque -(k (x - rest) + c x') on b about the axis; or along it, a force.
+struct TorsionSpringRows : CoordinateRows
+{
+    Column<double> stiffness, damping, rest, effort;
+    void describe(Schema& s);
+};
+void apply_torsion(const StepContext& step, Rows which, const TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts,
+                   Wrenches& wrenches);
+void stored_by_torsion(const StepContext& step, Rows which, const TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts,
+                       StoredEnergy& stored);
+void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts);
+
+/// Limit: the coordinate, or the distance between the points, stays within [lower, upper].
+///
+///   error = x - lower, or upper - x        one-sided rows, where they may act within the step
+struct LimitRows : CoordinateRows, ReactionColumns
+{
+    Column<double> lower, upper, restitution;
+    void describe(Schema& s);
+};
+Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies);
+void constrain_limit(const StepContext& step, Rows which, const LimitRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink);
+
+}  // namespace plab::constraints

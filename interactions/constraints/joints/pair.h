@@ -1,0 +1,106 @@
+/// What joints between two bodies share: who they join, at which points, along which axis, and what they report.
+///
+/// Points and axes are given in the world at the pose at which the joint is placed (when its scene starts, when it is added,
+/// or when the parameter changes), and kept in the bodies' frames as state, so that mementos and swaps carry them over.
+#pragma once
+
+#include <limits>
+
+#include "joints/sides.h"
+#include "plab/registrar.h"
+
+namespace plab::constraints
+{
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr Vec3 kNotGiven{kInfinity, kInfinity, kInfinity};
+
+/// Roles a and b, and a point on each.
+struct PairRows
+{
+    Column<Ref> a, b;
+    Column<Vec3> anchor, anchor_a, anchor_b;       // m
+    Column<Vec3> point_a, point_b, placed_anchor;  // m
+    Column<bool> placed;
+
+    void describe_pair(Schema& s, std::vector<Facet> facets = {Facet::Body});
+    /// What a point is that no parameter gives.
+    enum class Missing : std::uint8_t
+    {
+        WhereOtherIs,  ///< the points meet
+        Origin,        ///< each body's own
+    };
+    /// Points from parameters, where they are new.
+    void place_points(Row row, const Bodies& bodies, Missing missing = Missing::WhereOtherIs);
+    Sides sides(Row row, const Bodies& bodies) const
+    {
+        return sides_of(side_of(bodies, a[row], point_a[row]), side_of(bodies, b[row], point_b[row]));
+    }
+};
+
+/// An axis through the point, as frames with z along it.
+struct AxisColumns
+{
+    Column<Vec3> axis, placed_axis;
+    Column<Quat> frame_a, frame_b;  // q_BF; of the world: q_WF
+
+    void describe_axis(Schema& s);
+    /// False: the axis stayed as it was.
+    bool place_axis(Row row, const Quat& q_a, const Quat& q_b);
+};
+
+/// An angle that is never wrapped, from attitudes that only show it within half a turn: what is expected from the last
+/// known angle and the mean speed since then decides about whole turns.
+struct MeterColumns
+{
+    Column<double> angle, rate, time;  // rad, rad/s, s
+
+    /// `prefix`: of the fields' names.
+    void describe_meter(Schema& s, const std::string& prefix, const std::string& doc);
+    void reset(Row row) { angle[row] = rate[row] = 0, time[row] = kNotRead; }
+    /// The unwrapped angle at `now`, when the attitudes show `twist` and turn at `speed`.
+    double read(Row row, double twist, double speed, double now) const;
+    /// The same, to be remembered. `step`: how long ago the angle was as it is remembered, where that is not known.
+    void keep(Row row, double twist, double speed, double now, double step);
+    bool is_read(Row row) const { return time[row] != kNotRead; }
+    /// The angle is known as of now.
+    void start(Row row, double speed, double now) { rate[row] = speed, time[row] = now; }
+
+private:
+    static constexpr double kNotRead = -kInfinity;
+};
+
+/// What a row interaction puts out.
+struct ReactionColumns
+{
+    Column<Vec3> force, torque;                  // N, N m
+    Column<double> position_error, speed_error;  // m or rad
+    Column<std::int64_t> redundant;
+
+    void describe_reaction(Schema& s, const std::string& on);
+    RowReport take_report(Row row, const RowReports& reports, std::uint32_t component);
+};
+
+/// A joint between two bodies at a point.
+struct JointRows : PairRows, ReactionColumns
+{
+};
+/// The same with an axis.
+struct AxisJointRows : JointRows, AxisColumns
+{
+    void place(Row row, const Bodies& bodies)
+    {
+        place_points(row, bodies);
+        place_axis(row, attitude(bodies, a[row]), attitude(bodies, b[row]));
+    }
+    static Quat attitude(const Bodies& bodies, Ref who) { return who.valid() ? bodies.orientation[who.index] : Quat{}; }
+};
+
+/// Phase::Finish of joints without more to say.
+template <class Table>
+void finish_reaction(const StepContext& step, Rows which, Table& rows, const RowReports& reports)
+{
+    for (const Row row : which) rows.take_report(row, reports, step.component_of_row[row]);
+}
+
+}  // namespace plab::constraints

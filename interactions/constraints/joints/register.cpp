@@ -1,0 +1,150 @@
+#include "joints/register.h"
+
+#include "joints/distance.h"
+#include "joints/gear.h"
+#include "joints/motor.h"
+#include "joints/rigid_joints.h"
+
+namespace plab::constraints
+{
+namespace
+{
+
+constexpr const char* kRows = "Constraint/Rows";
+constexpr const char* kPrepare = "Constraint/Prepare";
+constexpr const char* kFinish = "Constraint/Finish";
+constexpr const char* kPlaced = "takes points and axis from the present pose, where they are new";
+constexpr const char* kReport = "force, torque and errors of the step";
+constexpr const char* kFamily = "Constraint/Joint";
+constexpr const char* kLimits =
+    "index 1 inside the stages, drift taken away after the step: near a singular configuration steps have to be short against the way to "
+    "it; rows that contradict one another end at least squares, with the event constraint.contradiction";
+constexpr const char* kSource = "Baraff, Linear-time dynamics using Lagrange multipliers, 1996; Hairer, Wanner, Solving ODEs II, VII.2";
+
+void register_rigid(Registrar& registrar)
+{
+    registrar.component<BallRows>("Constraint/Ball", "holds a point of b at a point of a, or of the world")
+        .family(kFamily)
+        .command<&prepare_ball>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&constrain_ball>(Phase::Constrain, kRows, "three rows: the points agree")
+        .command<&finish_reaction<BallRows>>(Phase::Finish, kFinish, kReport)
+        .cost("3 rows; linear in the number of joints for chains and trees")
+        .limits(kLimits)
+        .source(kSource);
+    registrar.component<HingeRows>("Constraint/Hinge", "a ball joint about whose axis alone b turns against a")
+        .family(kFamily)
+        .command<&prepare_hinge>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&constrain_hinge>(Phase::Constrain, kRows, "five rows: the points agree, the axes lie along one another")
+        .command<&finish_hinge>(Phase::Finish, kFinish, "angle, force, torque and errors of the step")
+        .cost("5 rows; linear in the number of joints for chains and trees")
+        .limits(kLimits)
+        .source(kSource);
+    registrar.component<SliderRows>("Constraint/Slider", "b slides along an axis of a, without turning against it")
+        .family(kFamily)
+        .command<&prepare_slider>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&constrain_slider>(Phase::Constrain, kRows, "five rows: no way across the axis, no turn")
+        .command<&finish_slider>(Phase::Finish, kFinish, "travel, force, torque and errors of the step")
+        .cost("5 rows; linear in the number of joints for chains and trees")
+        .limits(kLimits)
+        .source(kSource);
+    registrar.component<FixedRows>("Constraint/Fixed", "holds b to a, or to the world, as if they were one")
+        .family(kFamily)
+        .command<&prepare_fixed>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&constrain_fixed>(Phase::Constrain, kRows, "six rows: no way, no turn")
+        .command<&finish_reaction<FixedRows>>(Phase::Finish, kFinish, kReport)
+        .cost("6 rows; linear in the number of joints for chains and trees")
+        .limits(kLimits)
+        .source(kSource);
+}
+
+void register_lengths(Registrar& registrar)
+{
+    constexpr const char* kLength = "Constraint/Length";
+    registrar.component<DistanceRows>("Constraint/Distance", "keeps two points at a distance, like a rod without mass")
+        .family(kLength)
+        .command<&prepare_distance>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&constrain_distance>(Phase::Constrain, kRows, "one row: the distance")
+        .command<&finish_distance>(Phase::Finish, kFinish, kReport)
+        .cost("1 row")
+        .limits(std::string("a length of 0 has no direction: use a ball; ") + kLimits)
+        .source(kSource);
+    registrar.component<SpringDamperRows>("Constraint/SpringDamper", "a spring with a damper between two points")
+        .family(kLength)
+        .command<&prepare_spring>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&apply_spring>(Phase::Force, "Constraint/Force", "adds -(k stretch + c rate) along the spring")
+        .command<&stored_by_spring>(Phase::Potential, "Constraint/Energy", "k stretch^2 / 2")
+        .command<&finish_spring>(Phase::Finish, kFinish, "length, its rate and force at the end of the step")
+        .cost("1 force; steps of explicit solvers shorter than 2 sqrt(m/k) and 2 m/c")
+        .limits("explicit solvers: unstable beyond those steps; stiff ones: take an implicit solver, or Constraint/Distance")
+        .source("Hooke's law, Kelvin-Voigt body");
+}
+
+void register_coordinates(Registrar& registrar)
+{
+    constexpr const char* kStart = "Constraint/Start";
+    constexpr const char* kStartDoc = "the angle when it began, from which turns are counted";
+    registrar.component<MotorRows>("Constraint/Motor", "turns or slides b against a at a speed, or to a target")
+        .family("Constraint/Motor")
+        .command<&prepare_coordinate<MotorRows>>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&begin_turning<MotorRows>>(Phase::Drive, kStart, kStartDoc)
+        .command<&constrain_motor>(Phase::Constrain, kRows, "one row: the speed")
+        .command<&finish_coordinate<MotorRows>>(Phase::Finish, kFinish, "position, effort and errors of the step")
+        .cost("1 row; with max_effort its bodies are stepped by a manager")
+        .limits("max_effort needs a manager; the axis is fixed in b and should be that of a hinge or slider between the same two")
+        .source(kSource);
+    registrar.component<TorsionSpringRows>("Constraint/TorsionSpring", "a spring with a damper about a hinge's axis, or along a slider's")
+        .family("Constraint/TorsionSpring")
+        .command<&prepare_coordinate<TorsionSpringRows>>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&begin_turning<TorsionSpringRows>>(Phase::Drive, kStart, kStartDoc)
+        .command<&apply_torsion>(Phase::Force, "Constraint/Force", "adds -(k (x - rest) + c x') along the coordinate")
+        .command<&stored_by_torsion>(Phase::Potential, "Constraint/Energy", "k (x - rest)^2 / 2")
+        .command<&finish_torsion>(Phase::Finish, kFinish, "position, rate and effort at the end of the step")
+        .cost("1 force")
+        .limits("explicit solvers: unstable for steps beyond 2 sqrt(J/k) and 2 J/c")
+        .source("Hooke's law, Kelvin-Voigt body");
+    registrar.component<LimitRows>("Constraint/Limit", "keeps an angle, a travel or a distance within bounds")
+        .family("Constraint/Limit")
+        .command<&prepare_limit>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&begin_turning<LimitRows>>(Phase::Drive, kStart, kStartDoc)
+        .command<&constrain_limit>(Phase::Constrain, kRows, "a one-sided row, where the bound is near")
+        .command<&finish_coordinate<LimitRows>>(Phase::Finish, kFinish, "position, force and errors of the step")
+        .cost("nothing away from its bounds; there its bodies are stepped by a manager")
+        .limits("needs a manager; a bound is met at the end of the step that reaches it")
+        .source("Signorini's conditions; Newton's law of restitution");
+}
+
+void register_gears(Registrar& registrar)
+{
+    constexpr const char* kStart = "Constraint/Start";
+    constexpr const char* kStartDoc = "angles and phase when it engaged";
+    registrar.component<GearRows>("Constraint/Gear", "keeps the turns of two bodies or shafts at a ratio, over any number of them")
+        .family("Constraint/Gear")
+        .command<&prepare_gear>(Phase::Prepare, kPrepare, "the ratio, and the axles where they are new")
+        .command<&begin_gear>(Phase::Drive, kStart, kStartDoc)
+        .command<&constrain_gear>(Phase::Constrain, kRows, "one row: the phase")
+        .command<&finish_gear>(Phase::Finish, kFinish, "phase, torque and errors of the step")
+        .cost("1 row")
+        .limits("bodies need bearings of their own; a body must not gain or lose half a turn against its mean speed within a step")
+        .source(kSource);
+    registrar.component<PlanetaryRows>("Constraint/Planetary", "sun, ring and carrier of a planetary train, as bodies or shafts")
+        .family("Constraint/Planetary")
+        .command<&prepare_planetary>(Phase::Prepare, kPrepare, "the axles, where they are new")
+        .command<&begin_planetary>(Phase::Drive, kStart, kStartDoc)
+        .command<&constrain_planetary>(Phase::Constrain, kRows, "one row: Willis' equation")
+        .command<&finish_planetary>(Phase::Finish, kFinish, "phase, torque and errors of the step")
+        .cost("1 row; the inertia of planets is not in it")
+        .limits("bodies need bearings of their own, on one axis")
+        .source("R. Willis, Principles of mechanism, 1841");
+}
+
+}  // namespace
+
+void register_joints(Registrar& registrar)
+{
+    register_rigid(registrar);
+    register_lengths(registrar);
+    register_coordinates(registrar);
+    register_gears(registrar);
+}
+
+}  // namespace plab::constraints

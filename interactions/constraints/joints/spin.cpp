@@ -1,0 +1,70 @@
+#include "joints/spin.h"
+
+namespace plab::constraints
+{
+namespace
+{
+
+void add_block(Ref who, const Vec3& angular, ConstraintRow& row)
+{
+    if (!who.valid()) return;
+    for (std::uint32_t k = 0; k < row.count; ++k)
+        if (row.blocks[k].who == who)
+        {
+            row.blocks[k].angular += angular;
+            return;
+        }
+    row.blocks[row.count++] = {who, {}, angular};
+}
+
+}  // namespace
+
+void add_spin(const Spin& spin, double factor, ConstraintRow& row)
+{
+    add_block(spin.base, -factor * spin.n, row);
+    add_block(spin.who, factor * spin.n, row);
+    row.bias += factor * spin.extra;
+}
+
+void SpinColumns::describe_spin(Schema& s, const std::string& prefix, const std::string& whose)
+{
+    s.param(axis, prefix + "axis", unit::one, "of a body: axle of " + whose + ", in the world as it is now")
+        .or_else({0, 0, 1})
+        .unit_length();
+    s.state(frame_a, prefix + "frame_base", unit::one, "the axle's frame (z along it) in what it turns against");
+    s.state(frame_b, prefix + "frame", unit::one, "the axle's frame in the body");
+    s.state(placed_axis, prefix + "placed_axis", unit::one, "the axis that the frames were taken from").initially({});
+    describe_meter(s, prefix, "how far " + whose + " has turned");
+}
+
+Result<void> SpinColumns::place(Row row, Ref who, Ref base, const Bodies& bodies)
+{
+    if (base.valid() && base.facet != who.facet) return reason("a shaft turns against a shaft, and a body against a body");
+    if (who.facet == Facet::Shaft) return {};
+    const Quat q_base = base.valid() ? bodies.orientation[base.index] : Quat{};
+    if (place_axis(row, q_base, bodies.orientation[who.index])) reset(row);
+    return {};
+}
+
+Spin SpinColumns::look(Row row, Ref who, Ref base, const Bodies& bodies, const Shafts& shafts) const
+{
+    Spin spin{who, base, {1, 0, 0}, 0, 0, 0, false};
+    if (who.facet == Facet::Shaft)
+    {
+        spin.twist = shafts.angle[who.index] - (base.valid() ? shafts.angle[base.index] : 0.0);
+        spin.speed = shafts.speed[who.index] - (base.valid() ? shafts.speed[base.index] : 0.0);
+        return spin;
+    }
+    const Quat frame = bodies.orientation[who.index] * frame_b[row];
+    const Quat frame_base = (base.valid() ? bodies.orientation[base.index] : Quat{}) * frame_a[row];
+    const Vec3 w = bodies.angular_velocity[who.index];
+    const Vec3 w_base = base.valid() ? bodies.angular_velocity[base.index] : Vec3{};
+    spin.n = rotate(frame, Vec3{0, 0, 1});
+    spin.twist = constraints::twist(frame_base, frame);
+    spin.speed = dot(spin.n, w - w_base);
+    spin.extra = dot(cross(w, spin.n), w_base);
+    spin.wraps = true;
+    return spin;
+}
+
+}  // namespace plab::constraints

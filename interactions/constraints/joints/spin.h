@@ -1,0 +1,53 @@
+/// How far a body or shaft has turned about an axle of its own, against a base (a body, a shaft or the world), over many
+/// turns, and the terms that its speed contributes to rows.
+///
+///   speed = n . (w - w_base),  n fixed in the body          d(speed)/dt = n . (w' - w_base') - (w x n) . w_base
+/// Shafts turn about their own axles: n . w is their speed.
+#pragma once
+
+#include "joints/pair.h"
+
+namespace plab::constraints
+{
+
+/// One participant's turning at the present state.
+struct Spin
+{
+    Ref who, base;
+    Vec3 n;              ///< in W; a shaft: x
+    double twist = 0;    ///< rad; of bodies within half a turn
+    double speed = 0;    ///< rad/s
+    double extra = 0;    ///< (w x n) . w_base, rad/s^2
+    bool wraps = false;  ///< twist shows no whole turns
+};
+
+/// Adds `factor` times the spin's speed to a row: blocks, and the bias that goes with them. Blocks of one participant
+/// become one.
+void add_spin(const Spin& spin, double factor, ConstraintRow& row);
+
+/// An axle, and the angle about it. Angles are kept as state, so that they are exact over any number of turns.
+struct SpinColumns : AxisColumns, MeterColumns
+{
+    /// `prefix` of the fields' names: "driver_".
+    void describe_spin(Schema& s, const std::string& prefix, const std::string& whose);
+    /// Phase::Prepare: the axle from its parameter, where it is new.
+    Result<void> place(Row row, Ref who, Ref base, const Bodies& bodies);
+    Spin look(Row row, Ref who, Ref base, const Bodies& bodies, const Shafts& shafts) const;
+    /// Phase::Drive: the angle at the start of the first step.
+    void begin(Row row, const Spin& spin, double now)
+    {
+        if (!is_read(row)) angle[row] = spin.twist, start(row, spin.speed, now);
+    }
+    double angle_now(Row row, const Spin& spin, double now) const
+    {
+        return spin.wraps ? read(row, spin.twist, spin.speed, now) : spin.twist;
+    }
+    /// Phase::Finish.
+    void keep_spin(Row row, const Spin& spin, double now)
+    {
+        angle[row] = angle_now(row, spin, now);
+        start(row, spin.speed, now);
+    }
+};
+
+}  // namespace plab::constraints

@@ -1,0 +1,323 @@
+#include "manifold.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "box_axes.h"
+#include "patch.h"
+#include "separation.h"
+#include "spread.h"
+
+namespace plab::detection
+{
+namespace
+{
+/// A face takes part if it faces the other solid within 0.1 rad, or within 1.2 rad where the other's face does so.
+constexpr double kFacing = 0.995, kLeaning = 0.3;
+/// Shares of the solids' size: corners on the border count as inside, as far as no depth feels it (kDepthError), so that
+/// stacks of equal boxes keep their features; points that near to another are the same.
+constexpr double kOnBorder = 1e-9, kDepthError = 1e-15, kSamePlace = 1e-6;
+constexpr std::uint32_t kCornerMask = (1u << 18) - 1, kEdgeMask = (1u << 9) - 1;
+
+/// Takes points of A and B that lie over one another.
+class Collector
+{
+public:
+    Collector(const Solid& A, const Solid& B, const Vec3& n, bool few, Touches& out)
+        : radius_a_(A.radius()), radius_b_(B.radius()), n_(n), out_(out), first_(out.all().size()), size_(A.extent() + B.extent())
+    {
+        if (!few) spread_.emplace(n, out.margin());
+    }
+
+    /// `fresh`: no point before can be in the same place.
+    void offer(const Vec3& on_a, const Vec3& on_b, std::uint32_t feature, bool fresh = false)
+    {
+        const double gap = dot(n_, on_b - on_a) - (radius_a_ + radius_b_);
+        if (!(gap < out_.margin() || gap < 0)) return;
+        const Vec3 point = (on_a + on_b + (radius_a_ - radius_b_) * n_) * 0.5;
+        deepest_ = std::max(deepest_, -gap);
+        if (spread_) return spread_->offer({point, n_, -gap, feature});
+        if (fresh || !is_taken(point)) out_.add({point, n_, -gap, feature});
+    }
+    double deepest() const { return deepest_; }
+    /// m; where the surfaces lean to one another by `sine`.
+    double tolerance(double sine) const { return std::min(kOnBorder, kDepthError / sine) * size_; }
+    void finish()
+    {
+        if (spread_) spread_->take(out_);
+    }
+    const Vec3& normal() const { return n_; }
+
+private:
+    bool is_taken(const Vec3& point) const
+    {
+        const double near = kSamePlace * size_;
+        for (const Touch& t : out_.all().subspan(first_))
+            if (length_squared(t.point - point) < near * near) return true;
+        return false;
+    }
+
+    double radius_a_, radius_b_;
+    Vec3 n_;
+    Touches& out_;
+    std::optional<Spread> spread_;  // where many points may come
+    std::size_t first_;
+    double size_;
+    double deepest_ = -HUGE_VAL;
+};
+
+/// Where the line through p along n meets the plane of a flat patch.
+Vec3 dropped(const Vec3& p, const Vec3& n, const Patch& onto)
+{
+    return p + n * (dot(onto.normal, onto.origin() - p) / dot(onto.normal, n));
+}
+
+/// Sine of the angle between a line or a flat patch X and the flat patch Y.
+double lean_of(const Patch& X, const Patch& Y)
+{
+    if (X.kind == Patch::Kind::Line) return std::fabs(dot(normalized(X.corners[1].p - X.corners[0].p), Y.normal));
+    return length(cross(X.normal, Y.normal));
+}
+
+/// Edges of X (a line or a face) on the flat patch Y.
+void lay_edges(const Patch& X, const Patch& Y, bool x_is_a, Collector& out)
+{
+    const Vec3& n = out.normal();
+    const bool line = X.kind == Patch::Kind::Line;
+    const std::size_t count = X.corners.size(), edges = line ? 1 : count;
+    const auto offer = [&](const Vec3& x, const Vec3& y, std::uint32_t feature)
+    { x_is_a ? out.offer(x, y, feature) : out.offer(y, x, feature); };
+    const auto edge_of_y = [&](int k)
+    { return Y.kind == Patch::Kind::Face ? Y.corners[static_cast<std::size_t>(k)].id : static_cast<std::uint32_t>(k); };
+
+    const double tolerance = out.tolerance(lean_of(X, Y));
+    Vec3 y0 = dropped(X.corners[0].p, n, Y);
+    for (std::size_t i = 0; i < edges; ++i)
+    {
+        const PatchCorner &p = X.corners[i], &q = X.corners[(i + 1) % count];
+        const Vec3 y1 = dropped(q.p, n, Y);
+        const Patch::Cut cut = Y.cut(y0, y1, tolerance);
+        const auto crossing = [&](double t, int k)
+        {
+            const std::uint32_t f = x_is_a ? crossing_feature(p.id, edge_of_y(k)) : crossing_feature(edge_of_y(k), p.id);
+            offer(p.p + t * (q.p - p.p), y0 + t * (y1 - y0), f);
+        };
+        if (!cut.empty())
+        {
+            if (cut.begin == 0) offer(p.p, y0, corner_feature(x_is_a, p.id));
+            if (cut.begin > 0) crossing(cut.begin, cut.edge_begin);
+            if (cut.end < 1) crossing(cut.end, cut.edge_end);
+            if (cut.end == 1 && line) offer(q.p, y1, corner_feature(x_is_a, q.id));
+        }
+        y0 = y1;
+    }
+}
+
+/// Corners of X (a face, or the points that stand for a rim) on the flat patch Y.
+void lay_corners(const Patch& X, const Patch& Y, bool x_is_a, Collector& out)
+{
+    const Vec3& n = out.normal();
+    const double tolerance = out.tolerance(lean_of(X, Y));
+    const auto lay = [&](const Vec3& p, std::uint32_t id)
+    {
+        const Vec3 y = dropped(p, n, Y);
+        if (!Y.covers(y, tolerance)) return;
+        const std::uint32_t f = corner_feature(x_is_a, id);
+        x_is_a ? out.offer(p, y, f) : out.offer(y, p, f);
+    };
+    if (X.kind == Patch::Kind::Face)
+        for (const PatchCorner& c : X.corners) lay(c.p, c.id);
+    if (X.kind != Patch::Kind::Disc) return;
+    const RimPoints rim = rim_points(*X.solid, X.upper, x_is_a ? n : -n);
+    for (std::uint32_t i = rim.count; i-- > 0;) lay(rim.p[i], rim.id[i] + (X.upper ? 8 : 0));
+}
+
+/// The planes that bound a face and the way to it along n, as four numbers each.
+struct FaceFrame
+{
+    Vec3 along;  ///< its distance from p along n is level - along . p
+    double level = 0;
+    std::array<double, kMostCorners> limit;  ///< p is inside edge k if corners[k].inward . p >= limit[k]
+
+    FaceFrame(const Patch& face, const Vec3& n) : along(face.normal / dot(face.normal, n)), level(dot(along, face.corners[0].p))
+    {
+        for (std::size_t k = 0; k < face.corners.size(); ++k) limit[k] = dot(face.corners[k].inward, face.corners[k].p);
+    }
+};
+
+/// Face on face: as lay_edges(X on Y) and lay_corners(Y on X), with each corner dropped and measured once.
+void lay_faces(const Patch& X, const Patch& Y, Collector& out)
+{
+    const Vec3& n = out.normal();
+    const FaceFrame onto_y(Y, n), onto_x(X, n);
+    const double tolerance = out.tolerance(lean_of(X, Y));
+    const std::size_t nx = X.corners.size(), ny = Y.corners.size();
+    std::array<double, kMostCorners * kMostCorners> inside;  // of Y's edge k, corner i of X: [i * ny + k]
+    for (std::size_t i = 0; i < nx; ++i)
+    {
+        const Vec3& p = X.corners[i].p;
+        const Vec3 y = p + n * (onto_y.level - dot(onto_y.along, p));
+        for (std::size_t k = 0; k < ny; ++k) inside[i * ny + k] = dot(Y.corners[k].inward, y) - onto_y.limit[k];
+    }
+    for (std::size_t i = 0; i < nx; ++i)
+    {
+        const std::size_t j = i + 1 < nx ? i + 1 : 0;
+        const PatchCorner &p = X.corners[i], &q = X.corners[j];
+        const Patch::Cut cut = cut_by({&inside[i * ny], ny}, {&inside[j * ny], ny}, tolerance);
+        if (cut.empty()) continue;
+        const auto offer = [&](const Vec3& x, std::uint32_t feature)
+        { out.offer(x, x + n * (onto_y.level - dot(onto_y.along, x)), feature, true); };
+        if (cut.begin == 0) offer(p.p, corner_feature(true, p.id));
+        if (cut.begin > 0)
+            offer(p.p + cut.begin * (q.p - p.p), crossing_feature(p.id, Y.corners[static_cast<std::size_t>(cut.edge_begin)].id));
+        if (cut.end < 1) offer(p.p + cut.end * (q.p - p.p), crossing_feature(p.id, Y.corners[static_cast<std::size_t>(cut.edge_end)].id));
+    }
+    for (const PatchCorner& c : Y.corners)
+    {
+        const Vec3 x = c.p + n * (onto_x.level - dot(onto_x.along, c.p));
+        bool covered = true;
+        for (std::size_t k = 0; k < nx && covered; ++k) covered = dot(X.corners[k].inward, x) - onto_x.limit[k] >= -tolerance;
+        if (covered) out.offer(x, c.p, corner_feature(false, c.id));
+    }
+}
+
+/// Where the rims of two ends cross, seen along the normal; taken as circles, which they are when they face one another.
+void lay_rims(const Patch& X, const Patch& Y, Collector& out)
+{
+    if (-dot(X.normal, Y.normal) < kFacing) return;
+    const Vec3& n = out.normal();
+    const Vec3 center = X.origin(), across = dropped(Y.origin(), n, X) - center;
+    const double r = X.solid->size().x, s = Y.solid->size().x, d = length(across);
+    if (!(d > 0) || d >= r + s || d <= std::fabs(r - s)) return;
+    const double along = (d * d + r * r - s * s) / (2 * d), aside = std::sqrt(std::fmax(r * r - along * along, 0));
+    const Vec3 u = across / d, v = normalized(cross(n, u));
+    for (const double side : {-1.0, 1.0})
+    {
+        const Vec3 p = center + along * u + side * aside * v;
+        out.offer(p, dropped(p, n, Y), crossing_feature(side < 0 ? 0 : 1, side < 0 ? 0 : 1));
+    }
+}
+
+/// Two edges side by side: the ends of what they share.
+void lay_lines(const Patch& X, const Patch& Y, Collector& out)
+{
+    const Vec3 a = X.corners[0].p, u = X.corners[1].p - a, b = Y.corners[0].p, v = Y.corners[1].p - b;
+    const double uu = length_squared(u), vv = length_squared(v);
+    if (length_squared(cross(u, v)) > (1 - kFacing) * 2 * uu * vv) return;
+    const auto lay = [&](const Patch& P, const Vec3& q, const Vec3& w, double ww, bool p_is_a)
+    {
+        for (const PatchCorner& c : P.corners)
+        {
+            const double t = dot(c.p - q, w) / ww;
+            if (t < -kOnBorder || t > 1 + kOnBorder) continue;
+            const std::uint32_t f = corner_feature(p_is_a, c.id);
+            p_is_a ? out.offer(c.p, q + t * w, f) : out.offer(q + t * w, c.p, f);
+        }
+    };
+    lay(X, b, v, vv, true), lay(Y, a, u, uu, false);
+}
+
+void lay_patches(const Patch& X, const Patch& Y, Collector& out)
+{
+    using Kind = Patch::Kind;
+    if (X.kind == Kind::Line && Y.kind == Kind::Line) return lay_lines(X, Y, out);
+    if (X.kind == Kind::Corner || Y.kind == Kind::Corner || !(X.flat() || Y.flat())) return;
+    if (X.kind == Kind::Face && Y.kind == Kind::Face) return lay_faces(X, Y, out);
+    if (X.kind == Kind::Disc && Y.kind == Kind::Disc) lay_rims(X, Y, out);
+    if (X.kind != Kind::Disc && Y.flat()) lay_edges(X, Y, true, out);
+    if (X.kind == Kind::Disc && Y.kind != Kind::Disc) lay_edges(Y, X, false, out);
+    if (X.kind == Kind::Disc && Y.flat()) lay_corners(X, Y, true, out);
+    if (Y.kind == Kind::Disc && X.flat()) lay_corners(Y, X, false, out);
+    if (Y.kind == Kind::Line && X.kind == Kind::Face) lay_edges(Y, X, false, out);
+}
+
+/// The nearest points of the edges of two boxes whose product is the normal.
+Separation edge_pair(const Solid& A, const Solid& B, const BoxAxis& axis)
+{
+    const Vec3 a = A.support(axis.normal), b = B.support(-axis.normal);
+    const Vec3 u = A.axis(axis.edge_a), v = B.axis(axis.edge_b), n = cross(u, v), r = b - a;
+    const double nn = length_squared(n);
+    return {axis.gap, a + u * (dot(cross(r, v), n) / nn), b + v * (dot(cross(r, u), n) / nn), axis.normal};
+}
+
+Mat3 axes_of(const Solid& s)
+{
+    Mat3 R;
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i) R(i, k) = s.axis(k)[i];
+    return R;
+}
+}  // namespace
+
+std::uint32_t corner_feature(bool of_a, std::uint32_t corner) { return ((of_a ? 0u : 1u) << 18) | (corner & kCornerMask); }
+std::uint32_t crossing_feature(std::uint32_t a, std::uint32_t b) { return (2u << 18) | ((a & kEdgeMask) << 9) | (b & kEdgeMask); }
+
+std::uint32_t mirrored_feature(std::uint32_t f)
+{
+    switch (f >> 18)
+    {
+        case 0:
+            return f | (1u << 18);
+        case 1:
+            return f & kCornerMask;
+        case 2:
+            return crossing_feature(f & kEdgeMask, (f >> 9) & kEdgeMask);
+        default:
+            return f;
+    }
+}
+
+RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
+{
+    RimPoints out;
+    const Vec3 u = c.axis(2), middle = c.pose().p + (upper ? c.size().z : -c.size().z) * u;
+    const std::array<Vec3, 4> fixed{c.axis(0), c.axis(1), -c.axis(0), -c.axis(1)};
+    for (; out.count < 4; ++out.count) out.p[out.count] = middle + c.size().x * fixed[out.count], out.id[out.count] = out.count;
+    const Vec3 across = direction - dot(direction, u) * u;
+    const double sine = length(across);
+    // An end that is level has no furthest point: what rounding chose would jump about.
+    if (sine > 1e-12) out.p[out.count] = middle + (c.size().x / sine) * across, out.id[out.count++] = RimPoints::kFurthest;
+    return out;
+}
+
+void add_manifold(const Solid& A, const Solid& B, const Separation& s, Touches& out)
+{
+    if (!(s.gap < out.margin() || s.gap < 0)) return;
+    std::array<PatchCorner, kMostCorners> room_a, room_b;
+    Patch X = facing_patch(A, s.normal, kFacing, room_a), Y = facing_patch(B, -s.normal, kFacing, room_b);
+    if (X.flat() && !Y.flat()) Y = facing_patch(B, -s.normal, kLeaning, room_b);
+    if (Y.flat() && !X.flat()) X = facing_patch(A, s.normal, kLeaning, room_a);
+    const bool few = X.corners.size() + Y.corners.size() <= 8 && X.kind != Patch::Kind::Disc && Y.kind != Patch::Kind::Disc;
+    Collector collector(A, B, s.normal, few, out);
+    lay_patches(X, Y, collector);
+    // Corners on corners, edges that cross: nothing is as near as the nearest points.
+    const double enough = std::max(1e-3 * std::fabs(s.gap), 1e-12 * (A.extent() + B.extent()));
+    if (collector.deepest() < -s.gap - enough)
+        collector.offer(s.point_a - A.radius() * s.normal, s.point_b + B.radius() * s.normal, kNearestFeature);
+    collector.finish();
+}
+
+void box_box(const Solid& A, const Solid& B, Touches& out)
+{
+    const Vec3 origin = A.pose().p;
+    const BoxAxis axis = find_box_axis(A.size(), axes_of(A), origin, B.size(), axes_of(B), B.pose().p, out.margin());
+    if (!(axis.gap < out.margin() || axis.gap < 0)) return;
+    std::array<PatchCorner, 4> room_a, room_b;
+    const Patch X = box_face(A, axis.normal, room_a), Y = box_face(B, -axis.normal, room_b);
+    const bool facing = dot(X.normal, axis.normal) >= kFacing || dot(Y.normal, axis.normal) <= -kFacing;
+    if (axis.edge_a >= 0 && !facing) return add_manifold(A, B, edge_pair(A, B, axis), out);
+    Collector collector(A, B, axis.normal, true, out);
+    lay_patches(X, Y, collector);
+    const bool reached = collector.deepest() >= -axis.gap - std::max(1e-3 * std::fabs(axis.gap), 1e-12 * (A.extent() + B.extent()));
+    if (reached) return;
+    if (axis.edge_a >= 0)
+    {
+        const Separation s = edge_pair(A, B, axis);
+        return collector.offer(s.point_a, s.point_b, kNearestFeature);
+    }
+    // Corner beside corner: further apart than any axis tells.
+    if (axis.gap >= 0 && collector.deepest() == -HUGE_VAL) add_manifold(A, B, separation_of(A, B), out);
+}
+
+}  // namespace plab::detection

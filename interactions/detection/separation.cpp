@@ -1,0 +1,192 @@
+#include "separation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "box_axes.h"
+#include "expand.h"
+
+namespace plab::detection
+{
+namespace
+{
+/// Upwards, for centres that coincide and so have no direction between them.
+constexpr Vec3 kNoDirection{0, 0, 1};
+
+Separation flipped(const Separation& s) { return {s.gap, s.point_b, s.point_a, -s.normal}; }
+
+/// Two points that are nearest, with the radii around them; `n_instead` stands in where they coincide. What joins them
+/// is square to `along` (unit, or 0), which rounding hides where they nearly coincide.
+Separation of_points(const Vec3& a, double radius_a, const Vec3& b, double radius_b, const Vec3& n_instead, const Vec3& along = {})
+{
+    const Vec3 across = (b - a) - dot(b - a, along) * along;
+    const double distance = length(across);
+    Vec3 n = distance > 0 ? across / distance : n_instead;
+    n = normalized(n - dot(n, along) * along);
+    return {distance - (radius_a + radius_b), a + radius_a * n, b - radius_b * n, n};
+}
+
+/// The nearest points of two segments (V. Lumelsky, On fast computation of distance between line segments, 1985), by
+/// trying the crossing and the four ends.
+Separation segment_segment(const Solid& A, const Solid& B)
+{
+    const Vec3 u = A.axis(2), v = B.axis(2), r = B.pose().p - A.pose().p;
+    const double la = A.size().z, lb = B.size().z;
+    const Vec3 n = cross(u, v);
+    const double nn = length_squared(n);
+    constexpr double kParallel = 1e-24;  // square of the sine
+    double best = HUGE_VAL;
+    Vec3 pa, pb;
+    const auto offer = [&](double s, double t)
+    {
+        const Vec3 a = A.pose().p + s * u, b = B.pose().p + t * v;
+        if (const double d = length_squared(b - a); d < best) best = d, pa = a, pb = b;
+    };
+    if (nn > kParallel)
+    {
+        const double s = dot(cross(r, v), n) / nn, t = dot(cross(r, u), n) / nn;
+        if (std::fabs(s) < la && std::fabs(t) < lb && nn < 1e-6)
+            offer(s, t);  // the product is known to too few digits to be the normal
+        else if (std::fabs(s) < la && std::fabs(t) < lb)
+        {
+            const Vec3 a = A.pose().p + s * u, b = B.pose().p + t * v;
+            const Vec3 across = n * ((dot(n, r) < 0 ? -1 : 1) / std::sqrt(nn));
+            const double gap = dot(across, r) - (A.radius() + B.radius());
+            return {gap, a + A.radius() * across, b - B.radius() * across, across};
+        }
+    }
+    for (const double s : {-la, la}) offer(s, std::clamp(dot(A.pose().p + s * u - B.pose().p, v), -lb, lb));
+    for (const double t : {-lb, lb}) offer(std::clamp(dot(B.pose().p + t * v - A.pose().p, u), -la, la), t);
+    // Of parallel ones all points side by side are as near: the middle of those, so that neither end is preferred.
+    if (nn <= kParallel)
+    {
+        const double along = dot(u, r), low = std::max(-la, along - lb), high = std::min(la, along + lb);
+        const double middle = 0.5 * (low + high);
+        if (low < high)
+            return of_points(A.pose().p + middle * u, A.radius(), B.pose().p + (middle * dot(u, v) - dot(v, r)) * v, B.radius(),
+                             any_perpendicular(u), u);
+    }
+    return of_points(pa, A.radius(), pb, B.radius(), nn > 0 ? n / std::sqrt(nn) : any_perpendicular(u));
+}
+
+/// From a point inside a convex polyhedron or box to its nearest face: distance to it (< 0) and normal, in S.
+void leave(const Solid& S, const Vec3& c, double& outside, Vec3& n)
+{
+    if (S.core() == Core::Hull)
+    {
+        const Hull& hull = S.hull();
+        std::size_t top = 0;
+        for (std::size_t f = 0; f < hull.faces.size(); ++f)
+            if (const double d = dot(hull.normals[f], c) - hull.offsets[f]; d > outside) outside = d, top = f;
+        n = hull.normals[top];
+        return;
+    }
+    if (S.core() == Core::Box)
+    {
+        for (int k = 0; k < 3; ++k)
+            if (const double d = std::fabs(c[k]) - S.size()[k]; d > outside) outside = d, n = {}, n[k] = c[k] < 0 ? -1.0 : 1.0;
+        return;
+    }
+    const double across = std::sqrt(c.x * c.x + c.y * c.y);
+    outside = std::fabs(c.z) - S.size().z, n = {0, 0, c.z < 0 ? -1.0 : 1.0};
+    if (across - S.size().x > outside) outside = across - S.size().x, n = across > 0 ? Vec3{c.x / across, c.y / across, 0} : Vec3{1, 0, 0};
+}
+
+/// The nearest point of a hull to a point outside lies on a face that sees it.
+Foot foot_on_hull(const Solid& S, const Vec3& q)
+{
+    const Hull& hull = S.hull();
+    const Vec3 c = S.to_local(q);
+    Foot best;
+    double least = HUGE_VAL;
+    for (std::size_t f = 0; f < hull.faces.size(); ++f)
+    {
+        if (dot(hull.normals[f], c) <= hull.offsets[f]) continue;
+        const auto& v = hull.faces[f];
+        const Foot foot = foot_on_facelet(c, {{hull.vertices[v[0]], hull.vertices[v[1]], hull.vertices[v[2]]}, 3});
+        if (const double d = length_squared(c - foot.p); d < least) least = d, best = foot;
+    }
+    best.p = S.from_local(best.p), best.axis = S.from_local_direction(best.axis);
+    return best;
+}
+
+/// A point with a radius against a box, cylinder or hull.
+Separation point_solid(const Solid& P, const Solid& S)
+{
+    const Vec3 q = P.pose().p;
+    const Vec3 c = S.to_local(q);
+    double outside = -HUGE_VAL;
+    Vec3 n;
+    leave(S, c, outside, n);
+    n = S.from_local_direction(n);
+    Vec3 nearest = q - outside * n;
+    if (outside > 0)
+    {
+        const Foot foot = S.core() == Core::Hull ? foot_on_hull(S, q) : S.foot(q, {});
+        nearest = foot.p;
+        const double distance = length(q - nearest);
+        if (foot.flat == 2)
+            n = foot.axis, outside = dot(n, q - nearest);
+        else if (distance > 0)
+            n = (q - nearest) / distance, outside = distance;
+    }
+    return {outside - P.radius(), q - P.radius() * n, nearest, -n};
+}
+
+Separation of_overlap(const Solid& A, const Solid& B)
+{
+    Overlap o = overlap_of(A, B);
+    if (A.core() == Core::Box && B.core() == Core::Box)
+    {
+        // The axis is exact; the polytope tells the points.
+        const auto R = [](const Solid& s) { return rotation_matrix(s.pose().q); };
+        const BoxAxis axis = find_box_axis(A.size(), R(A), A.pose().p, B.size(), R(B), B.pose().p, HUGE_VAL);
+        if (-axis.gap <= o.depth) o.normal = axis.normal, o.depth = -axis.gap;
+    }
+    return {-o.depth, o.a, o.b, o.normal};
+}
+/// Nearest points prove themselves: no two planes square to the normal can be further apart than the solids are. Where
+/// the gap is so small that they do not, the direction is looked for with B further away.
+Separation of_gap(const Solid& A, const Solid& B, const NearestPair& near)
+{
+    const auto gap_along = [&](const Vec3& n) { return -dot(n, support_of(A, B, n).w); };
+    const double enough = 1e-14 * (A.extent() + B.extent() + near.gap);
+    if (near.gap - gap_along(near.normal) <= enough) return {near.gap, near.a, near.b, near.normal};
+    Overlap best = refine(A, B, near.normal);
+    if (near.gap + best.depth > enough)
+        if (const Overlap other = overlap_of(A, B); other.depth < best.depth) best = other;
+    return {-best.depth, best.a, best.b, best.normal};
+}
+}  // namespace
+
+Separation separation_of(const Solid& A, const Solid& B)
+{
+    const bool line_a = A.core() <= Core::Segment, line_b = B.core() <= Core::Segment;
+    if (A.core() == Core::Point && B.core() == Core::Point) return of_points(A.pose().p, A.radius(), B.pose().p, B.radius(), kNoDirection);
+    if (A.core() == Core::Point && B.core() == Core::Segment)
+    {
+        const Foot foot = B.foot(A.pose().p, {});
+        return of_points(A.pose().p, A.radius(), foot.p, B.radius(), any_perpendicular(B.axis(2)), foot.axis);
+    }
+    if (line_a && line_b)
+        return A.core() == Core::Segment && B.core() == Core::Segment ? segment_segment(A, B) : flipped(separation_of(B, A));
+    if (A.core() == Core::Point) return point_solid(A, B);
+    if (B.core() == Core::Point) return flipped(point_solid(B, A));
+
+    const NearestPair near = nearest_pair(A, B);
+    Separation s = near.apart ? of_gap(A, B, near) : of_overlap(A, B);
+    s.gap -= A.radius() + B.radius();
+    s.point_a += A.radius() * s.normal, s.point_b -= B.radius() * s.normal;
+    return s;
+}
+
+Separation separation_from_plane(const Solid& a, const Pose& X_plane)
+{
+    const Vec3 n = rotate(X_plane.q, {0, 0, 1});
+    const Vec3 p = a.support(-n);
+    const double gap = dot(n, p - X_plane.p) - a.radius();
+    const Vec3 lowest = p - a.radius() * n;
+    return {gap, lowest, lowest - gap * n, -n};
+}
+
+}  // namespace plab::detection

@@ -1,0 +1,177 @@
+#include "solid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::detection
+{
+namespace
+{
+Mat3 turned(const Mat3& R, const Mat3& local) { return R * local * transposed(R); }
+
+Vec3 furthest(const Hull& hull, const Vec3& d_S)
+{
+    const Vec3* best = hull.vertices.data();
+    double most = dot(d_S, *best);
+    for (const Vec3& p : hull.vertices)
+        if (const double m = dot(d_S, p); m > most) most = m, best = &p;
+    return *best;
+}
+
+Foot foot_on_edge(const Vec3& q, const Vec3& a, const Vec3& b)
+{
+    const Vec3 e = b - a;
+    const double along = dot(q - a, e), all = length_squared(e);
+    if (!(along > 0)) return {a, {}, 0, {}};
+    if (!(along < all)) return {b, {}, 0, {}};
+    const Vec3 u = e / std::sqrt(all);
+    return {a + (along / all) * e, outer(u, u), 1, u};
+}
+}  // namespace
+
+Solid::Solid(const Collider& collider, const Pose& X) : size_(collider.size()), X_(X), R_(rotation_matrix(X.q))
+{
+    center_ = X.p;
+    switch (collider.kind())
+    {
+        case ColliderKind::Sphere:
+            radius_ = size_.x;
+            break;
+        case ColliderKind::Capsule:
+            core_ = Core::Segment, radius_ = size_.x, extent_ = size_.z;
+            break;
+        case ColliderKind::Box:
+            core_ = Core::Box, extent_ = length(size_);
+            break;
+        case ColliderKind::Cylinder:
+            core_ = Core::Cylinder, extent_ = std::hypot(size_.x, size_.z);
+            break;
+        case ColliderKind::Hull:
+            core_ = Core::Hull, hull_ = &collider.hull(), center_ = X * hull_->center;
+            extent_ = length(hull_->upper - hull_->lower);
+            break;
+        case ColliderKind::None:
+        case ColliderKind::Plane:
+            break;
+    }
+}
+
+Vec3 Solid::support(const Vec3& d) const
+{
+    if (core_ == Core::Point) return X_.p;
+    const Vec3 d_S = to_local_direction(d);
+    Vec3 p;
+    switch (core_)
+    {
+        case Core::Segment:
+            p.z = d_S.z < 0 ? -size_.z : size_.z;
+            break;
+        case Core::Box:
+            p = {d_S.x < 0 ? -size_.x : size_.x, d_S.y < 0 ? -size_.y : size_.y, d_S.z < 0 ? -size_.z : size_.z};
+            break;
+        case Core::Cylinder:
+        {
+            const double across = std::sqrt(d_S.x * d_S.x + d_S.y * d_S.y);
+            const double share = across > 0 ? size_.x / across : 0;
+            p = {share * d_S.x, share * d_S.y, d_S.z < 0 ? -size_.z : size_.z};
+            break;
+        }
+        case Core::Hull:
+            p = furthest(*hull_, d_S);
+            break;
+        case Core::Point:
+            break;
+    }
+    return from_local(p);
+}
+
+Foot Solid::foot(const Vec3& q, const Facelet& facelet) const
+{
+    switch (core_)
+    {
+        case Core::Segment:
+            return foot_on_segment(q);
+        case Core::Box:
+            return foot_on_box(q);
+        case Core::Cylinder:
+            return foot_on_cylinder(q);
+        case Core::Hull:
+            return foot_on_facelet(q, facelet);
+        case Core::Point:
+            break;
+    }
+    return {X_.p, {}, 0, {}};
+}
+
+Foot Solid::foot_on_segment(const Vec3& q) const
+{
+    const Vec3 u = axis(2);
+    const double along = dot(u, q - X_.p);
+    if (std::fabs(along) >= size_.z) return {X_.p + std::copysign(size_.z, along) * u, {}, 0, {}};
+    return {X_.p + along * u, outer(u, u), 1, u};
+}
+
+Foot Solid::foot_on_box(const Vec3& q) const
+{
+    const Vec3 l = to_local(q);
+    Vec3 p, free;
+    int flat = 0, clamped = 0, open = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = std::clamp(l[k], -size_[k], size_[k]);
+        if (std::fabs(l[k]) >= size_[k])
+            clamped = k;
+        else
+            free[k] = 1, ++flat, open = k;
+    }
+    Foot out{from_local(p), turned(R_, Mat3::diagonal(free.x, free.y, free.z)), flat, {}};
+    if (flat == 1) out.axis = axis(open);
+    if (flat == 2) out.axis = axis(clamped) * (l[clamped] < 0 ? -1.0 : 1.0);
+    return out;
+}
+
+Foot Solid::foot_on_cylinder(const Vec3& q) const
+{
+    const Vec3 l = to_local(q);
+    const double across = std::sqrt(l.x * l.x + l.y * l.y);
+    const bool beyond_end = std::fabs(l.z) >= size_.z, beyond_side = across >= size_.x;
+    const Vec3 radial = across > 0 ? Vec3{l.x / across, l.y / across, 0} : Vec3{1, 0, 0}, around{-radial.y, radial.x, 0};
+    const double z = beyond_end ? std::copysign(size_.z, l.z) : l.z;
+    const Vec3 p = beyond_side ? Vec3{size_.x * radial.x, size_.x * radial.y, z} : Vec3{l.x, l.y, z};
+    Mat3 J;
+    if (beyond_side)
+        J = outer(around, around) * (size_.x / across);
+    else
+        J = Mat3::diagonal(1, 1, 0);
+    if (!beyond_end) J(2, 2) = 1;
+    Foot out{from_local(p), turned(R_, J), 3, {}};
+    if (beyond_side && beyond_end) out.flat = 1, out.axis = from_local_direction(around);
+    if (beyond_side && !beyond_end) out.flat = 2, out.axis = from_local_direction(radial);
+    if (!beyond_side && beyond_end) out.flat = 2, out.axis = axis(2) * (l.z < 0 ? -1.0 : 1.0);
+    return out;
+}
+
+Foot foot_on_facelet(const Vec3& q, const Facelet& f)
+{
+    if (f.count == 1) return {f.corner[0], {}, 0, {}};
+    if (f.count == 2) return foot_on_edge(q, f.corner[0], f.corner[1]);
+    const Vec3 e1 = f.corner[1] - f.corner[0], e2 = f.corner[2] - f.corner[0];
+    Vec3 n = cross(e1, e2);
+    const double area = length(n);
+    if (area > 1e-13 * (length_squared(e1) + length_squared(e2)))
+    {
+        n = n / area;
+        bool inside = true;
+        for (std::size_t i = 0; i < 3; ++i) inside = inside && dot(cross(n, f.corner[(i + 1) % 3] - f.corner[i]), q - f.corner[i]) > 0;
+        const double above = dot(n, q - f.corner[0]);
+        if (inside) return {q - above * n, Mat3::identity() - outer(n, n), 2, above < 0 ? -n : n};
+    }
+    Foot best = foot_on_edge(q, f.corner[0], f.corner[1]);
+    for (std::size_t i = 1; i < 3; ++i)
+        if (const Foot other = foot_on_edge(q, f.corner[i], f.corner[(i + 1) % 3]);
+            length_squared(other.p - q) < length_squared(best.p - q))
+            best = other;
+    return best;
+}
+
+}  // namespace plab::detection

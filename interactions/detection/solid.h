@@ -1,0 +1,79 @@
+/// A convex solid as the general methods (GJK, expanding polytope, manifolds) see it.
+#pragma once
+
+#include "collider.h"
+
+namespace plab::detection
+{
+
+enum class Core : std::uint8_t
+{
+    Point,
+    Segment,   ///< from -size.z to size.z along z
+    Box,       ///< half extents `size`
+    Cylinder,  ///< radius size.x, from -size.z to size.z along z
+    Hull,
+};
+
+/// The nearest point of a solid (or of a part of its surface) to a point outside.
+struct Foot
+{
+    Vec3 p;
+    Mat3 J;        ///< derivative of p by the point outside; symmetric, eigenvalues in [0, 1)  or 1
+    int flat = 0;  ///< dimensions of the surface there that are known exactly: 0 corner, 1 along `axis`, 2 square to `axis`, 3 inside
+    Vec3 axis;     ///< unit: tangent if flat = 1, outward normal if flat = 2
+};
+
+/// Part of a hull's surface: up to three of its vertices, in the common frame.
+struct Facelet
+{
+    std::array<Vec3, 3> corner;
+    int count = 0;
+};
+
+/// All points within `radius` of a core at a pose. Refers to its collider.
+class Solid
+{
+public:
+    /// Not for planes.
+    Solid(const Collider& collider, const Pose& X);
+
+    Core core() const { return core_; }
+    double radius() const { return radius_; }  ///< around the core, m
+    const Vec3& size() const { return size_; }
+    const Hull& hull() const { return *hull_; }
+    const Pose& pose() const { return X_; }
+    Vec3 axis(int k) const { return {R_(0, k), R_(1, k), R_(2, k)}; }
+    bool curved() const { return core_ == Core::Cylinder; }
+    /// m: no point of the core is further from `center`.
+    double extent() const { return extent_; }
+    const Vec3& center() const { return center_; }
+    void move(const Vec3& by) { X_.p += by, center_ += by; }
+
+    Vec3 to_local(const Vec3& p) const { return transposed_times(R_, p - X_.p); }
+    Vec3 to_local_direction(const Vec3& d) const { return transposed_times(R_, d); }
+    Vec3 from_local(const Vec3& p_S) const { return X_.p + R_ * p_S; }
+    Vec3 from_local_direction(const Vec3& d_S) const { return R_ * d_S; }
+
+    /// The point of the core furthest in direction d.
+    Vec3 support(const Vec3& d) const;
+    /// The point of the core nearest to q; of a hull, that of `facelet`.
+    Foot foot(const Vec3& q, const Facelet& facelet) const;
+
+private:
+    Foot foot_on_segment(const Vec3& q) const;
+    Foot foot_on_box(const Vec3& q) const;
+    Foot foot_on_cylinder(const Vec3& q) const;
+
+    Core core_ = Core::Point;
+    double radius_ = 0, extent_ = 0;
+    Vec3 size_, center_;
+    const Hull* hull_ = nullptr;
+    Pose X_;
+    Mat3 R_;
+};
+
+/// The point of a facelet nearest to q.
+Foot foot_on_facelet(const Vec3& q, const Facelet& facelet);
+
+}  // namespace plab::detection

@@ -1,0 +1,210 @@
+#include "block_matrix.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::managers
+{
+namespace
+{
+
+enum Kind : std::uint8_t
+{
+    kDiagonal,
+    kUpper,
+    kLower,
+};
+
+/// Row i of a, times b; sums in the order of b's rows.
+std::array<double, 6> row_times(const Block& a, std::size_t i, const Block& b)
+{
+    std::array<double, 6> sum{};
+    for (std::size_t k = 0; k < 6; ++k)
+    {
+        const double f = a[6 * i + k];
+        const double* row = b.data() + 6 * k;
+        for (std::size_t j = 0; j < 6; ++j) sum[j] += f * row[j];
+    }
+    return sum;
+}
+
+/// c -= a b.
+void subtract_product(Block& c, const Block& a, const Block& b)
+{
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+        const std::array<double, 6> row = row_times(a, i, b);
+        for (std::size_t j = 0; j < 6; ++j) c[6 * i + j] -= row[j];
+    }
+}
+
+Block product(const Block& a, const Block& b)
+{
+    Block c;
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+        const std::array<double, 6> row = row_times(a, i, b);
+        std::copy(row.begin(), row.end(), c.begin() + static_cast<std::ptrdiff_t>(6 * i));
+    }
+    return c;
+}
+
+void subtract_product(Column6& y, const Block& a, const Column6& x)
+{
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = 0; j < 6; ++j) y[i] -= a[6 * i + j] * x[j];
+}
+
+Column6 product(const Block& a, const Column6& x)
+{
+    Column6 y{};
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = 0; j < 6; ++j) y[i] += a[6 * i + j] * x[j];
+    return y;
+}
+
+void swap_rows(Block& a, std::size_t i, std::size_t j)
+{
+    if (i != j)
+        std::swap_ranges(a.begin() + static_cast<std::ptrdiff_t>(6 * i), a.begin() + static_cast<std::ptrdiff_t>(6 * i + 6),
+                         a.begin() + static_cast<std::ptrdiff_t>(6 * j));
+}
+
+/// Gauss-Jordan with row pivots. False if singular.
+bool invert(Block& a)
+{
+    Block inverse{};
+    for (std::size_t i = 0; i < 6; ++i) inverse[7 * i] = 1;
+    for (std::size_t k = 0; k < 6; ++k)
+    {
+        std::size_t pivot = k;
+        for (std::size_t i = k + 1; i < 6; ++i)
+            if (std::fabs(a[6 * i + k]) > std::fabs(a[6 * pivot + k])) pivot = i;
+        if (!(std::fabs(a[6 * pivot + k]) > 0) || !std::isfinite(a[6 * pivot + k])) return false;
+        swap_rows(a, k, pivot), swap_rows(inverse, k, pivot);
+        const double f = 1 / a[7 * k];
+        for (std::size_t j = 0; j < 6; ++j) a[6 * k + j] *= f, inverse[6 * k + j] *= f;
+        for (std::size_t i = 0; i < 6; ++i)
+        {
+            const double g = a[6 * i + k];
+            if (i == k || g == 0) continue;
+            for (std::size_t j = 0; j < 6; ++j) a[6 * i + j] -= g * a[6 * k + j], inverse[6 * i + j] -= g * inverse[6 * k + j];
+        }
+    }
+    a = inverse;
+    return true;
+}
+
+}  // namespace
+
+void BlockMatrix::shape(std::uint32_t n, std::span<const Edge> edges)
+{
+    if (n == size_ && std::equal(edges.begin(), edges.end(), edges_.begin(), edges_.end())) return;
+    size_ = n;
+    edges_.assign(edges.begin(), edges.end());
+    order_nodes();
+    plan_updates();
+    diagonal_.resize(n), upper_.resize(earlier_.size()), lower_.resize(earlier_.size());
+}
+
+/// Least degree first, the lowest number among equals; the neighbours of who leaves become neighbours of one another.
+void BlockMatrix::order_nodes()
+{
+    if (neighbours_.size() < size_) neighbours_.resize(size_);
+    for (std::uint32_t i = 0; i < size_; ++i) neighbours_[i].clear();
+    for (const auto& [i, j] : edges_) neighbours_[i].push_back(j), neighbours_[j].push_back(i);
+    for (std::uint32_t i = 0; i < size_; ++i) std::sort(neighbours_[i].begin(), neighbours_[i].end());
+    order_.clear(), begin_.clear(), earlier_.clear(), later_.clear();
+    rank_.assign(size_, UINT32_MAX);
+    std::vector<std::uint32_t> left(size_), merged;
+    for (std::uint32_t i = 0; i < size_; ++i) left[i] = i;
+    while (!left.empty())
+    {
+        const auto least = std::min_element(
+            left.begin(), left.end(), [&](std::uint32_t i, std::uint32_t j) { return neighbours_[i].size() < neighbours_[j].size(); });
+        const std::uint32_t node = *least;
+        left.erase(least);
+        rank_[node] = static_cast<std::uint32_t>(order_.size());
+        order_.push_back(node);
+        begin_.push_back(static_cast<std::uint32_t>(earlier_.size()));
+        const std::vector<std::uint32_t>& around = neighbours_[node];
+        for (const std::uint32_t i : around)
+        {
+            earlier_.push_back(node), later_.push_back(i);
+            merged.clear();
+            std::set_union(neighbours_[i].begin(), neighbours_[i].end(), around.begin(), around.end(), std::back_inserter(merged));
+            std::erase_if(merged, [&](std::uint32_t k) { return k == i || k == node; });
+            neighbours_[i].swap(merged);
+        }
+    }
+    begin_.push_back(static_cast<std::uint32_t>(earlier_.size()));
+}
+
+std::uint32_t BlockMatrix::find(std::uint32_t i, std::uint32_t j) const
+{
+    const std::uint32_t node = rank_[i] < rank_[j] ? i : j, other = node == i ? j : i;
+    const auto from = later_.begin() + begin_[rank_[node]], to = later_.begin() + begin_[rank_[node] + 1];
+    return static_cast<std::uint32_t>(std::lower_bound(from, to, other) - later_.begin());
+}
+
+void BlockMatrix::plan_updates()
+{
+    targets_.clear(), first_target_.clear();
+    for (std::uint32_t place = 0; place < size_; ++place)
+    {
+        first_target_.push_back(targets_.size());
+        for (std::uint32_t p = begin_[place]; p < begin_[place + 1]; ++p)
+            for (std::uint32_t q = begin_[place]; q < begin_[place + 1]; ++q)
+            {
+                const std::uint32_t i = later_[p], j = later_[q];
+                if (i == j)
+                    targets_.push_back({i, kDiagonal});
+                else
+                    targets_.push_back({find(i, j), rank_[i] < rank_[j] ? kUpper : kLower});
+            }
+    }
+}
+
+void BlockMatrix::clear()
+{
+    for (auto* blocks : {&diagonal_, &upper_, &lower_})
+        for (Block& b : *blocks) b.fill(0);
+}
+
+void BlockMatrix::eliminate(std::uint32_t place)
+{
+    // upper becomes D^-1 U; what stays is A_ij - L_i D^-1 U_j.
+    const std::uint32_t from = begin_[place], to = begin_[place + 1];
+    for (std::uint32_t q = from; q < to; ++q) upper_[q] = product(diagonal_[order_[place]], upper_[q]);
+    const Target* target = targets_.data() + first_target_[place];
+    for (std::uint32_t p = from; p < to; ++p)
+        for (std::uint32_t q = from; q < to; ++q, ++target)
+        {
+            Block& b = target->kind == kDiagonal ? diagonal_[target->at] : target->kind == kUpper ? upper_[target->at] : lower_[target->at];
+            subtract_product(b, lower_[p], upper_[q]);
+        }
+}
+
+bool BlockMatrix::factor()
+{
+    for (std::uint32_t place = 0; place < size_; ++place)
+    {
+        if (!invert(diagonal_[order_[place]])) return false;
+        eliminate(place);
+    }
+    return true;
+}
+
+void BlockMatrix::solve(std::span<Column6> x) const
+{
+    for (std::uint32_t place = 0; place < size_; ++place)
+    {
+        Column6& own = x[order_[place]];
+        own = product(diagonal_[order_[place]], own);
+        for (std::uint32_t p = begin_[place]; p < begin_[place + 1]; ++p) subtract_product(x[later_[p]], lower_[p], own);
+    }
+    for (std::uint32_t place = size_; place-- > 0;)
+        for (std::uint32_t p = begin_[place]; p < begin_[place + 1]; ++p) subtract_product(x[order_[place]], upper_[p], x[later_[p]]);
+}
+
+}  // namespace plab::managers

@@ -1,0 +1,211 @@
+#include "lagrangian.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::managers
+{
+
+void Lagrangian::start(const Problem& problem, double kappa)
+{
+    rho_.clear(), bias_.clear(), line_rho_.clear();
+    for (const Point& p : problem.points)
+    {
+        rho_.push_back(p.K(2, 2) > 0 ? kappa / p.K(2, 2) : 0.0);
+        const Vec3 u = p.frictional() ? problem.slip(p) : Vec3{};
+        bias_.push_back(p.friction * std::hypot(u.x, u.y));
+    }
+    for (const Line& line : problem.lines) line_rho_.push_back(line.count > 0 ? kappa / line.mobility : 0.0);
+    slips_.resize(problem.points.size()), slip_steps_.resize(problem.points.size());
+    rates_.resize(problem.lines.size()), rate_steps_.resize(problem.lines.size());
+    step_.resize(problem.movers.size());
+}
+
+Vec3 Lagrangian::tau_of(const Problem& problem, std::size_t i, const Vec3& u) const
+{
+    const Point& p = problem.points[i];
+    return p.impulse - (u + Vec3{0, 0, bias_[i] - p.least}) * rho_[i];
+}
+
+/// The point of the cone |j_t| <= mu j_n that is nearest to tau; and rho times its derivative.
+Vec3 Lagrangian::project(const Problem& problem, std::size_t i, const Vec3& tau, Mat3* G) const
+{
+    const double rho = rho_[i], mu = problem.points[i].friction;
+    if (G) *G = {};
+    const double size = mu > 0 ? std::hypot(tau.x, tau.y) : 0.0;
+    // At the edge a contact counts as one: a pile at rest starts as a whole.
+    if (size <= mu * tau.z && tau.z >= 0)
+    {
+        if (G) *G = mu > 0 ? Mat3::diagonal(rho, rho, rho) : Mat3::diagonal(0, 0, rho);
+        return {mu > 0 ? tau.x : 0.0, mu > 0 ? tau.y : 0.0, tau.z};
+    }
+    if (mu * size <= -tau.z) return {};
+    const double share = 1 / (1 + mu * mu), c = tau.x / size, s = tau.y / size, normal = (tau.z + mu * size) * share;
+    if (G)
+    {
+        const double turn = rho * mu * normal / size, along = rho * share * mu * mu, cross_term = rho * share * mu;
+        (*G)(0, 0) = turn * s * s + along * c * c, (*G)(1, 1) = turn * c * c + along * s * s;
+        (*G)(0, 1) = (*G)(1, 0) = (along - turn) * c * s;
+        (*G)(0, 2) = (*G)(2, 0) = cross_term * c, (*G)(1, 2) = (*G)(2, 1) = cross_term * s;
+        (*G)(2, 2) = rho * share;
+    }
+    return {mu * normal * c, mu * normal * s, normal};
+}
+
+double Lagrangian::project_line(const Line& line, double tau, double rho, double* g) const
+{
+    if (g) *g = tau >= line.least && tau <= line.most ? rho : 0.0;
+    return std::clamp(tau, line.least, line.most);
+}
+
+/// step_ = -gradient at the present v, and with a matrix its Hessian; the largest |gradient| as a speed, m/s.
+double Lagrangian::gradient(const Problem& problem, IslandMatrix* matrix)
+{
+    for (std::size_t i = 0; i < problem.movers.size(); ++i)
+    {
+        const Anchor& m = problem.anchors[i];
+        step_[i] = {};
+        add(step_[i], (m.v - problem.movers[i].v) * m.mass, m.inertia * (m.w - problem.movers[i].w));
+    }
+    if (matrix) matrix->start(problem);
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        if (rho_[i] == 0) continue;
+        slips_[i] = problem.slip(problem.points[i]);
+        Mat3 G;
+        add_push(step_, problem.points[i], project(problem, i, tau_of(problem, i, slips_[i]), &G));
+        if (matrix && (G(2, 2) != 0 || G(0, 0) != 0 || G(1, 1) != 0)) matrix->add(problem, i, G);
+    }
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+    {
+        const Line& line = problem.lines[i];
+        if (line.count == 0) continue;
+        rates_[i] = problem.rate(line);
+        double g = 0;
+        add_push(step_, line, project_line(line, line.impulse - line_rho_[i] * (rates_[i] - line.target), line_rho_[i], &g));
+        if (matrix && g != 0) matrix->add(problem, i, g);
+    }
+    double largest = 0;
+    for (std::size_t i = 0; i < problem.movers.size(); ++i)
+        largest = std::max({largest, length(first(step_[i])) * problem.movers[i].inverse_mass,
+                            length(problem.movers[i].inverse_inertia * last(step_[i]))});
+    return largest;
+}
+
+/// Where everything that touches holds fast: tells more of who presses on whom than a start with nothing.
+void Lagrangian::weld(Problem& problem, IslandMatrix& matrix)
+{
+    matrix.start(problem);
+    for (auto& c : step_) c = {};
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        const Point& p = problem.points[i];
+        const Vec3 u = problem.slip(p);
+        // Gaps that open, or would not close, stay out.
+        if (rho_[i] == 0 || (p.impulse.z <= 0 && u.z - p.least > 1e-6 * (std::fabs(u.z) + std::fabs(p.least)))) continue;
+        const double grip = p.frictional() ? rho_[i] : 0.0;
+        matrix.add(problem, i, Mat3::diagonal(grip, grip, rho_[i]));
+        add_push(step_, p, Vec3{-grip * u.x, -grip * u.y, -rho_[i] * (u.z - p.least)});
+    }
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+    {
+        const Line& line = problem.lines[i];
+        if (line.count == 0) continue;
+        const double gap = problem.rate(line) - line.target;
+        if (line.least == 0 && line.impulse <= 0 && gap > 0) continue;
+        matrix.add(problem, i, line_rho_[i]);
+        add_push(step_, line, -line_rho_[i] * gap);
+    }
+    if (!matrix.solve(step_)) return;
+    move(problem, 1);
+}
+
+/// Derivative of the function along the step at v + t step.
+double Lagrangian::slope(const Problem& problem, double t)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < problem.movers.size(); ++i)
+    {
+        const Anchor& m = problem.anchors[i];
+        const Vec3 dv = first(step_[i]), dw = last(step_[i]);
+        sum += m.mass * dot(problem.movers[i].v + dv * t - m.v, dv);
+        sum += dot(m.inertia * (problem.movers[i].w + dw * t - m.w), dw);
+    }
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+        if (rho_[i] != 0) sum -= dot(project(problem, i, tau_of(problem, i, slips_[i] + slip_steps_[i] * t), nullptr), slip_steps_[i]);
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+    {
+        const Line& line = problem.lines[i];
+        if (line.count == 0) continue;
+        const double tau = line.impulse - line_rho_[i] * (rates_[i] + rate_steps_[i] * t - line.target);
+        sum -= project_line(line, tau, line_rho_[i], nullptr) * rate_steps_[i];
+    }
+    return sum;
+}
+
+/// Where along the step the function is least: false position on its slope, which grows with t.
+double Lagrangian::search(const Problem& problem, double at_zero)
+{
+    constexpr int kTrials = 12;
+    constexpr double kFlat = 0.05;
+    double low = 0, high = 1, f_low = at_zero, f_high = slope(problem, 1);
+    if (!(f_high > kFlat * std::fabs(at_zero))) return 1;
+    for (int i = 0; i < kTrials; ++i)
+    {
+        const double guess = low - f_low * (high - low) / (f_high - f_low);
+        const double t = std::clamp(guess, low + 0.05 * (high - low), high - 0.05 * (high - low));
+        const double f = slope(problem, t);
+        if (std::fabs(f) <= kFlat * std::fabs(at_zero)) return t;
+        if (f < 0)
+            low = t, f_low = f, f_high *= 0.7;
+        else
+            high = t, f_high = f, f_low *= 0.7;
+    }
+    return low > 0 ? low : high;
+}
+
+void Lagrangian::move(Problem& problem, double t)
+{
+    for (std::size_t i = 0; i < problem.movers.size(); ++i)
+        problem.movers[i].v += first(step_[i]) * t, problem.movers[i].w += last(step_[i]) * t;
+}
+
+void Lagrangian::take_impulses(Problem& problem)
+{
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+        if (rho_[i] != 0) problem.points[i].impulse = project(problem, i, tau_of(problem, i, problem.slip(problem.points[i])), nullptr);
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+    {
+        Line& line = problem.lines[i];
+        if (line.count > 0) line.impulse = project_line(line, line.impulse - line_rho_[i] * (problem.rate(line) - line.target), 0, nullptr);
+    }
+    problem.apply_impulses();
+}
+
+bool Lagrangian::round(Problem& problem, IslandMatrix& matrix, double kappa, bool from_welded, double tolerance, int& steps)
+{
+    const int most_steps = from_welded ? 4 : 25;
+    constexpr double kEnough = 1e-3;
+    start(problem, kappa);
+    if (from_welded) weld(problem, matrix);
+    double before = 0, size = 0;
+    for (int step = 0; step < most_steps; ++step, ++steps)
+    {
+        size = gradient(problem, &matrix);
+        if (step == 0) before = size;
+        if (size <= std::max(tolerance, kEnough * before / kappa)) break;
+        force_ = step_;
+        if (!matrix.solve(step_)) break;
+        double at_zero = 0;
+        for (std::size_t i = 0; i < step_.size(); ++i)
+            for (std::size_t k = 0; k < 6; ++k) at_zero -= force_[i][k] * step_[i][k];
+        for (std::size_t i = 0; i < problem.points.size(); ++i) slip_steps_[i] = slip_of(step_, problem.points[i]);
+        for (std::size_t i = 0; i < problem.lines.size(); ++i) rate_steps_[i] = rate_of(step_, problem.lines[i]);
+        if (!(at_zero < 0)) break;
+        move(problem, search(problem, at_zero));
+    }
+    if (from_welded || size <= std::max(tolerance, 10 * kEnough * before / kappa)) take_impulses(problem);
+    return size <= std::max(tolerance, 10 * kEnough * before / kappa);
+}
+
+}  // namespace plab::managers

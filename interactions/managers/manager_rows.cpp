@@ -1,0 +1,208 @@
+#include "manager_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace plab::managers
+{
+namespace
+{
+
+constexpr Unit kHertz{"1/s", {{0, 0, -1, 0}}};
+
+/// Share of the points that start without a guess: they need more sweeps than others.
+double unknown_share(const Problem& problem)
+{
+    const auto is_new = [](const Point& p) { return p.K(2, 2) > 0 && p.impulse == Vec3{} && p.least > kFar; };
+    const auto count = std::count_if(problem.points.begin(), problem.points.end(), is_new);
+    return problem.points.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(problem.points.size());
+}
+
+/// Sweeps of Gauss-Seidel.
+class Sweeps final : public Method
+{
+public:
+    Sweeps(int iterations, int position_iterations, double tolerance, double relaxation)
+        : iterations_(iterations), position_iterations_(position_iterations), tolerance_(tolerance), relaxation_(relaxation)
+    {
+    }
+    Verdict find_impulses(Problem& problem) override
+    {
+        const Swept done =
+            sweep_without_gain(problem, {static_cast<int>(iterations_ * (1 + 9 * unknown_share(problem))), 0.1 * tolerance_, relaxation_});
+        problem.apply_impulses();
+        const double residual = violation(problem);
+        return {done.sweeps, residual, residual <= tolerance_, false};
+    }
+    Verdict find_displacements(Problem& problem) override
+    {
+        const Swept done = sweep(problem, {position_iterations_, kPositionTolerance, relaxation_});
+        problem.apply_impulses();
+        return {done.sweeps, 0, true, false};
+    }
+
+private:
+    int iterations_, position_iterations_;
+    double tolerance_, relaxation_;
+};
+
+class Exactly final : public Method
+{
+public:
+    Exactly(NewtonSolver& newton, const Solving& how) : newton_(newton), how_(how) {}
+    Verdict find_impulses(Problem& problem) override { return verdict(newton_.solve(problem, how_)); }
+    Verdict find_displacements(Problem& problem) override
+    {
+        Solving how = how_;
+        how.tolerance = 0.1 * kPositionTolerance;
+        return verdict(newton_.solve(problem, how));
+    }
+
+private:
+    static Verdict verdict(const Solved& s) { return {s.steps + s.sweeps, s.residual, s.converged, s.fell_back}; }
+
+    NewtonSolver& newton_;
+    Solving how_;
+};
+
+int whole(std::int64_t n) { return static_cast<int>(std::min<std::int64_t>(n, 1'000'000)); }
+
+void report(Island& island, const Verdict& verdict)
+{
+    island.iterations = verdict.iterations, island.residual = verdict.residual;
+    island.converged = verdict.converged, island.fell_back = verdict.fell_back;
+}
+
+}  // namespace
+
+void Account::describe(Schema& s)
+{
+    s.output(residual, "residual", unit::metre_per_second, "largest violation left of what contacts and rows ask of speeds")
+        .reported_as_error();
+    s.output(iterations, "iterations", unit::one, "sweeps, sub-steps' sweeps or Newton steps in the last step");
+    s.output(contacts, "contacts", unit::one, "contact points in the last step");
+    s.output(fallbacks, "fallbacks", unit::one, "islands that another algorithm had to finish in the last step");
+    s.scratch(memory, "account", "whether the last step converged");
+}
+
+void Account::add(const StepContext& context, Row row, const Island& island, double tolerance)
+{
+    if (!context.events) return;
+    Memory& m = memory[row];
+    if (m.tick != context.tick)
+    {
+        m.failing = m.failing_now && m.tick + 1 == context.tick;
+        m.tick = context.tick, m.failing_now = false;
+        iterations[row] = contacts[row] = fallbacks[row] = 0, residual[row] = 0;
+    }
+    iterations[row] += island.iterations;
+    contacts[row] += static_cast<std::int64_t>(island.contacts.size());
+    fallbacks[row] += island.fell_back ? 1 : 0;
+    residual[row] = std::max(residual[row], island.residual);
+    if (island.converged) return;
+    if (!m.failing && !m.failing_now)
+        context.emit(row, "manager.not_converged", Severity::Info,
+                     "contacts are left " + std::to_string(island.residual) + " m/s from what they ask for, " + std::to_string(tolerance) +
+                         " would do; allow more iterations, or take a smaller dt or a more exact manager",
+                     {island.residual, tolerance});
+    m.failing_now = true;
+}
+
+void SequentialRows::describe(Schema& s)
+{
+    s.param(max_iterations, "max_iterations", unit::one,
+            "sweeps over the contacts and rows for speeds; up to ten times as many where contacts are new")
+        .or_else(20)
+        .positive();
+    s.param(position_iterations, "position_iterations", unit::one, "sweeps that part overlap").or_else(10).not_negative();
+    s.param(tolerance, "tolerance", unit::metre_per_second,
+            "violation that may be left; ends the sweeps, and above it the step counts as not converged")
+        .or_else(1e-6)
+        .positive();
+    s.param(slop, "slop", unit::metre,
+            "overlap that is left, and gaps that hold as if closed: what trembles less than this keeps its contacts")
+        .or_else(5e-5)
+        .not_negative();
+    s.param(overlap_share, "overlap_share", unit::one,
+            "part of the overlap beyond slop that is parted in a step; much of it at once lifts what rests above, and feeds its rocking")
+        .or_else(0.2)
+        .positive()
+        .at_most(1);
+    s.param(relaxation, "relaxation", unit::one, "share of each correction that is made; above 1 converges faster, or not at all")
+        .or_else(1)
+        .positive()
+        .at_most(1.9);
+    account.describe(s);
+    s.scratch(memory, "memory", "working memory");
+}
+
+void solve_sequential(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+{
+    Sweeps method(whole(rows.max_iterations[row]), whole(rows.position_iterations[row]), rows.tolerance[row], rows.relaxation[row]);
+    StepChoices choices;
+    choices.slop = rows.slop[row], choices.parted_share = rows.overlap_share[row];
+    report(island, advance_island(island, bodies, shafts, method, choices, rows.memory[row]));
+    rows.account.add(context, row, island, rows.tolerance[row]);
+}
+
+void DirectRows::describe(Schema& s)
+{
+    s.param(tolerance, "tolerance", unit::metre_per_second, "violation that counts as none; never less than rounding leaves")
+        .or_else(1e-12)
+        .positive();
+    s.param(max_steps, "max_steps", unit::one, "Newton steps before sweeps have to finish").or_else(150).positive();
+    s.param(max_iterations, "max_iterations", unit::one,
+            "sweeps where Newton's method does not converge, and in islands beyond max_contacts")
+        .or_else(40)
+        .positive();
+    s.param(max_contacts, "max_contacts", unit::one,
+            "islands with more contact points are left to sweeps: one factorisation would cost too much")
+        .or_else(2000)
+        .positive();
+    account.describe(s);
+    s.scratch(memory, "memory", "working memory: factors of the island's matrix");
+}
+
+void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+{
+    DirectRows::Memory& memory = rows.memory[row];
+    const Solving how{rows.tolerance[row], whole(rows.max_steps[row]), whole(rows.max_iterations[row])};
+    if (island.contacts.size() > static_cast<std::size_t>(rows.max_contacts[row]))
+    {
+        Sweeps method(how.most_sweeps, how.most_sweeps, std::max(1e-6, how.tolerance), 1);
+        report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
+        island.fell_back = true;
+    }
+    else
+    {
+        Exactly method(memory.newton, how);
+        report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
+    }
+    rows.account.add(context, row, island, rows.tolerance[row]);
+}
+
+void SoftStepRows::describe(Schema& s)
+{
+    s.param(substeps, "substeps", unit::one, "parts of the step, each with one sweep and the relaxing ones").or_else(8).positive();
+    s.param(relax_iterations, "relax_iterations", unit::one, "sweeps after each move that take out the speed of parting")
+        .or_else(1)
+        .not_negative();
+    s.param(hertz, "hertz", kHertz, "stiffness of contacts as a frequency; never more than a quarter of the sub-steps' rate")
+        .or_else(60)
+        .positive();
+    s.param(damping_ratio, "damping_ratio", unit::one, "damping of that oscillation").or_else(10).not_negative();
+    s.param(push_speed, "push_speed", unit::metre_per_second, "overlap is parted no faster than this").or_else(3).positive();
+    account.describe(s);
+    s.scratch(memory, "memory", "working memory");
+}
+
+void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
+{
+    const SoftChoices choices{whole(rows.substeps[row]), whole(rows.relax_iterations[row]), rows.hertz[row], rows.damping_ratio[row],
+                              rows.push_speed[row]};
+    report(island, advance_softly(island, bodies, shafts, choices, rows.memory[row]));
+    rows.account.add(context, row, island, 0);
+}
+
+}  // namespace plab::managers

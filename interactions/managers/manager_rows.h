@@ -1,0 +1,73 @@
+/// Manager/*: who advances islands of contacts and one-sided rows. One step each call of Phase::Solve.
+#pragma once
+
+#include <cstdint>
+
+#include "newton.h"
+#include "plab/context.h"
+#include "plab/schema.h"
+#include "soft_step.h"
+#include "stepping.h"
+
+namespace plab::managers
+{
+
+/// What every manager says of its last step, summed over its islands.
+struct Account
+{
+    Column<std::int64_t> iterations, contacts, fallbacks;
+    Column<double> residual;  // m/s
+
+    void describe(Schema& schema);
+
+    struct Memory
+    {
+        Tick tick = -1;
+        bool failing = false;  ///< did not converge in the step before
+        bool failing_now = false;
+    };
+    Column<Memory> memory;
+
+    /// Trials leave no trace: they have nobody to tell events to.
+    void add(const StepContext& context, Row row, const Island& island, double tolerance);
+};
+
+struct SequentialRows
+{
+    Column<std::int64_t> max_iterations, position_iterations;
+    Column<double> tolerance, relaxation, slop, overlap_share;
+    Account account;
+    Column<StepMemory> memory;
+
+    void describe(Schema& schema);
+};
+void solve_sequential(const StepContext& context, Row row, SequentialRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
+
+struct DirectRows
+{
+    Column<double> tolerance;
+    Column<std::int64_t> max_steps, max_iterations, max_contacts;
+    Account account;
+    struct Memory
+    {
+        StepMemory step;
+        NewtonSolver newton;
+    };
+    Column<Memory> memory;
+
+    void describe(Schema& schema);
+};
+void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
+
+struct SoftStepRows
+{
+    Column<std::int64_t> substeps, relax_iterations;
+    Column<double> hertz, damping_ratio, push_speed;
+    Account account;
+    Column<SoftMemory> memory;
+
+    void describe(Schema& schema);
+};
+void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, Island& island);
+
+}  // namespace plab::managers

@@ -1,0 +1,214 @@
+#include "newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::managers
+{
+namespace
+{
+
+/// What one step asks of a point: dj = change - G du. Who presses and who slips is read off tau with rho = 1 / K, at which
+/// impulses and speeds weigh alike; what presses or sticks is held by rho = kappa / K.
+void law_of(const Point& p, const Vec3& u, double kappa, Vec3& change, Mat3& G)
+{
+    const double rho = 1 / p.K(2, 2), stiff = kappa * rho;
+    G = {};
+    change = -p.impulse;
+    const double normal = p.impulse.z - rho * (u.z - p.least);
+    if (normal <= 0) return;
+    G(2, 2) = stiff;
+    // Written so that a held contact's change is -rho u itself, without the digits of j.
+    change.z = -stiff * (u.z - p.least);
+    if (!p.frictional()) return;
+    const double x = p.impulse.x - rho * u.x, y = p.impulse.y - rho * u.y, size = std::hypot(x, y);
+    const double radius = p.friction * normal;
+    if (size <= radius)
+    {
+        G(0, 0) = G(1, 1) = stiff;
+        change.x = -stiff * u.x, change.y = -stiff * u.y;
+        return;
+    }
+    // Along the slip mu j_n; across it the direction of tau turns with j and u.
+    const double c = x / size, s = y / size, beta = radius / size;
+    const double along = p.friction * (p.impulse.z + change.z) - (c * p.impulse.x + s * p.impulse.y);
+    const double share = std::min(1 / (1 - beta), kappa), turn = rho * beta * share;
+    const double across = -(c * p.impulse.y - s * p.impulse.x) * share;
+    change.x = along * c - across * s, change.y = along * s + across * c;
+    G(0, 0) = turn * s * s, G(0, 1) = G(1, 0) = -turn * c * s, G(1, 1) = turn * c * c;
+    G(0, 2) = p.friction * c * stiff, G(1, 2) = p.friction * s * stiff;
+}
+
+/// Root of the sum of squares: smooth enough to compare steps by.
+double total_violation(const Problem& problem)
+{
+    double sum = 0;
+    const auto take = [&sum](double v) { sum += v * v; };
+    for (const Point& p : problem.points) take(violation(p, problem.slip(p)));
+    for (const Line& line : problem.lines) take(violation(line, problem.rate(line)));
+    return std::sqrt(sum);
+}
+
+/// Whether no point is further than that from the law; `total` is total_violation's.
+bool settled(const Problem& problem, double total, double tolerance)
+{
+    if (total <= tolerance) return true;
+    const auto n = static_cast<double>(problem.points.size() + problem.lines.size());
+    return total <= tolerance * std::sqrt(n) && violation(problem) <= tolerance;
+}
+
+bool is_warm(const Problem& problem)
+{
+    return std::any_of(problem.points.begin(), problem.points.end(), [](const Point& p) { return p.impulse.z > 0; }) ||
+           std::any_of(problem.lines.begin(), problem.lines.end(), [](const Line& line) { return line.impulse != 0; });
+}
+
+}  // namespace
+
+bool NewtonSolver::find_step(const Problem& problem, double kappa)
+{
+    matrix_.start(problem);
+    step_.assign(problem.movers.size(), Column6{});
+    laws_.resize(problem.points.size()), line_laws_.resize(problem.lines.size());
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        const Point& p = problem.points[i];
+        laws_[i] = {};
+        if (!(p.K(2, 2) > 0)) continue;
+        law_of(p, problem.slip(p), kappa, laws_[i].change, laws_[i].G);
+        add_push(step_, p, laws_[i].change);
+        if (laws_[i].G(2, 2) != 0) matrix_.add(problem, i, laws_[i].G);
+    }
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+    {
+        const Line& line = problem.lines[i];
+        line_laws_[i] = {};
+        if (line.count == 0) continue;
+        const double rho = 1 / line.mobility, gap = problem.rate(line) - line.target, wanted = line.impulse - rho * gap;
+        const double held = std::clamp(wanted, line.least, line.most);
+        line_laws_[i] = held == wanted ? LineLaw{-kappa * rho * gap, kappa * rho} : LineLaw{held - line.impulse, 0};
+        add_push(step_, line, line_laws_[i].change);
+        if (line_laws_[i].G != 0) matrix_.add(problem, i, line_laws_[i].G);
+    }
+    if (!matrix_.solve(step_)) return false;
+    // dj = P(tau) - j - G J dv.
+    point_steps_.resize(problem.points.size()), line_steps_.resize(problem.lines.size());
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+        point_steps_[i] = laws_[i].change - laws_[i].G * slip_of(step_, problem.points[i]);
+    for (std::size_t i = 0; i < problem.lines.size(); ++i)
+        line_steps_[i] = line_laws_[i].change - line_laws_[i].G * rate_of(step_, problem.lines[i]);
+    return true;
+}
+
+void NewtonSolver::go(Problem& problem, double share)
+{
+    for (std::size_t i = 0; i < problem.points.size(); ++i) problem.points[i].impulse += point_steps_[i] * share;
+    for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse += line_steps_[i] * share;
+    problem.apply_impulses();
+}
+
+/// The whole step if it does not lead away, or a part of it that does not.
+double NewtonSolver::advance(Problem& problem, double now)
+{
+    constexpr int kHalvings = 4;
+    double at = 1;
+    go(problem, 1);
+    double residual = total_violation(problem);
+    for (int i = 0; i < kHalvings && !(residual < 2 * now); ++i)
+    {
+        go(problem, -0.5 * at);
+        at *= 0.5;
+        residual = total_violation(problem);
+    }
+    return residual;
+}
+
+void NewtonSolver::remember(const Problem& problem)
+{
+    best_points_.clear(), best_lines_.clear();
+    for (const Point& p : problem.points) best_points_.push_back(p.impulse);
+    for (const Line& line : problem.lines) best_lines_.push_back(line.impulse);
+}
+
+void NewtonSolver::recall(Problem& problem) const
+{
+    for (std::size_t i = 0; i < problem.points.size(); ++i) problem.points[i].impulse = best_points_[i];
+    for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = best_lines_[i];
+    problem.apply_impulses();
+}
+
+bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
+{
+    constexpr int kPatience = 4;
+    constexpr double kLeast = 1e6, kGrowth = 1e2, kMost = 1e12;
+    double now = total_violation(problem), best = now, kappa = kLeast;
+    remember(problem);
+    for (int since_best = 0; out.steps < how.most_steps && since_best < kPatience && !settled(problem, now, how.tolerance);)
+    {
+        if (!find_step(problem, kappa)) break;
+        const double before = now;
+        now = advance(problem, now);
+        ++out.steps, ++since_best;
+        // Slow where masses differ much: then the contacts have to be taken as stiffer.
+        if (now > 0.05 * before) kappa = std::min(kMost, kappa * kGrowth);
+        if (!(now < best)) continue;
+        if (now < 0.5 * best) since_best = 0;
+        best = now;
+        remember(problem);
+    }
+    if (!(now <= best)) recall(problem);
+    return settled(problem, best, how.tolerance);
+}
+
+/// Rounds of the augmented Lagrangian, ever stiffer, until Newton's method on the law itself takes over.
+void NewtonSolver::approach(Problem& problem, const Solving& how, Solved& out)
+{
+    constexpr double kFirst = 100, kGrowth = 4, kMost = 6400;
+    constexpr int kRounds = 40, kSweeps = 16;
+    const double guess = total_violation(problem);
+    remember(problem);
+    guess_points_ = best_points_, guess_lines_ = best_lines_;
+    // At first as if everything held fast: that is all there is to most things that lie.
+    (void)lagrangian_.round(problem, matrix_, 1e5, true, how.tolerance, out.steps);
+    out.converged = newton(problem, how, out);
+    if (out.converged) return;
+    if (!(total_violation(problem) < guess)) best_points_ = guess_points_, best_lines_ = guess_lines_, recall(problem);
+    out.sweeps += sweep(problem, {kSweeps, how.tolerance, 1}).sweeps;
+    problem.apply_impulses();
+    double kappa = kFirst;
+    for (int i = 0; i < kRounds && !out.converged && out.steps < how.most_steps; ++i)
+    {
+        const bool there = lagrangian_.round(problem, matrix_, kappa, false, how.tolerance, out.steps);
+        kappa = there ? std::min(kMost, kGrowth * kappa) : kappa / kGrowth;
+        if (there)
+            out.converged = newton(problem, how, out);
+        else
+            problem.apply_impulses();
+    }
+}
+
+Solved NewtonSolver::solve(Problem& problem, const Solving& how)
+{
+    Solved out;
+    Solving exact = how;
+    const auto set_tolerance = [&] { exact.tolerance = std::max(how.tolerance, problem.rounding()); };
+    set_tolerance();
+    if (!settled(problem, total_violation(problem), exact.tolerance))
+    {
+        matrix_.shape(problem);
+        if (is_warm(problem)) out.converged = newton(problem, exact, out);
+        if (!out.converged) approach(problem, exact, out);
+        set_tolerance();
+    }
+    out.residual = violation(problem);
+    out.converged = out.residual <= exact.tolerance;
+    if (out.converged) return out;
+    out.fell_back = true;
+    out.sweeps += sweep_without_gain(problem, {how.most_sweeps, exact.tolerance, 1}).sweeps;
+    problem.apply_impulses();
+    out.residual = violation(problem);
+    out.converged = out.residual <= exact.tolerance;
+    return out;
+}
+
+}  // namespace plab::managers

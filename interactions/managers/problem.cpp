@@ -1,0 +1,285 @@
+#include "problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::managers
+{
+namespace
+{
+
+/// Largest eigenvalue of the tangential 2 x 2 part.
+double slip_mobility(const Mat3& K)
+{
+    const double mean = 0.5 * (K(0, 0) + K(1, 1)), half = 0.5 * (K(0, 0) - K(1, 1));
+    return mean + std::sqrt(half * half + K(0, 1) * K(0, 1));
+}
+
+void add_mobility(Point& p, const Mover& m, const Vec3& r)
+{
+    const Vec3 lever[3] = {cross(r, p.t1), cross(r, p.t2), cross(r, p.n)};
+    for (int i = 0; i < 3; ++i)
+    {
+        const Vec3 spin = m.inverse_inertia * lever[i];
+        for (int j = i; j < 3; ++j)
+        {
+            p.K(i, j) += dot(lever[j], spin);
+            p.K(j, i) = p.K(i, j);
+        }
+        p.K(i, i) += m.inverse_mass;
+    }
+}
+
+}  // namespace
+
+void Problem::add_bodies(const Island& island, const Bodies& bodies)
+{
+    mover_of_body_.resize(bodies.size(), kNoIndex);
+    for (const std::uint32_t b : island.bodies)
+    {
+        mover_of_body_[b] = static_cast<std::uint32_t>(movers.size());
+        const Mat3 R = rotation_matrix(bodies.orientation[b]), R_T = transposed(R);
+        Mover& m = movers.emplace_back();
+        m.inverse_mass = bodies.inverse_mass[b];
+        m.inverse_inertia = R * bodies.inverse_inertia_B[b] * R_T;
+        Anchor& anchor = anchors.emplace_back();
+        anchor.host = b, anchor.mass = bodies.mass[b];
+        anchor.inertia = R * bodies.inertia_B[b] * R_T;
+    }
+}
+
+void Problem::add_shafts(const Island& island, const Shafts& shafts)
+{
+    mover_of_shaft_.resize(shafts.size(), kNoIndex);
+    for (const std::uint32_t s : island.shafts)
+    {
+        mover_of_shaft_[s] = static_cast<std::uint32_t>(movers.size());
+        const double mobility = s < island.shaft_mobility.size() ? island.shaft_mobility[s] : shafts.inverse_inertia[s];
+        Mover& m = movers.emplace_back();
+        m.inverse_inertia(0, 0) = mobility;
+        Anchor& anchor = anchors.emplace_back();
+        anchor.host = s, anchor.shaft = true;
+        anchor.inertia = Mat3::diagonal(mobility > 0 ? 1 / mobility : 1.0, 1, 1);
+    }
+}
+
+std::uint32_t Problem::mover_of(Ref who) const
+{
+    if (who.facet == Facet::Body && who.index < mover_of_body_.size()) return mover_of_body_[who.index];
+    if (who.facet == Facet::Shaft && who.index < mover_of_shaft_.size()) return mover_of_shaft_[who.index];
+    return kNoIndex;
+}
+
+void Problem::add_point(const Contact& c, const Bodies& bodies)
+{
+    Point& p = points.emplace_back();
+    p.a = mover_of(c.a), p.b = mover_of(c.b);
+    p.n = c.normal;
+    p.t1 = any_perpendicular(p.n), p.t2 = cross(p.n, p.t1);
+    p.r_a = c.point - bodies.position[c.a.index], p.r_b = c.point - bodies.position[c.b.index];
+    p.friction = c.friction;
+    if (p.a != kNoIndex) add_mobility(p, movers[p.a], p.r_a);
+    if (p.b != kNoIndex) add_mobility(p, movers[p.b], p.r_b);
+    p.slip_mobility = slip_mobility(p.K);
+    if (p.K(2, 2) > 0) p.impulse = to_contact(p, c.impulse);
+}
+
+void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
+{
+    Line& line = lines.emplace_back();
+    line.row = index;
+    line.impulse = row.impulse;
+    for (std::uint32_t k = 0; k < row.count; ++k)
+    {
+        const std::uint32_t mover = mover_of(row.blocks[k].who);
+        if (mover == kNoIndex) continue;
+        const Mover& m = movers[mover];
+        const Vec3 &linear = row.blocks[k].linear, &angular = row.blocks[k].angular;
+        const double mobility = m.inverse_mass * length_squared(linear) + dot(angular, m.inverse_inertia * angular);
+        if (!(mobility > 0)) continue;
+        line.mobility += mobility;
+        line.mover[line.count] = mover;
+        line.linear[line.count] = linear, line.angular[line.count] = angular;
+        ++line.count;
+    }
+    if (line.count == 0) line.impulse = 0;
+}
+
+void Problem::load(const Island& island, const Bodies& bodies, const Shafts& shafts)
+{
+    movers.clear(), anchors.clear(), points.clear(), lines.clear();
+    contacts_ = island.contacts, rows_ = island.rows;
+    add_bodies(island, bodies);
+    add_shafts(island, shafts);
+    for (const Contact& c : island.contacts) add_point(c, bodies);
+    for (std::uint32_t i = 0; i < island.rows.size(); ++i) add_line(island.rows[i], i);
+    // Only these entries were written: the maps stay empty from island to island.
+    for (const std::uint32_t b : island.bodies) mover_of_body_[b] = kNoIndex;
+    for (const std::uint32_t s : island.shafts) mover_of_shaft_[s] = kNoIndex;
+}
+
+void Problem::read_speeds(const Bodies& bodies, const Shafts& shafts)
+{
+    for (Anchor& m : anchors)
+    {
+        m.written = {};
+        if (m.shaft)
+            m.v = {}, m.w = {shafts.speed[m.host], 0, 0};
+        else
+            m.v = bodies.velocity[m.host], m.w = bodies.angular_velocity[m.host];
+    }
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+        Point& p = points[i];
+        Vec3 given;
+        const Contact& c = contacts_[i];
+        if (p.b == kNoIndex && bodies.motion[c.b.index] != Motion::Static) given += bodies.velocity_at(c.b.index, c.point);
+        if (p.a == kNoIndex && bodies.motion[c.a.index] != Motion::Static) given -= bodies.velocity_at(c.a.index, c.point);
+        p.given = to_contact(p, given);
+    }
+    for (Line& line : lines)
+    {
+        const ConstraintRow& row = rows_[line.row];
+        line.given = 0;
+        for (std::uint32_t k = 0; k < row.count; ++k)
+        {
+            const RowBlock& block = row.blocks[k];
+            if (!block.who.valid()) continue;
+            bool moves = false;
+            for (std::uint32_t i = 0; i < line.count; ++i)
+                moves = moves || (anchors[line.mover[i]].host == block.who.index &&
+                                  anchors[line.mover[i]].shaft == (block.who.facet == Facet::Shaft));
+            if (moves) continue;
+            if (block.who.facet == Facet::Body)
+                line.given +=
+                    dot(block.linear, bodies.velocity[block.who.index]) + dot(block.angular, bodies.angular_velocity[block.who.index]);
+            else if (block.who.facet == Facet::Shaft)
+                line.given += block.angular.x * shafts.speed[block.who.index];
+        }
+    }
+}
+
+void Problem::rest()
+{
+    for (Anchor& m : anchors) m.v = m.w = {};
+    for (Point& p : points) p.given = {};
+    for (Line& line : lines) line.given = 0;
+}
+
+void Problem::clear_impulses()
+{
+    for (Point& p : points) p.impulse = {};
+    for (Line& line : lines) line.impulse = 0;
+}
+
+void Problem::scale_impulses(double share)
+{
+    for (Point& p : points) p.impulse *= share;
+    for (Line& line : lines) line.impulse *= share;
+}
+
+void Problem::apply_impulses()
+{
+    for (Anchor& m : anchors) m.push = m.turn = {};
+    for (const Point& p : points)
+    {
+        const Vec3 j = to_world(p, p.impulse);
+        if (p.a != kNoIndex) anchors[p.a].push -= j, anchors[p.a].turn -= cross(p.r_a, j);
+        if (p.b != kNoIndex) anchors[p.b].push += j, anchors[p.b].turn += cross(p.r_b, j);
+    }
+    for (const Line& line : lines)
+        for (std::uint32_t k = 0; k < line.count; ++k)
+        {
+            Anchor& m = anchors[line.mover[k]];
+            m.push += line.linear[k] * line.impulse, m.turn += line.angular[k] * line.impulse;
+        }
+    for (std::size_t i = 0; i < movers.size(); ++i)
+    {
+        const Anchor& anchor = anchors[i];
+        Mover& m = movers[i];
+        m.v = anchor.v + anchor.push * m.inverse_mass;
+        m.w = anchor.w + m.inverse_inertia * anchor.turn;
+    }
+}
+
+void Problem::write_speeds(Bodies& bodies, Shafts& shafts)
+{
+    for (std::size_t i = 0; i < movers.size(); ++i)
+    {
+        Anchor& m = anchors[i];
+        if (m.shaft)
+        {
+            shafts.speed[m.host] = movers[i].w.x;
+            continue;
+        }
+        // The momentum is the state: it changes by the impulses themselves.
+        bodies.velocity[m.host] = movers[i].v;
+        if (m.turn == m.written) continue;
+        bodies.add_angular_impulse(m.host, m.turn - m.written);
+        m.written = m.turn;
+    }
+}
+
+double Problem::rate(const Line& line) const
+{
+    double sum = line.given;
+    for (std::uint32_t k = 0; k < line.count; ++k)
+        sum += dot(line.linear[k], movers[line.mover[k]].v) + dot(line.angular[k], movers[line.mover[k]].w);
+    return sum;
+}
+
+void Problem::push(const Line& line, double j)
+{
+    for (std::uint32_t k = 0; k < line.count; ++k)
+    {
+        Mover& m = movers[line.mover[k]];
+        m.v += line.linear[k] * (j * m.inverse_mass);
+        m.w += m.inverse_inertia * (line.angular[k] * j);
+    }
+}
+
+double Problem::rounding() const
+{
+    double speed = 0, given = 0;
+    for (const Point& p : points)
+    {
+        speed = std::max(speed, length_squared(slip(p)));
+        given = std::max(given, p.impulse.z * p.K(2, 2));
+    }
+    speed = std::sqrt(speed);
+    for (const Line& line : lines)
+    {
+        if (line.count == 0) continue;
+        speed = std::max(speed, std::fabs(rate(line)));
+        given = std::max(given, std::fabs(line.impulse) * line.mobility);
+    }
+    return std::max(0x1p-46 * speed, 0x1p-50 * given);
+}
+
+double violation(const Point& p, const Vec3& u)
+{
+    if (!(p.K(2, 2) > 0)) return 0;
+    const double normal = std::max(0.0, p.impulse.z - (u.z - p.least) / p.K(2, 2));
+    const double of_normal = std::fabs(normal - p.impulse.z) * p.K(2, 2);
+    if (!p.frictional()) return of_normal;
+    const double k = p.slip_mobility;
+    const Vec3 held = within_disc({p.impulse.x - u.x / k, p.impulse.y - u.y / k, 0}, p.friction * std::max(0.0, p.impulse.z));
+    return std::max(of_normal, std::hypot(held.x - p.impulse.x, held.y - p.impulse.y) * k);
+}
+
+double violation(const Line& line, double rate)
+{
+    if (line.count == 0) return 0;
+    const double held = std::clamp(line.impulse - (rate - line.target) / line.mobility, line.least, line.most);
+    return std::fabs(held - line.impulse) * line.mobility;
+}
+
+double violation(const Problem& problem)
+{
+    double largest = 0;
+    for (const Point& p : problem.points) largest = std::max(largest, violation(p, problem.slip(p)));
+    for (const Line& line : problem.lines) largest = std::max(largest, violation(line, problem.rate(line)));
+    return largest;
+}
+
+}  // namespace plab::managers

@@ -1,0 +1,149 @@
+#include "slip_end.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::managers
+{
+namespace
+{
+constexpr int kMostCuts = 8;
+/// Slower than this is no slip, m/s.
+constexpr double kNoSlip = 1e-11;
+/// A part of the step that is not worth a cut.
+constexpr double kSliver = 1e-9;
+}  // namespace
+
+void SlipEnds::keep_speeds()
+{
+    memory_.speeds.clear();
+    for (const Anchor& m : memory_.problem.anchors)
+        if (m.shaft)
+            memory_.speeds.push_back({{}, {}, {}, shafts_.speed[m.host]});
+        else
+            memory_.speeds.push_back({bodies_.velocity[m.host], bodies_.angular_velocity[m.host], bodies_.angular_momentum[m.host], 0});
+}
+
+void SlipEnds::take_back()
+{
+    for (std::size_t i = 0; i < memory_.speeds.size(); ++i)
+    {
+        const Anchor& m = memory_.problem.anchors[i];
+        const StepMemory::Speeds& s = memory_.speeds[i];
+        if (m.shaft)
+            shafts_.speed[m.host] = s.shaft;
+        else
+            bodies_.velocity[m.host] = s.velocity, bodies_.angular_velocity[m.host] = s.spin, bodies_.angular_momentum[m.host] = s.momentum;
+    }
+}
+
+Verdict SlipEnds::try_part(double h)
+{
+    Problem& problem = memory_.problem;
+    island_.motion->kick(h);
+    problem.read_speeds(bodies_, shafts_);
+    set_targets(problem, island_, h, slop_);
+    problem.apply_impulses();
+    return method_.find_impulses(problem);
+}
+
+/// Whether the contact slips at the start of the part, held by friction.
+bool SlipEnds::slides(std::size_t i) const
+{
+    const Point& p = memory_.problem.points[i];
+    return p.frictional() && p.impulse.z > 0 && std::hypot(memory_.slips[i].x, memory_.slips[i].y) > no_slip_;
+}
+
+/// Slip at the end of the part along that at its start, m/s; none if it ended or turned back.
+double SlipEnds::slip_left(std::size_t i) const
+{
+    const Vec3& before = memory_.slips[i];
+    const Vec3 after = memory_.problem.slip(memory_.problem.points[i]);
+    const double was = std::hypot(before.x, before.y), is = std::hypot(after.x, after.y);
+    const double along = (before.x * after.x + before.y * after.y) / was;
+    return is > std::max(no_slip_, 1e-9 * was) && along > 0.1 * is ? along : 0.0;
+}
+
+double SlipEnds::first_end(double h)
+{
+    const std::size_t n = memory_.problem.points.size();
+    bool ends = false;
+    for (std::size_t i = 0; i < n; ++i) ends = ends || (slides(i) && slip_left(i) == 0);
+    looked_ = ends;
+    if (!ends) return h;
+    // While all of them still slide, slip falls linearly: its end is read off a shorter part.
+    double share = 0.5;
+    for (double part = 0.5 * h; part > kSliver * island_.h; part *= 0.25, share = 0.25)
+    {
+        take_back();
+        memory_.problem.scale_impulses(share);
+        tried_ = part;
+        (void)try_part(part);
+        double first = h;
+        bool all_slide = true;
+        for (std::size_t i = 0; i < n && all_slide; ++i)
+        {
+            if (!slides(i)) continue;
+            const double speed = std::hypot(memory_.slips[i].x, memory_.slips[i].y), left = slip_left(i);
+            all_slide = left > 0;
+            if (left < speed) first = std::min(first, part * speed / (speed - left));
+        }
+        if (all_slide) return std::clamp(first, part, h);
+    }
+    return h;
+}
+
+void SlipEnds::move(const Verdict& found, double h)
+{
+    Problem& problem = memory_.problem;
+    problem.write_speeds(bodies_, shafts_);
+    managers::move(island_, found, h);
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        memory_.impulses[i] += problem.points[i].impulse;
+        memory_.slips[i] = problem.slip(problem.points[i]);
+    }
+    for (std::size_t i = 0; i < problem.lines.size(); ++i) memory_.line_impulses[i] += problem.lines[i].impulse;
+    done_ += h;
+}
+
+Verdict SlipEnds::advance()
+{
+    Problem& problem = memory_.problem;
+    std::fill(memory_.impulses.begin(), memory_.impulses.end(), Vec3{});
+    std::fill(memory_.line_impulses.begin(), memory_.line_impulses.end(), 0.0);
+    Verdict out;
+    for (int cuts = 0;; ++cuts)
+    {
+        const double rest = island_.h - done_;
+        keep_speeds();
+        Verdict verdict = try_part(rest);
+        tried_ = rest, looked_ = false;
+        // What sweeps did not settle is no slip.
+        no_slip_ = std::max(kNoSlip, 10 * verdict.residual);
+        const double end = cuts < kMostCuts && verdict.converged ? first_end(rest) : rest;
+        const bool cut = end < rest * (1 - kSliver);
+        const double part = cut ? end : rest;
+        if (looked_)
+        {
+            take_back();
+            problem.scale_impulses(part / tried_);
+            verdict = try_part(part);
+        }
+        out.join(verdict);
+        move(verdict, part);
+        if (!cut) break;
+        problem.scale_impulses((rest - part) / part);
+    }
+    store_impulses(problem, island_);
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        const Point& p = problem.points[i];
+        const Vec3& j = memory_.impulses[i];
+        island_.contacts[i].impulse = p.t1 * j.x + p.t2 * j.y + p.n * j.z;
+    }
+    for (std::size_t i = 0; i < problem.lines.size(); ++i) island_.rows[problem.lines[i].row].impulse = memory_.line_impulses[i];
+    return out;
+}
+
+}  // namespace plab::managers

@@ -1,0 +1,249 @@
+#include "soft_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plab/rotation.h"
+#include "sequential.h"
+
+namespace plab::managers
+{
+namespace
+{
+
+struct Softness
+{
+    double bias_rate = 0, mass_share = 1, impulse_share = 0;
+};
+
+Softness soften(double hertz, double damping_ratio, double h)
+{
+    constexpr double kTwoPi = 6.283185307179586;
+    if (hertz <= 0) return {};
+    const double omega = kTwoPi * hertz, a = 2 * damping_ratio + h * omega, c = h * omega * a;
+    return {omega / a, c / (1 + c), 1 / (1 + c)};
+}
+
+class SoftIsland
+{
+public:
+    SoftIsland(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory)
+        : island_(island),
+          bodies_(bodies),
+          shafts_(shafts),
+          choices_(choices),
+          memory_(memory),
+          problem_(memory.step.problem),
+          h_(island.h / choices.substeps),
+          rate_(1 / h_),
+          soft_(soften(std::min(choices.hertz, 0.25 * rate_), choices.damping_ratio, h_)),
+          against_fixed_(soften(std::min(2 * choices.hertz, 0.25 * rate_), choices.damping_ratio, h_))
+    {
+    }
+
+    Verdict run()
+    {
+        start();
+        Verdict out;
+        for (int s = 0; s < choices_.substeps; ++s)
+        {
+            kick();
+            sweep_points(true), sweep_lines(true);
+            write();
+            island_.motion->move(h_);
+            turn_arms();
+            for (int i = 0; i < choices_.relax_iterations; ++i) sweep_lines(false), sweep_points(false);
+            write();
+            gather();
+            out.iterations += 1 + choices_.relax_iterations;
+        }
+        give_back();
+        finish(out);
+        return out;
+    }
+
+private:
+    void start();
+    void kick();
+    void write();
+    void turn_arms();
+    void sweep_points(bool soft);
+    void sweep_lines(bool soft);
+    void gather();
+    void give_back();
+    void finish(Verdict& out);
+    double depth_now(std::size_t i) const;
+
+    Island& island_;
+    Bodies& bodies_;
+    Shafts& shafts_;
+    const SoftChoices& choices_;
+    SoftMemory& memory_;
+    Problem& problem_;
+    double h_, rate_;
+    Softness soft_, against_fixed_;
+};
+
+void SoftIsland::start()
+{
+    problem_.load(island_, bodies_, shafts_);
+    problem_.scale_impulses(1.0 / choices_.substeps);
+    memory_.anchor_a.clear(), memory_.anchor_b.clear(), memory_.depth.clear();
+    for (std::size_t i = 0; i < problem_.points.size(); ++i)
+    {
+        memory_.anchor_a.push_back(problem_.points[i].r_a), memory_.anchor_b.push_back(problem_.points[i].r_b);
+        memory_.depth.push_back(island_.contacts[i].depth);
+    }
+    memory_.start_position.clear(), memory_.start_orientation.clear();
+    for (const Anchor& m : problem_.anchors)
+    {
+        memory_.start_position.push_back(m.shaft ? Vec3{} : bodies_.position[m.host]);
+        memory_.start_orientation.push_back(m.shaft ? Quat{} : bodies_.orientation[m.host]);
+    }
+    memory_.greatest.assign(problem_.points.size(), 0.0);
+    memory_.sum.assign(problem_.points.size(), Vec3{});
+    memory_.line_sum.assign(problem_.lines.size(), 0.0);
+}
+
+void SoftIsland::kick()
+{
+    island_.motion->kick(h_);
+    if (!island_.rows.empty()) island_.motion->refresh_rows();
+    problem_.read_speeds(bodies_, shafts_);
+    // What stopped an impact is no guess for what comes after it.
+    for (std::size_t i = 0; i < problem_.points.size(); ++i)
+        if (island_.contacts[i].approach > 0) problem_.points[i].impulse = {};
+    set_targets(problem_, island_, h_, 0);
+    problem_.apply_impulses();
+}
+
+void SoftIsland::write()
+{
+    problem_.apply_impulses();
+    problem_.write_speeds(bodies_, shafts_);
+}
+
+void SoftIsland::turn_arms()
+{
+    for (std::size_t i = 0; i < problem_.points.size(); ++i)
+    {
+        Point& p = problem_.points[i];
+        const auto turned = [&](std::uint32_t mover, const Vec3& arm)
+        {
+            if (mover == kNoIndex) return arm;
+            const Quat turn = bodies_.orientation[problem_.anchors[mover].host] * conjugate(memory_.start_orientation[mover]);
+            return rotate(turn, arm);
+        };
+        p.r_a = turned(p.a, memory_.anchor_a[i]), p.r_b = turned(p.b, memory_.anchor_b[i]);
+    }
+}
+
+double SoftIsland::depth_now(std::size_t i) const
+{
+    const Point& p = problem_.points[i];
+    Vec3 moved;
+    if (p.b != kNoIndex)
+        moved += bodies_.position[problem_.anchors[p.b].host] - memory_.start_position[p.b] + (p.r_b - memory_.anchor_b[i]);
+    if (p.a != kNoIndex)
+        moved -= bodies_.position[problem_.anchors[p.a].host] - memory_.start_position[p.a] + (p.r_a - memory_.anchor_a[i]);
+    return memory_.depth[i] - dot(p.n, moved);
+}
+
+void SoftIsland::sweep_points(bool soft)
+{
+    for (std::size_t i = 0; i < problem_.points.size(); ++i)
+    {
+        Point& p = problem_.points[i];
+        if (!(p.K(2, 2) > 0)) continue;
+        const Softness& how = p.a == kNoIndex || p.b == kNoIndex ? against_fixed_ : soft_;
+        const double depth = depth_now(i);
+        double bias = 0, mass_share = 1, impulse_share = 0;
+        if (depth < 0)
+            bias = -depth * rate_;
+        else if (soft)
+            bias = -std::min(how.bias_rate * depth, choices_.push_speed), mass_share = how.mass_share, impulse_share = how.impulse_share;
+        const Vec3 u = problem_.slip(p), before = p.impulse;
+        p.impulse.z = std::max(0.0, before.z - mass_share * (u.z + bias) / p.K(2, 2) - impulse_share * before.z);
+        if (p.frictional())
+        {
+            const double change = p.impulse.z - before.z, k = 1 / p.slip_mobility;
+            const Vec3 held = within_disc({before.x - k * (u.x + p.K(0, 2) * change), before.y - k * (u.y + p.K(1, 2) * change), 0},
+                                          p.friction * p.impulse.z);
+            p.impulse.x = held.x, p.impulse.y = held.y;
+        }
+        memory_.greatest[i] = std::max(memory_.greatest[i], p.impulse.z);
+        if (p.impulse != before) problem_.push(p, p.impulse - before);
+    }
+}
+
+void SoftIsland::sweep_lines(bool soft)
+{
+    for (Line& line : problem_.lines)
+    {
+        if (line.count == 0) continue;
+        const ConstraintRow& row = island_.rows[line.row];
+        const bool pulled = soft && row.kind != RowKind::Rate && (row.kind == RowKind::Equality || row.error < 0);
+        const double bias = pulled ? soft_.bias_rate * row.error : 0.0, before = line.impulse;
+        const double share = pulled ? soft_.mass_share : 1.0, leak = pulled ? soft_.impulse_share : 0.0;
+        line.impulse =
+            std::clamp(before - share * (problem_.rate(line) - line.target + bias) / line.mobility - leak * before, line.least, line.most);
+        problem_.push(line, line.impulse - before);
+    }
+}
+
+void SoftIsland::gather()
+{
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.sum[i] += problem_.points[i].impulse;
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
+}
+
+void SoftIsland::give_back()
+{
+    problem_.read_speeds(bodies_, shafts_);
+    problem_.clear_impulses();
+    problem_.apply_impulses();
+    bool any = false;
+    for (std::size_t i = 0; i < problem_.points.size(); ++i)
+    {
+        Point& p = problem_.points[i];
+        const Contact& c = island_.contacts[i];
+        if (!(c.approach > 0) || !(memory_.greatest[i] > 0) || c.restitution == 0) continue;
+        const double missing = c.restitution * c.approach - problem_.slip(p).z;
+        if (missing <= 0) continue;
+        p.impulse.z = missing / p.K(2, 2);
+        problem_.push(p, {0, 0, p.impulse.z});
+        any = true;
+    }
+    if (!any) return;
+    problem_.apply_impulses();
+    problem_.write_speeds(bodies_, shafts_);
+}
+
+void SoftIsland::finish(Verdict& out)
+{
+    for (std::size_t i = 0; i < problem_.points.size(); ++i)
+    {
+        const Point& p = problem_.points[i];
+        Contact& c = island_.contacts[i];
+        const Vec3 u = problem_.slip(p), j = memory_.sum[i];
+        c.impulse = p.t1 * j.x + p.t2 * j.y + p.n * j.z;
+        c.slip = std::hypot(u.x, u.y);
+        if (p.impulse.z == 0 && p.K(2, 2) > 0 && depth_now(i) >= 0) out.residual = std::max(out.residual, -u.z);
+    }
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i)
+    {
+        const Line& line = problem_.lines[i];
+        island_.rows[line.row].impulse = memory_.line_sum[i];
+        if (line.count > 0 && island_.rows[line.row].kind != RowKind::OneSided)
+            out.residual = std::max(out.residual, std::fabs(problem_.rate(line) - island_.rows[line.row].rate));
+    }
+}
+
+}  // namespace
+
+Verdict advance_softly(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory)
+{
+    return SoftIsland(island, bodies, shafts, choices, memory).run();
+}
+
+}  // namespace plab::managers

@@ -1,0 +1,45 @@
+/// Sub-steps with soft contacts: Soft Step.
+///
+/// Per sub-step of length h = step / n:
+///
+///   kick    v <- v + h a
+///   solve   j_n <- max(0, j_n - m_eff mass_share (u_n + bias) - impulse_share j_n)     a spring and damper, implicitly
+///   move    x <- x + h v
+///   relax   the same without bias: takes out the speed that pushing overlap apart put in
+///
+/// with omega = 2 pi hertz, zeta the damping ratio, c = h omega (2 zeta + h omega):
+///   bias = omega / (2 zeta + h omega) * overlap (not faster than push_speed),  mass_share = c / (1 + c),
+///   impulse_share = 1 / (1 + c).   Gaps: bias = gap / h, hard.
+/// After the last sub-step restitution, where a contact pressed and met faster than it now parts.
+/// Source: Catto, Solver2D (2024), "Soft Step" (solve_soft_step.c); Macklin et al., Small Steps (2019), for sub-steps.
+#pragma once
+
+#include "stepping.h"
+
+namespace plab::managers
+{
+
+struct SoftChoices
+{
+    int substeps = 8;
+    int relax_iterations = 1;
+    double hertz = 60;  ///< of a contact; not more than a quarter of the sub-steps' rate
+    double damping_ratio = 10;
+    double push_speed = 3;  ///< m/s
+};
+
+struct SoftMemory
+{
+    StepMemory step;
+    std::vector<Vec3> anchor_a, anchor_b;  ///< m: contact points seen from the centres of mass at the start, W
+    std::vector<Vec3> start_position;
+    std::vector<Quat> start_orientation;
+    std::vector<double> depth;     ///< m, at the start
+    std::vector<double> greatest;  ///< N s, largest normal impulse of a sub-step
+    std::vector<Vec3> sum;         ///< N s, over the step
+    std::vector<double> line_sum;
+};
+
+Verdict advance_softly(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory);
+
+}  // namespace plab::managers

@@ -1,0 +1,228 @@
+#include "stepping.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plab/rotation.h"
+#include "slip_end.h"
+
+namespace plab::managers
+{
+namespace
+{
+
+/// A gap that counts as touching while others collide, m.
+constexpr double kTouching = 1e-6;
+
+bool meets(const Contact& c, double h) { return c.approach > 0 && (c.depth >= 0 || c.approach * h > -c.depth); }
+
+double closing(const Problem& problem, const Line& line, const ConstraintRow& row)
+{
+    if (line.count == 0 || row.kind != RowKind::OneSided || row.error > 0) return 0;
+    return row.rate - problem.rate(line);
+}
+
+bool any_impact(const Problem& problem, const Island& island)
+{
+    if (std::any_of(island.contacts.begin(), island.contacts.end(), [&](const Contact& c) { return meets(c, island.h); })) return true;
+    return std::any_of(problem.lines.begin(), problem.lines.end(),
+                       [&](const Line& line)
+                       {
+                           const ConstraintRow& row = island.rows[line.row];
+                           return row.restitution > 0 && closing(problem, line, row) > 0;
+                       });
+}
+
+void set_impact_targets(Problem& problem, const Island& island, double share)
+{
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        const Contact& c = island.contacts[i];
+        Point& p = problem.points[i];
+        if (meets(c, island.h))
+            p.least = share * c.restitution * c.approach;
+        else
+            p.least = c.depth >= -kTouching || c.impulse != Vec3{} ? 0.0 : kFar;
+    }
+    for (Line& line : problem.lines)
+    {
+        const ConstraintRow& row = island.rows[line.row];
+        const bool one_sided = row.kind == RowKind::OneSided;
+        line.target = row.rate + share * row.restitution * std::max(0.0, closing(problem, line, row));
+        line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
+        // Motors have no impulse at an instant; a limit that is away has none either.
+        if (row.kind == RowKind::Rate || (one_sided && row.error > 0)) line.least = line.most = 0;
+    }
+}
+
+/// Energy that the impulses made, beyond rounding, J: the sum of j . (u + u') / 2.
+double energy_gained(const Problem& problem, std::span<const Vec3> before)
+{
+    double gain = 0, size = 0;
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        const Point& p = problem.points[i];
+        gain += 0.5 * dot(p.impulse, before[i] + problem.slip(p));
+        size += length(p.impulse) * length(before[i]);
+    }
+    return gain > 1e-11 * size ? gain : 0.0;
+}
+
+}  // namespace
+
+void Verdict::join(const Verdict& other)
+{
+    iterations += other.iterations;
+    residual = std::max(residual, other.residual);
+    converged = converged && other.converged;
+    fell_back = fell_back || other.fell_back;
+}
+
+Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory)
+{
+    constexpr int kTrials = 6;
+    Problem& problem = memory.problem;
+    Verdict out;
+    problem.read_speeds(bodies, shafts);
+    problem.clear_impulses();
+    problem.apply_impulses();
+    if (!any_impact(problem, island)) return out;
+    auto& before = memory.separations;
+    before.clear();
+    for (const Point& p : problem.points) before.push_back(problem.slip(p));
+    // Newton's law with friction may give back more than there was; then less is given back, and nothing at last.
+    double share = 1;
+    for (int trial = 1;; ++trial)
+    {
+        set_impact_targets(problem, island, share);
+        out.join(method.find_impulses(problem));
+        if (share == 0 || energy_gained(problem, before) == 0) break;
+        share = trial < kTrials ? 0.5 * share : 0.0;
+        problem.clear_impulses();
+        problem.apply_impulses();
+    }
+    problem.write_speeds(bodies, shafts);
+    return out;
+}
+
+void set_targets(Problem& problem, const Island& island, double h, double slop)
+{
+    for (std::size_t i = 0; i < problem.points.size(); ++i) problem.points[i].least = std::min(0.0, island.contacts[i].depth + slop) / h;
+    for (Line& line : problem.lines)
+    {
+        const ConstraintRow& row = island.rows[line.row];
+        const bool one_sided = row.kind == RowKind::OneSided;
+        line.target = row.rate - (one_sided && row.error > 0 ? row.error / h : 0.0);
+        line.least = std::max(one_sided ? 0.0 : -HUGE_VAL, row.lower * h), line.most = row.upper * h;
+        line.impulse = std::clamp(line.impulse, line.least, line.most);
+    }
+}
+
+void store_impulses(const Problem& problem, Island& island)
+{
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        const Point& p = problem.points[i];
+        Contact& c = island.contacts[i];
+        c.impulse = p.t1 * p.impulse.x + p.t2 * p.impulse.y + p.n * p.impulse.z;
+        const Vec3 u = problem.slip(p);
+        c.slip = std::hypot(u.x, u.y);
+    }
+    for (const Line& line : problem.lines) island.rows[line.row].impulse = line.impulse;
+}
+
+void displace(const Problem& problem, Bodies& bodies, Shafts& shafts)
+{
+    for (std::size_t i = 0; i < problem.movers.size(); ++i)
+    {
+        const Anchor& m = problem.anchors[i];
+        const Vec3 shift = problem.movers[i].v, turn = problem.movers[i].w;
+        if (m.shaft)
+        {
+            shafts.angle[m.host] += turn.x;
+            continue;
+        }
+        if (shift == Vec3{} && turn == Vec3{}) continue;
+        bodies.position[m.host] += shift;
+        bodies.orientation[m.host] = normalized(exp_rotation(turn) * bodies.orientation[m.host]);
+        bodies.refresh_spin(m.host);
+    }
+}
+
+Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
+{
+    Problem& problem = memory.problem;
+    island.motion->refresh_depths();
+    if (!island.rows.empty()) island.motion->refresh_rows();
+    double worst = 0;
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        const Contact& c = island.contacts[i];
+        Point& p = problem.points[i];
+        // What parts by itself within the next step is left to its speed.
+        const bool leaves = c.depth <= 0 ? false : problem.slip(p).z * island.h > c.depth;
+        p.least = leaves ? kFar : (c.depth - choices.slop) * (c.depth > choices.slop ? choices.parted_share : 1.0);
+        worst = std::max(worst, leaves || p.K(2, 2) == 0 ? 0.0 : p.least);
+    }
+    for (Line& line : problem.lines)
+    {
+        const ConstraintRow& row = island.rows[line.row];
+        line.target = -row.error;
+        const bool held = row.kind == RowKind::Equality;
+        line.least = held ? -HUGE_VAL : 0.0, line.most = row.kind == RowKind::Rate || line.count == 0 ? 0.0 : HUGE_VAL;
+        if (line.most > 0) worst = std::max(worst, held ? std::fabs(row.error) : -row.error);
+    }
+    if (worst <= kPositionTolerance) return {};
+    problem.rest();
+    problem.clear_impulses();
+    for (Point& p : problem.points) p.friction = 0;
+    problem.apply_impulses();
+    const Verdict out = method.find_displacements(problem);
+    displace(problem, bodies, shafts);
+    return out;
+}
+
+void move(const Island& island, const Verdict& found, double h)
+{
+    if (found.converged)
+        island.motion->move_mean(h);
+    else
+        island.motion->move(h);
+}
+
+Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
+{
+    Problem& problem = memory.problem;
+    problem.load(island, bodies, shafts);
+    auto& guess = memory.impulses;
+    guess.clear(), memory.line_impulses.clear();
+    for (const Point& p : problem.points) guess.push_back(p.impulse);
+    for (const Line& line : problem.lines) memory.line_impulses.push_back(line.impulse);
+    Verdict out = answer_impacts(island, bodies, shafts, method, memory);
+    memory.slips.clear();
+    for (const Point& p : problem.points) memory.slips.push_back(problem.slip(p));
+    for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
+    for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
+
+    const bool looks_for_ends = !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to;
+    if (looks_for_ends)
+        out.join(SlipEnds(island, bodies, shafts, method, choices.slop, memory).advance());
+    else
+    {
+        island.motion->kick(island.h);
+        problem.read_speeds(bodies, shafts);
+        set_targets(problem, island, island.h, choices.slop);
+        problem.apply_impulses();
+        const Verdict found = method.find_impulses(problem);
+        out.join(found);
+        problem.write_speeds(bodies, shafts);
+        move(island, found, island.h);
+        store_impulses(problem, island);
+    }
+    const Verdict moved = part_overlap(island, bodies, shafts, method, choices, memory);
+    out.iterations += moved.iterations;
+    out.fell_back = out.fell_back || moved.fell_back;
+    return out;
+}
+
+}  // namespace plab::managers

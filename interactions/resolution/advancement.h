@@ -1,0 +1,26 @@
+/// Resolution/ConservativeAdvancement: from the clear side in steps that cannot pass a contact.
+///
+///   t' = t + gap(t) / closing,    closing >= any speed with which the gap can shrink in the rest of the piece
+///
+/// The host certifies the bound: linear speeds along the normal, forces, and turning about the centres.
+/// Source: Mirtich, Impulse-based Dynamic Simulation, PhD thesis, UC Berkeley (1996), section 2.3.
+#pragma once
+
+#include "plab/collision.h"
+#include "plab/context.h"
+#include "plab/schema.h"
+
+namespace plab::resolution
+{
+
+struct AdvancementRows
+{
+    Column<double> gap_tolerance;         // m
+    Column<std::int64_t> max_iterations;  // steps
+
+    void describe(Schema& schema);
+};
+/// Phase::Locate.
+void advance_to_contact(const StepContext& context, Row row, const AdvancementRows& rows, Trial& trial);
+
+}  // namespace plab::resolution

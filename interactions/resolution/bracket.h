@@ -1,0 +1,25 @@
+/// What the resolutions share: how fine a bracket can be, and what is said when a contact is hard to find.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "plab/collision.h"
+#include "plab/context.h"
+
+namespace plab::resolution
+{
+
+/// s: below 2^-48 of the step the time itself has hardly a bit left to choose.
+inline double shortest_bracket(const Trial& trial, double tolerance = 0) { return std::max(tolerance, 0x1p-48 * trial.step); }
+
+/// Two bodies that pass close by one another cost many small steps.
+inline void tell_grazing(const StepContext& context, Row row, const Trial& trial)
+{
+    context.emit(row, "resolution.grazing", Severity::Warning,
+                 "two bodies pass one another within " + std::to_string(trial.gap_begin) + " m; after " + std::to_string(trial.iteration) +
+                     " looks it is not certain that they do not touch; allow more max_iterations or take shorter steps",
+                 {trial.begin, trial.gap_begin});
+}
+
+}  // namespace plab::resolution

@@ -1,0 +1,76 @@
+#include "root.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bracket.h"
+
+namespace plab::resolution
+{
+
+void RootRows::describe(Schema& s)
+{
+    s.param(time_tolerance, "time_tolerance", unit::second,
+            "length of the bracket at which the time counts as found; never less than 2^-48 of the step")
+        .or_else(0)
+        .not_negative();
+    s.param(max_iterations, "max_iterations", unit::one, "looks at one pair in one piece of a step before giving up")
+        .or_else(1000)
+        .positive();
+}
+
+double hermite_zero(double t0, double g0, double r0, double t1, double g1, double r1)
+{
+    const double T = t1 - t0, chord = g1 - g0;
+    const double a = std::isfinite(r0) ? r0 * T : chord, b = std::isfinite(r1) ? r1 * T : chord;
+    // g(s) = g0 + a s + (3 chord - 2 a - b) s^2 + (a + b - 2 chord) s^3,  s in (0, 1): one zero by safeguarded Newton.
+    const double q = 3 * chord - 2 * a - b, c = a + b - 2 * chord;
+    double low = 0, high = 1, s = g0 / (g0 - g1);
+    for (int i = 0; i < 40; ++i)
+    {
+        const double g = g0 + s * (a + s * (q + s * c)), slope = a + s * (2 * q + s * 3 * c);
+        (g > 0 ? low : high) = s;
+        double next = s - g / slope;
+        if (!(next > low && next < high)) next = 0.5 * (low + high);
+        if (std::fabs(next - s) <= 1e-16) break;
+        s = next;
+    }
+    return t0 + s * T;
+}
+
+namespace
+{
+
+/// Next time in a bracket that has been looked at `iteration` times.
+double next_in_bracket(const Trial& t)
+{
+    const double length = t.end - t.begin, middle = t.begin + 0.5 * length;
+    // Never much slower than halving, whatever the gap looks like.
+    if (length > std::ldexp(t.step, 3 - t.iteration)) return middle;
+    double next = hermite_zero(t.begin, t.gap_begin, t.rate_begin, t.end, t.gap_end, t.rate_end);
+    // One side comes close soon; a little beyond the zero the other one follows. Never less than time can tell apart.
+    const double nudge = std::max(shortest_bracket(t) * 0.5, 1e-3 * std::min(next - t.begin, t.end - next));
+    const bool begin_is_near = next - t.begin < t.end - next;
+    next += begin_is_near ? nudge : -nudge;
+    return next > t.begin && next < t.end ? next : middle;
+}
+
+}  // namespace
+
+void find_root(const StepContext& context, Row row, const RootRows& rows, Trial& trial)
+{
+    const double shortest = shortest_bracket(trial, rows.time_tolerance[row]);
+    trial.decision = Trial::Decision::Accept;
+    const bool bracketed = trial.gap_end < 0;
+    if (bracketed ? trial.end - trial.begin <= shortest : trial.gap_begin <= -trial.rate_begin * shortest) return;
+    if (trial.iteration >= rows.max_iterations[row])
+    {
+        trial.decision = Trial::Decision::GiveUp;
+        tell_grazing(context, row, trial);
+        return;
+    }
+    trial.decision = Trial::Decision::Try;
+    trial.next = bracketed ? next_in_bracket(trial) : trial.begin - trial.gap_begin / trial.rate_begin;
+}
+
+}  // namespace plab::resolution

@@ -1,0 +1,16 @@
+#include "speculative.h"
+
+namespace plab::resolution
+{
+
+void SpeculativeRows::describe(Schema& s)
+{
+    s.param(acceleration, "acceleration", unit::metre_per_second2,
+            "the most that forces are expected to give: how far a body at rest may get in a step")
+        .or_else(20)
+        .not_negative();
+}
+
+void accept_speculation(const StepContext&, Row, const SpeculativeRows&, Trial& trial) { trial.decision = Trial::Decision::Accept; }
+
+}  // namespace plab::resolution

@@ -1,0 +1,173 @@
+#include "penalty.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "penalty_law.h"
+
+namespace plab::response
+{
+namespace
+{
+
+constexpr Unit kNewtonPerMetre{"N/m", {{0, 1, -2, 0}}};
+constexpr Unit kSecondPerMetre{"s/m", {{-1, 0, 1, 0}}};
+
+template <class Solve>
+double remembered(Solved& memory, double of, Solve solve)
+{
+    if (memory.of != of) memory = {of, solve(of)};
+    return memory.value;
+}
+
+/// Sums over the contacts of one call.
+struct Total
+{
+    double stored = 0, force = 0, penetration = 0;
+};
+
+/// Runs `normal` (NormalForce of a contact, its mobility along the normal and its speed of parting) for each contact, adds
+/// friction, and hands the forces over.
+template <class Normal>
+void touch(const StepContext& context, Row row, SurfaceColumns& surface, const Bodies& bodies, Wrenches& wrenches, Impact& impact,
+           Normal normal)
+{
+    Total total;
+    wrenches.begin(row < context.component_of_row.size() ? context.component_of_row[row] : kNoIndex);
+    for (Contact& c : impact.contacts)
+    {
+        c.impulse = {}, c.slip = 0;
+        const ContactPoint point(c, bodies);
+        if (!point.moves()) continue;
+        const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
+        const double parting = dot(u, c.normal);
+        const Vec3 slip = u - c.normal * parting;
+        const NormalForce n = normal(c, point.K()(2, 2), parting);
+
+        const double k = surface.tangential_ratio[row] * n.stiffness;
+        const double mobility = std::max(point.K()(0, 0), point.K()(1, 1));
+        const double damping = 2 * surface.tangential_damping_ratio[row] * std::sqrt(k / mobility);
+        const SurfaceForce t = surface_force(k, damping, c.friction * std::max(n.force, 0.0), c.stretch, slip);
+
+        const Vec3 force = c.normal * n.force + t.force;
+        for (const auto& [who, f] : {std::pair(c.a, -force), std::pair(c.b, force)})
+            if (bodies.dynamic(who.index)) wrenches.add_force_at(who, f, c.point);
+        c.impulse = force * impact.dt, c.stretch = t.stretch, c.slip = length(slip);
+        total.stored += n.stored + t.stored, total.force += n.force;
+        total.penetration = std::max(total.penetration, c.depth);
+    }
+    surface.stored[row] = total.stored, surface.force[row] = total.force, surface.penetration[row] = total.penetration;
+}
+
+}  // namespace
+
+void SurfaceColumns::describe(Schema& s)
+{
+    s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise").or_else(0).not_negative();
+    s.param(restitution, "restitution", unit::one,
+            "share of the approach speed that a single central contact gives back, where no Material/Pair says otherwise; 1: no "
+            "damping on its account")
+        .or_else(1)
+        .not_negative()
+        .at_most(1);
+    s.param(tangential_ratio, "tangential_ratio", unit::one, "stiffness of the stiction spring over the stiffness across the surface")
+        .or_else(1)
+        .positive();
+    s.param(tangential_damping_ratio, "tangential_damping_ratio", unit::one, "damping of the stiction spring over the critical one")
+        .or_else(0.5)
+        .not_negative();
+    s.param(steps_per_contact, "steps_per_contact", unit::one,
+            "steps of the solver in the time of one contact, pi / (its fastest rate): the step is cut into as many as that takes, "
+            "while something touches")
+        .or_else(200)
+        .at_least(4);
+    s.param(max_substeps, "max_substeps", unit::one, "pieces into which one step may be cut").or_else(20000).positive();
+    s.output(stored, "stored", unit::joule, "energy in the springs at the end of the step");
+    s.output(force, "force", unit::newton, "sum of the normal forces at the end of the step");
+    s.output(penetration, "penetration", unit::metre, "deepest overlap that pushes, at the end of the step").reported_as_error();
+}
+
+void PenaltyRows::describe(Schema& s)
+{
+    s.param(stiffness, "stiffness", kNewtonPerMetre, "of each contact point").or_else(1e6).positive();
+    s.param(damping, "damping", unit::kilogram_per_second, "of each contact point, beside what the next two ask for")
+        .or_else(0)
+        .not_negative();
+    s.param(damping_ratio, "damping_ratio", unit::one, "damping over the critical one of a single contact point").or_else(0).not_negative();
+    surface.describe(s);
+    s.param(pulls, "pulls", unit::one,
+            "whether the damper may pull just before the bodies part: then a contact ends at depth 0; else where its force ends")
+        .or_else(true);
+    s.scratch(ratio_of_restitution, "ratio_of_restitution", "damping ratio that the last restitution asked for");
+}
+
+void HuntCrossleyRows::describe(Schema& s)
+{
+    s.param(stiffness, "stiffness", unit::one, "k of each contact point, N/m^exponent; two spheres: 4/3 E* sqrt(R*)")
+        .or_else(1e7)
+        .positive();
+    s.param(exponent, "exponent", unit::one, "n; 1.5 for smooth round bodies (Hertz)").or_else(1.5).at_least(1).at_most(4);
+    s.param(dissipation, "dissipation", kSecondPerMetre, "d: 3/2 of the loss of restitution per speed of approach")
+        .or_else(0)
+        .not_negative();
+    s.param(least_speed, "least_speed", unit::metre_per_second,
+            "approaches slower than this are damped as this one is, where restitution asks for damping")
+        .or_else(0.01)
+        .positive();
+    surface.describe(s);
+    s.scratch(loss_of_restitution, "loss_of_restitution", "d v that the last restitution asked for");
+}
+
+void touch_penalty(const StepContext& context, Row row, PenaltyRows& rows, const Bodies& bodies, Wrenches& wrenches, Impact& impact)
+{
+    const double k = rows.stiffness[row];
+    const bool pulls = rows.pulls[row];
+    const auto law = [&](const Contact& c, double mobility, double parting)
+    {
+        const double asked = pulls ? ratio_for_restitution(c.restitution)
+                                   : remembered(rows.ratio_of_restitution[row], c.restitution, ratio_for_restitution_without_pull);
+        const double ratio = rows.damping_ratio[row] + asked;
+        const double damping = rows.damping[row] + (ratio > 0 ? 2 * ratio * std::sqrt(k / mobility) : 0.0);
+        const double spring = c.preload + k * (c.depth - c.rest_depth);
+        NormalForce n;
+        n.force = spring - damping * parting;
+        if (!pulls) n.force = std::max(n.force, 0.0);
+        n.stiffness = k;
+        n.stored = 0.5 * spring * spring / k;
+        return n;
+    };
+    touch(context, row, rows.surface, bodies, wrenches, impact, law);
+}
+
+void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& rows, const Bodies& bodies, Wrenches& wrenches,
+                         Impact& impact)
+{
+    const double k = rows.stiffness[row], exponent = rows.exponent[row];
+    const auto law = [&](const Contact& c, double, double parting)
+    {
+        NormalForce n;
+        const double before = c.preload > 0 ? std::pow(c.preload / k, 1 / exponent) : 0.0;
+        const double x = c.depth - c.rest_depth + before;
+        if (x <= 0) return n;
+        const double loss = remembered(rows.loss_of_restitution[row], c.restitution, loss_for_restitution);
+        const double dissipation = rows.dissipation[row] + loss / std::max(c.approach, rows.least_speed[row]);
+        const double spring = k * std::pow(x, exponent);
+        n.force = std::max(spring * (1 - dissipation * parting), 0.0);
+        n.stiffness = exponent * spring / x;
+        n.stored = spring * x / (exponent + 1);
+        return n;
+    };
+    touch(context, row, rows.surface, bodies, wrenches, impact, law);
+}
+
+void stored_penalty(Rows rows, const PenaltyRows& table, StoredEnergy& stored)
+{
+    for (const Row row : rows) stored.joule += table.surface.stored[row];
+}
+
+void stored_hunt_crossley(Rows rows, const HuntCrossleyRows& table, StoredEnergy& stored)
+{
+    for (const Row row : rows) stored.joule += table.surface.stored[row];
+}
+
+}  // namespace plab::response

@@ -1,0 +1,75 @@
+#include "penalty_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace plab::response
+{
+namespace
+{
+constexpr double kLeastRestitution = 0.01;
+
+/// ln(1/e) of a contact that ends with its force.
+double decay_without_pull(double z)
+{
+    const double q = 1 - z * z;
+    if (std::fabs(q) < 1e-8) return 2 * z;  // acos(z) / sqrt(1 - z^2) -> 1
+    return q > 0 ? 2 * z * std::acos(z) / std::sqrt(q) : 2 * z * std::acosh(z) / std::sqrt(-q);
+}
+
+/// The x in [low, high] at which the rising f is 0.
+template <class F>
+double root(double low, double high, F f)
+{
+    for (int i = 0; i < 200; ++i)
+    {
+        const double middle = 0.5 * (low + high);
+        if (!(middle > low && middle < high)) break;
+        (f(middle) < 0 ? low : high) = middle;
+    }
+    return high;
+}
+}  // namespace
+
+double ratio_for_restitution(double e)
+{
+    if (e >= 1) return 0;
+    if (e <= 0) return 1;
+    const double decay = -std::log(e);
+    return decay / std::hypot(std::numbers::pi, decay);
+}
+
+double ratio_for_restitution_without_pull(double e)
+{
+    if (e >= 1) return 0;
+    const double decay = -std::log(std::max(e, kLeastRestitution));
+    return root(0.0, 10.0, [&](double z) { return decay_without_pull(z) - decay; });
+}
+
+double loss_for_restitution(double e)
+{
+    if (e >= 1) return 0;
+    const double r = std::max(e, kLeastRestitution);
+    // Of order (1 - e^2) s^2 / 2 below 0 for small s: the root at 0 is not the one.
+    const double low = 0.75 * (1 - r);
+    return root(low, 1 / r, [&](double s) { return std::log1p(s) - std::log1p(-r * s) - (1 + r) * s; });
+}
+
+SurfaceForce surface_force(double k, double c, double limit, const Vec3& stretch, const Vec3& slip)
+{
+    SurfaceForce out;
+    if (!(limit > 0) || !(k > 0)) return out;
+    out.force = stretch * -k - slip * c;
+    const double size = length(out.force);
+    out.stretch = stretch;
+    if (size > limit)
+    {
+        out.force = out.force * (limit / size);
+        out.stretch = (out.force + slip * c) * (-1 / k);
+    }
+    out.stored = 0.5 * k * length_squared(out.stretch);
+    return out;
+}
+
+}  // namespace plab::response

@@ -1,0 +1,129 @@
+#include "rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::response
+{
+namespace
+{
+
+constexpr double kTolerance = 1e-13;  // m/s, and 2^-48 of the speeds
+constexpr int kMostSweeps = 20000;
+
+struct Bounce
+{
+    double rest_height = 0, rest_speed = 0;
+};
+
+/// Whether a contact that parts at `speed` stays: it would rise less than its position can tell apart.
+bool rests(const Contact& c, double speed, const Bounce& bounce)
+{
+    const double pressing = -c.normal_acceleration;
+    if (!(pressing > 0)) return speed <= bounce.rest_speed;
+    const double height = std::max(bounce.rest_height, 0x1p-48 * length(c.point));
+    return speed * speed <= 2 * pressing * height;
+}
+
+/// All contacts at once, with `share` of the restitution. Energy gained beyond rounding, J.
+double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bodies, const Bounce& bounce, double share, double tolerance,
+                  ConeResult& result)
+{
+    work.cones.clear();
+    for (std::size_t k = 0; k < work.order.size(); ++k)
+    {
+        const Contact& c = contacts[work.order[k]];
+        const double closing = -work.before[k].z, rebound = share * c.restitution * closing;
+        const double least = closing > 0 && !rests(c, rebound, bounce) ? rebound : 0.0;
+        work.cones.push_back({&work.points[work.order[k]], c.friction, least, {}});
+    }
+    result = solve_cones(work.cones, bodies, tolerance, kMostSweeps);
+    double gain = 0, size = 0;
+    for (std::size_t k = 0; k < work.cones.size(); ++k)
+    {
+        const ConeContact& c = work.cones[k];
+        gain += 0.5 * dot(c.impulse, work.before[k] + c.point->velocity(bodies));
+        size += length(c.impulse) * length(work.before[k]);
+    }
+    return gain > 1e-12 * size ? gain : 0.0;
+}
+
+/// Speeds as they were: the opposite impulses.
+void take_back(Workspace& work, Bodies& bodies)
+{
+    for (std::size_t k = work.cones.size(); k-- > 0;)
+    {
+        const ConeContact& c = work.cones[k];
+        c.point->apply(bodies, -c.impulse, c.point->velocity(bodies).z - (c.point->K() * c.impulse).z);
+    }
+}
+
+}  // namespace
+
+void RowsRows::describe(Schema& s)
+{
+    s.role(manager, "manager", {Facet::Component}, "advances the islands of these contacts")
+        .family("Manager/")
+        .default_type("Manager/Direct");
+    s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise").or_else(0).not_negative();
+    s.param(restitution, "restitution", unit::one,
+            "share of the approach speed that an impact gives back, where no Material/Pair says otherwise")
+        .or_else(0)
+        .not_negative()
+        .at_most(1);
+    s.param(rest_height, "rest_height", unit::metre, "where impacts are located: a bounce that would rise less than this does not happen")
+        .or_else(1e-14)
+        .not_negative();
+    s.param(rest_speed, "rest_speed", unit::metre_per_second, "likewise: a rebound up to this speed where no force presses together")
+        .or_else(1e-9)
+        .not_negative();
+    s.output(residual, "residual", unit::metre_per_second, "largest closing speed that impacts left in this step").reported_as_error();
+    s.output(iterations, "iterations", unit::one, "sweeps over impacts in this step");
+    s.scratch(workspace, "workspace", "working memory");
+}
+
+void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& bodies, Impact& impact)
+{
+    constexpr int kTrials = 6;
+    Workspace& work = rows.workspace[row];
+    const Bounce bounce{rows.rest_height[row], rows.rest_speed[row]};
+    const auto contacts = impact.contacts;
+    work.points.clear(), work.order.clear(), work.before.clear();
+    double speed = 0;
+    for (std::uint32_t i = 0; i < contacts.size(); ++i)
+    {
+        contacts[i].impulse = {};
+        work.points.emplace_back(contacts[i], bodies);
+        if (work.points.back().moves()) work.order.push_back(i);
+    }
+    std::sort(work.order.begin(), work.order.end(), [&](auto i, auto j) { return contacts[i].id < contacts[j].id; });
+    for (const std::uint32_t i : work.order)
+    {
+        work.before.push_back(work.points[i].velocity(bodies));
+        speed = std::max(speed, length(work.before.back()));
+    }
+    const double tolerance = std::max(kTolerance, 0x1p-48 * speed);
+    // Newton's law with friction may give back more than there was; then less is given back, and nothing at last.
+    ConeResult result;
+    double share = 1;
+    for (int trial = 1; try_impact(work, contacts, bodies, bounce, share, tolerance, result) > 0 && share > 0; ++trial)
+    {
+        take_back(work, bodies);
+        share = trial < kTrials ? 0.5 * share : 0.0;
+    }
+    for (std::size_t k = 0; k < work.order.size(); ++k)
+    {
+        Contact& c = contacts[work.order[k]];
+        const ContactPoint& point = work.points[work.order[k]];
+        c.impulse = point.to_world(work.cones[k].impulse);
+        const Vec3 u = point.velocity(bodies);
+        c.slip = std::hypot(u.x, u.y);
+        c.resting = rests(c, std::max(0.0, u.z), bounce);
+    }
+    impact.iterations = result.sweeps, impact.residual = std::max(0.0, result.residual), impact.converged = result.converged;
+    if (work.tick != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, work.tick = context.tick;
+    rows.residual[row] = std::max(rows.residual[row], impact.residual);
+    rows.iterations[row] += impact.iterations;
+}
+
+}  // namespace plab::response

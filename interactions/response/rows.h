@@ -1,0 +1,33 @@
+/// Response/Rows: contacts are rows of an island that a manager advances. Where a resolution locates impacts, they are
+/// answered here, all contacts of an impact at one time.
+///
+/// Several contacts, one instant (Moreau's law of impact with Newton's restitution):
+///
+///   u_n' >= -e u_n where u_n < 0, else >= 0;   complementary to j_n >= 0;   Coulomb's cone for the rest of j
+///
+/// Velocities without friction are unique, whatever the order of bodies: a symmetric impact has a symmetric answer, and
+/// with e = 1 the energy is kept. Sources: Moreau (1988); Glocker, Set-Valued Force Laws (2001), chapter 9.
+#pragma once
+
+#include "impulse.h"
+
+namespace plab::response
+{
+
+struct RowsRows
+{
+    Column<double> friction, restitution;  // 1
+    Column<Ref> manager;
+    Column<double> rest_height;  // m
+    Column<double> rest_speed;   // m/s
+    Column<double> residual;     // m/s
+    Column<std::int64_t> iterations;
+    Column<Workspace> workspace;
+
+    void describe(Schema& schema);
+};
+
+/// Phase::Respond.
+void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& bodies, Impact& impact);
+
+}  // namespace plab::response

@@ -1,0 +1,61 @@
+/// Solver/Exponential: exponential Rosenbrock method of order 4 with two evaluations beside the Jacobian. Exact at any step
+/// where forces are linear in places and speeds (springs, dampers, linear drag), however stiff, and linear in time.
+///
+/// With J = df/dy and f_t = df/dt at the start of the step, phi_k(z) = the usual functions, c = 3/4:
+///   Y  = y0 + c h phi_1(c h J) f0 + (c h)^2 phi_2(c h J) f_t
+///   D  = f(c h, Y) - f0 - J (Y - y0) - c h f_t
+///   y1 = y0 + h phi_1(h J) f0 + h^2 phi_2(h J) f_t + 32/9 h phi_3(h J) D
+/// Everything stands in one matrix exponential each, of the system's size and 3 (J with the vectors beside it).
+/// - J by differences that prove themselves linear or are extrapolated (jacobian.h): right to rounding for linear forces.
+/// - The energy ledger books Boole's sums along y(t) at 2^p + 1 points, p = 2 .. 7 by the size of h J: where a step holds more
+///   than 10 turns of an oscillation, its books do not close, though the state is right.
+/// - Dense, so the cost grows with the cube of the size. Groups of more than max_size numbers are advanced by Radau5, and an
+///   event says so once; so are steps in which the exponential overflows.
+/// Sources: Luan, Appl. Math. Lett. 65 (2017) 132, "Fourth-order two-stage explicit exponential integrators", exprb42;
+/// Hochbruck, Ostermann, Acta Numerica 19 (2010) 209, section 2.4; Al-Mohy, Higham, SIAM J. Sci. Comput. 33 (2011) 488,
+/// theorem 2.1 (phi functions by one exponential).
+#pragma once
+
+#include "matrix_exponential.h"
+#include "radau5.h"
+#include "resolved.h"
+
+namespace plab::solvers
+{
+
+struct ExponentialMemory
+{
+    std::vector<double> y, f0, ft, units, sizes, work, slope, other, wide, middle, defect, from, to;
+    SquareMatrix<double> jacobian;
+    MatrixExponential exponential;
+    Radau5Memory radau;
+
+    void fit(std::size_t n);
+};
+
+struct ExponentialCounts
+{
+    bool fine = false;    ///< else nothing was changed
+    bool linear = false;  ///< the forces are linear to rounding, as far as the step went
+    std::int64_t evaluations = 0;
+};
+
+struct ExponentialRows
+{
+    Column<std::int64_t> max_size;
+    Column<std::int64_t> evaluations;
+    Column<bool> linear;
+    ResolvedColumns told;
+    Column<ExponentialMemory> memory;
+
+    void describe(Schema& schema);
+};
+
+/// One step over context.dt, from coordinates 0.
+void advance_exponential(const StepContext& context, Row row, ExponentialRows& rows, DynamicSystem& system);
+
+/// The method itself, for solvers that choose it. With `only_linear` a step along which the forces bend (looked at in up to
+/// eight more points) is not made.
+ExponentialCounts advance_by_exponential(double h, bool trial, bool only_linear, ExponentialMemory& memory, DynamicSystem& system);
+
+}  // namespace plab::solvers

@@ -1,0 +1,37 @@
+/// Solver/ImplicitMidpoint:  Z = y0 + h/2 f(h/2, Z),  y1 = 2 Z - y0.
+/// Order 2, symmetric, A-stable: no stiffness makes it explode, and none is damped (an oscillation that the step does not
+/// resolve stays, slower than it is). Symplectic where x' = u; keeps quadratic invariants of linear systems.
+/// Z is found by fixed-point iteration while that contracts well, else by simplified Newton steps with a Jacobian by
+/// differences. Where neither converges the step is halved, up to 64 parts; what remains is told by the event solver.failed
+/// and left undone.
+/// Source: Hairer, Lubich, Wanner, Geometric numerical integration, eq. (II.1.5) and section VIII.6.
+#pragma once
+
+#include "jacobian.h"
+#include "plab/registrar.h"
+
+namespace plab::solvers
+{
+
+struct ImplicitMidpointMemory
+{
+    std::vector<double> y, z, f, update, units, sizes, scale, work, slope, other, wide;
+    SquareMatrix<double> jacobian;
+    Factors<double> factors;
+
+    void fit(std::size_t n);
+};
+
+struct ImplicitMidpointRows
+{
+    Column<double> relative_tolerance;
+    Column<std::int64_t> iterations, substeps, evaluations;
+    Column<ImplicitMidpointMemory> memory;
+
+    void describe(Schema& schema);
+};
+
+/// One step over context.dt, from coordinates 0.
+void advance_implicit_midpoint(const StepContext& context, Row row, ImplicitMidpointRows& rows, DynamicSystem& system);
+
+}  // namespace plab::solvers

@@ -1,0 +1,40 @@
+/// exp(A) of small dense matrices.
+#pragma once
+
+#include "dense.h"
+
+namespace plab::solvers
+{
+
+/// exp(A) and its square roots exp(A / 2^p) by balancing, scaling, a Taylor polynomial of degree 16 and squaring.
+/// Sources: Moler, Van Loan, "Nineteen dubious ways ...", SIAM Rev. 45 (2003) 3, method 3; Parlett, Reinsch, Numer. Math. 13
+/// (1969) 293 (balancing by powers of two, which rounds nothing); Paterson, Stockmeyer, SIAM J. Comput. 2 (1973) 60.
+class MatrixExponential
+{
+public:
+    static constexpr int kLeastRoots = 2, kMostRoots = 7;
+
+    /// A view of A to fill; compute() destroys it.
+    SquareMatrix<double>& matrix() { return a_; }
+    /// exp(A / 2^root) for root = 0 .. roots(). False if it is not finite.
+    bool compute();
+    /// How many roots were made on the way: from kLeastRoots to kMostRoots, more where A is larger.
+    int roots() const { return roots_; }
+    /// out = exp(A / 2^root) v. out and v are different.
+    void apply(int root, std::span<const double> v, std::span<double> out) const;
+    /// Norm of the balanced A: how many turns and decays there are in it.
+    double size() const { return size_; }
+
+private:
+    void balance();
+    void taylor();
+    void flush();
+
+    SquareMatrix<double> a_, square_, cube_, fourth_, sum_, spare_;
+    std::vector<SquareMatrix<double>> root_;
+    std::vector<double> scale_;  ///< powers of two: A = D B D^-1
+    double size_ = 0;
+    int roots_ = kLeastRoots;
+};
+
+}  // namespace plab::solvers

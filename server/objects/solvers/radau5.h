@@ -1,0 +1,60 @@
+/// Solver/Radau5: the implicit Runge-Kutta method of Radau (IIA, 3 stages, order 5), for stiff systems. L-stable: what is
+/// too fast for the tolerance to show is damped away. Chooses its own internal steps within the step of the scene.
+///
+/// - Each internal step solves its three stages by simplified Newton steps, decoupled into one real and one complex linear
+///   system of the size of y (Hairer and Wanner's transformation); dense LU, Jacobian by differences.
+/// - The error is estimated by an embedded formula of order 3, filtered once more where that is large, and held below
+///   0.1 rtol^(2/3), the same in relation to the absolute tolerance; the order 5 of the result then gives about rtol.
+/// - First the whole step is tried at once. An advance depends on nothing but its start, so replays, rewinds and trials of
+///   parts of a step see the same numbers. A multistep method (CVODE) would lose what it remembers at each step and event,
+///   and start with order 1 again.
+/// - The energy ledger books the three stages with the weights of the method (order 5), one evaluation each.
+/// - If max_substeps internal steps do not reach the end, the group stays where it got to: event solver.gave_up.
+/// Source: Hairer, Wanner, Solving ordinary differential equations II, section IV.8; the program RADAU5.
+#pragma once
+
+#include "jacobian.h"
+#include "plab/registrar.h"
+
+namespace plab::solvers
+{
+
+/// Vectors and matrices of one advance, kept warm.
+struct Radau5Memory
+{
+    std::vector<double> y, f0, units, sizes, scale, error, filtered, work, slope, other, wide;
+    std::vector<double> z[3], w[3], f[3], polynomial[3];
+    std::vector<Complex> pair;
+    SquareMatrix<double> jacobian;
+    Factors<double> real;
+    Factors<Complex> complex;
+
+    void fit(std::size_t n);
+};
+
+struct Radau5Counts
+{
+    std::int64_t accepted = 0, refused = 0, evaluations = 0, factorisations = 0;
+    double reached = 0;  ///< s
+};
+
+struct Radau5Rows
+{
+    Column<double> relative_tolerance, absolute_tolerance;
+    Column<std::int64_t> max_substeps;
+    Column<std::int64_t> substeps, refused, evaluations, factorisations;
+    Column<Radau5Memory> memory;
+
+    void describe(Schema& schema);
+};
+
+/// One step over context.dt, from coordinates 0.
+void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, DynamicSystem& system);
+
+/// The method itself, for solvers that choose it. Tells of failure by reached < h.
+Radau5Counts advance_by_radau(double h, bool trial, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory,
+                              DynamicSystem& system);
+/// The event of an advance that did not reach its end; h in s.
+void tell_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts);
+
+}  // namespace plab::solvers

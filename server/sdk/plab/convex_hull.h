@@ -1,0 +1,232 @@
+/// The convex hull of points, as triangles: what Shape/ConvexHull is and what a mesh collides as.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "plab/result.h"
+#include "plab/vector.h"
+
+namespace plab
+{
+
+/// A closed convex polyhedron. normals[f] . p <= offsets[f] for all points p inside, to the tolerance of its making.
+struct ConvexHull
+{
+    std::vector<Vec3> vertices;                        ///< only those on the hull, in the order in which they were given
+    std::vector<std::array<std::uint32_t, 3>> faces;   ///< counter-clockwise seen from outside
+    std::vector<std::array<std::uint32_t, 3>> beside;  ///< the face across the edge from corner i to the next
+    std::vector<Vec3> normals;                         ///< unit, outwards, one per face
+    std::vector<double> offsets;
+};
+
+/// Quickhull (Barber, Dobkin, Huhdanpaa, ACM TOMS 22, 1996): grows a tetrahedron until no point is outside. Faces that a
+/// new point lies in the plane of go with those that it sees, so no sliver is made of points on one line.
+class Quickhull
+{
+public:
+    Quickhull(std::span<const Vec3> points, double tolerance) : points_(points), tolerance_(tolerance) {}
+
+    /// False: the points do not span a volume.
+    bool start();
+    /// False: rounding made the hull fold over; a larger tolerance may do.
+    bool grow();
+    ConvexHull result() const;
+
+private:
+    using Index = std::uint32_t;
+    using Edge = std::pair<Index, Index>;
+    struct Face
+    {
+        std::array<Index, 3> corner;
+        Vec3 normal;
+        double offset = 0;
+        std::vector<Index> outside;  ///< points above this face that no other face has taken
+        bool alive = true;
+    };
+
+    double height(const Face& f, Index p) const { return dot(f.normal, points_[p]) - f.offset; }
+    bool add_face(Index a, Index b, Index c);
+    void assign(Index point, std::size_t first_face);
+    bool collect_visible(std::size_t seed, Index eye);
+    bool replace_visible(Index eye);
+    /// The point with the largest value of `measure`; ties go to the first.
+    template <class Measure>
+    std::pair<Index, double> find_extreme(Measure measure) const
+    {
+        std::pair<Index, double> best{0, -1.0};
+        for (Index i = 0; i < points_.size(); ++i)
+            if (const double m = measure(points_[i]); m > best.second) best = {i, m};
+        return best;
+    }
+
+    std::span<const Vec3> points_;
+    double tolerance_;
+    std::vector<Face> faces_;
+    std::map<Edge, std::size_t> owner_;  ///< face to the left of each directed edge
+    std::vector<std::size_t> visible_;
+};
+
+inline bool Quickhull::start()
+{
+    const Vec3 p0 = points_[0];
+    const auto [i1, d1] = find_extreme([&](const Vec3& p) { return length(p - p0); });
+    if (d1 <= tolerance_) return false;
+    const Vec3 e1 = normalized(points_[i1] - p0);
+    const auto [i2, d2] = find_extreme([&](const Vec3& p) { return length(cross(e1, p - p0)); });
+    if (d2 <= tolerance_) return false;
+    const Vec3 n = normalized(cross(e1, points_[i2] - p0));
+    const auto [i3, d3] = find_extreme([&](const Vec3& p) { return std::fabs(dot(n, p - p0)); });
+    if (d3 <= tolerance_) return false;
+
+    Index a = i1, b = i2;
+    if (dot(n, points_[i3] - p0) > 0) std::swap(a, b);  // the base looks away from the fourth point
+    if (!add_face(0, a, b) || !add_face(0, b, i3) || !add_face(b, a, i3) || !add_face(a, 0, i3)) return false;
+    for (Index i = 0; i < points_.size(); ++i) assign(i, 0);
+    return true;
+}
+
+inline bool Quickhull::add_face(Index a, Index b, Index c)
+{
+    Face f;
+    f.corner = {a, b, c};
+    f.normal = normalized(cross(points_[b] - points_[a], points_[c] - points_[a]));
+    f.offset = std::max({dot(f.normal, points_[a]), dot(f.normal, points_[b]), dot(f.normal, points_[c])});
+    for (std::size_t i = 0; i < 3; ++i) owner_[{f.corner[i], f.corner[(i + 1) % 3]}] = faces_.size();
+    const bool solid = length_squared(f.normal) > 0;
+    faces_.push_back(std::move(f));
+    return solid;
+}
+
+inline void Quickhull::assign(Index point, std::size_t first_face)
+{
+    for (std::size_t f = first_face; f < faces_.size(); ++f)
+    {
+        if (!faces_[f].alive || height(faces_[f], point) <= tolerance_) continue;
+        faces_[f].outside.push_back(point);
+        return;
+    }
+}
+
+/// The connected patch of faces that `eye` sees or lies in the plane of, from the face `seed`.
+inline bool Quickhull::collect_visible(std::size_t seed, Index eye)
+{
+    visible_.assign(1, seed);
+    faces_[seed].alive = false;
+    for (std::size_t k = 0; k < visible_.size(); ++k)
+    {
+        const auto corner = faces_[visible_[k]].corner;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const auto next = owner_.find({corner[(i + 1) % 3], corner[i]});
+            if (next == owner_.end()) return false;
+            if (!faces_[next->second].alive || height(faces_[next->second], eye) <= -tolerance_) continue;
+            faces_[next->second].alive = false;
+            visible_.push_back(next->second);
+        }
+    }
+    return true;
+}
+
+/// Fills the hole that the visible patch leaves with a cone of faces to `eye`; its rim must be one closed line.
+inline bool Quickhull::replace_visible(Index eye)
+{
+    const std::size_t first_new = faces_.size();
+    std::map<Index, Index> rim;
+    for (const std::size_t v : visible_)
+    {
+        const auto corner = faces_[v].corner;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const Edge e{corner[i], corner[(i + 1) % 3]};
+            if (!faces_[owner_.at({e.second, e.first})].alive) continue;
+            if (!rim.insert(e).second) return false;
+        }
+    }
+    if (rim.size() < 3) return false;
+    std::size_t round = 0;
+    for (Index at = rim.begin()->first; round <= rim.size();)
+    {
+        const auto next = rim.find(at);
+        if (next == rim.end()) return false;
+        at = next->second, ++round;
+        if (at == rim.begin()->first) break;
+    }
+    if (round != rim.size()) return false;
+    for (const auto& [from, to] : rim)
+        if (!add_face(from, to, eye)) return false;
+    for (const std::size_t v : visible_)
+        for (const Index p : std::exchange(faces_[v].outside, {}))
+            if (p != eye) assign(p, first_new);
+    return true;
+}
+
+inline bool Quickhull::grow()
+{
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+    {
+        if (!faces_[f].alive || faces_[f].outside.empty()) continue;
+        Index eye = faces_[f].outside.front();
+        for (const Index p : faces_[f].outside)
+            if (height(faces_[f], p) > height(faces_[f], eye)) eye = p;
+        if (!collect_visible(f, eye) || !replace_visible(eye)) return false;
+    }
+    return true;
+}
+
+inline ConvexHull Quickhull::result() const
+{
+    ConvexHull hull;
+    std::vector<Index> kept(points_.size(), 0), number(faces_.size(), 0);
+    for (const Face& f : faces_)
+        if (f.alive)
+            for (const Index c : f.corner) kept[c] = 1;
+    for (Index i = 0; i < points_.size(); ++i)
+    {
+        if (!kept[i]) continue;
+        kept[i] = static_cast<Index>(hull.vertices.size());
+        hull.vertices.push_back(points_[i]);
+    }
+    Index count = 0;
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+        if (faces_[f].alive) number[f] = count++;
+    for (const Face& f : faces_)
+    {
+        if (!f.alive) continue;
+        hull.faces.push_back({kept[f.corner[0]], kept[f.corner[1]], kept[f.corner[2]]});
+        auto& beside = hull.beside.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i) beside[i] = number[owner_.at({f.corner[(i + 1) % 3], f.corner[i]})];
+        hull.normals.push_back(f.normal);
+        hull.offsets.push_back(f.offset);
+    }
+    return hull;
+}
+
+/// Points within 1e-12 of the extent above a face count as on it and are dropped (up to 1e-9 for points that rounding
+/// makes awkward); so the hull is right to that. Fails for points that do not span a volume, with the reason.
+inline Result<ConvexHull> make_convex_hull(std::span<const Vec3> points)
+{
+    if (points.size() < 4) return reason("a hull needs at least 4 vertices, not " + std::to_string(points.size()));
+    double extent = 0;
+    for (const Vec3& p : points)
+    {
+        if (!is_finite(p)) return reason("a vertex of the hull is not finite");
+        extent = std::max({extent, std::fabs(p.x - points[0].x), std::fabs(p.y - points[0].y), std::fabs(p.z - points[0].z)});
+    }
+    for (double tolerance = 1e-12; tolerance < 1e-8; tolerance *= 10)
+    {
+        Quickhull hull(points, tolerance * extent);
+        if (!hull.start()) return reason("the vertices lie in a plane: their hull has no volume");
+        if (hull.grow()) return hull.result();
+    }
+    return reason("the vertices are too nearly in planes and lines for a hull of 1e-9 of their extent; fewer vertices would do");
+}
+
+}  // namespace plab

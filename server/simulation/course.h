@@ -1,0 +1,135 @@
+/// How a body moves over a smooth piece of a step, with bounds on everything in between: what it takes to say that two
+/// bodies do not meet before a time, though nobody has looked there.
+///
+/// For a direction n the width of the gap between two bodies is f(t) = min over their points of n . (p_b - p_a). Points move
+/// smoothly, so between two looks
+///
+///   f(t + s) >= l(s) - E s^2 / 2,            l: each point by its present velocity; l is concave, a support function;
+///                                            n fixed in the world or turning with one of the bodies, whatever says more
+///   f(t + s) >= chord - (k + E) s (T - s)/2, between looks at t and t + T
+///   |p + v s + k s^2/2| - E s^2/2 > R        for the balls around two bodies
+///
+/// with the relative acceleration k of the centres and a bound E of what other points and forces add. At the time of a
+/// first zero nothing has met. Close to a contact the first bound is Newton's method, but never goes too far.
+/// Sources: Mirtich, Impulse-based Dynamic Simulation, PhD thesis (1996), 2.3; Zhang, Redon, Lee, Kim, Continuous
+/// collision detection for articulated models using Taylor models and temporal culling, SIGGRAPH (2007).
+#pragma once
+
+#include <span>
+
+#include "plab/tables.h"
+
+namespace plab::simulation
+{
+
+/// Pose and speeds of a body at one time.
+struct BodyState
+{
+    Vec3 position;     ///< p_WC, m
+    Quat orientation;  ///< q_WB
+    Vec3 velocity;     ///< m/s
+    Vec3 spin;         ///< w_WB in W, rad/s
+
+    static BodyState of(const Bodies& bodies, std::uint32_t b)
+    {
+        return {bodies.position[b], bodies.orientation[b], bodies.velocity[b], bodies.angular_velocity[b]};
+    }
+};
+
+/// The extent of a body, from its shapes.
+struct BodyExtent
+{
+    double radius = 0;      ///< m, about C; infinite for planes
+    double arm = 0;         ///< m: how far turning about C can sweep; 0 for a ball around C
+    bool convex = true;     ///< one convex shape, or nothing but one plane
+    bool is_plane = false;  ///< a half-space: its own normal is the only direction that can separate
+};
+BodyExtent extent_of(const Bodies& bodies, const Shapes& shapes, std::uint32_t b);
+
+/// max over the points of body b, turned by q, of m . (p - C), m. Not for planes.
+double support(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, const Quat& q, const Vec3& m);
+
+/// A body between the two ends of a piece. Accelerations are estimated from the ends: exact for constant forces; what a
+/// force does faster than the piece is long is not seen.
+struct Course
+{
+    double begin = 0, end = 0;  ///< s, since the start of the step
+    BodyState first, last;
+    Vec3 acceleration;     ///< m/s^2, constant part: leads from one position to the other
+    double deviation = 0;  ///< m/s^2, what the acceleration of C may differ from it
+    double spin = 0;       ///< rad/s, most
+    double spin_up = 0;    ///< rad/s^2, most
+
+    Vec3 position_at(double t) const
+    {
+        const double s = t - begin;
+        return first.position + first.velocity * s + acceleration * (0.5 * s * s);
+    }
+    Vec3 velocity_at(double t) const { return first.velocity + acceleration * (t - begin); }
+};
+/// Of a dynamic body. `begin` < `end`.
+Course course_of(const Bodies& bodies, std::uint32_t b, double begin, const BodyState& first, double end, const BodyState& last);
+/// Of a body whose motion is prescribed, or that stands still.
+Course steady_course(double begin, const BodyState& first, double end, const BodyState& last);
+
+/// m: how far a point of the body gets, over its course, from where it is at its end.
+double reach_of(const Course& course, const BodyExtent& extent);
+
+/// One of two bodies as seen at the time from which a bound is asked.
+struct Mover
+{
+    std::uint32_t body = 0;
+    const Course* course = nullptr;
+    const BodyExtent* extent = nullptr;
+    BodyState now;
+};
+
+/// Until when two bodies cannot meet. Times in s from `now`; never more than `left`, the rest of the piece.
+class Clearance
+{
+public:
+    Clearance(const Bodies& bodies, const Shapes& shapes, const Mover& a, const Mover& b, double left);
+
+    /// By the balls around both. 0 where those overlap.
+    double of_balls() const;
+    /// By the normal of a half-space, where one of them is one that does not turn. 0 where they overlap.
+    double of_half_space() const;
+    /// By a direction n from a to b (unit, W), `gap` (m) apart. `turn` (rad/s): how n was seen to turn, if it was; where two
+    /// edges meet it turns with neither body.
+    double along(const Vec3& n, double gap, const Vec3& turn = {}) const;
+    /// For bodies that are not convex: `gap` over the largest closing speed in any direction.
+    double in_any_direction(double gap) const;
+    /// m/s, the largest closing speed along n over the rest of the piece: linear and turning.
+    double fastest_closing(const Vec3& n) const;
+    /// Whether they were apart for `ago` before now, gap > 0 along n now.
+    bool was_clear(const Vec3& n, double gap, double ago, const Vec3& turn = {}) const;
+
+private:
+    bool find_half_space(Vec3& n, double& gap) const;
+    /// Spin of the frame in which the direction stands still, and how fast widths may bend in it, m/s^2.
+    struct Frame
+    {
+        Vec3 spin;
+        double bend = 0;
+    };
+    Frame world_frame(const Vec3& n) const;
+    Frame frame_of(const Mover& mover) const;
+    Frame frame_turning(const Vec3& turn) const;
+    double quadratic(double gap, double rate, double acceleration) const;
+    double by_points(const Vec3& n, double gap, const Vec3& turn) const;
+    double by_points_in(const Frame& frame, const Vec3& n, double gap) const;
+    double by_chord(const Vec3& n, double gap) const;
+    double linear_width(const Frame& frame, const Vec3& n, double gap, double s) const;
+    double support_of(const Mover& m, const Quat& q, const Vec3& n) const;
+
+    const Bodies& bodies_;
+    const Shapes& shapes_;
+    Mover a_, b_;
+    double left_;
+    Vec3 apart_, speed_, acceleration_;  ///< b's centre seen from a's
+    double unsure_ = 0;                  ///< m/s^2, deviations of both centres
+    double turning_ = 0;                 ///< m/s, most of points about their centres
+    double swirl_ = 0;                   ///< m/s^2, most of points about their centres
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,154 @@
+#include "study/exact/exact.h"
+
+#include <cmath>
+#include <limits>
+
+#include "model/numbers.h"
+#include "model/text.h"
+#include "model/values.h"
+
+namespace plab::study
+{
+namespace
+{
+
+constexpr ExactEntry kRegistry[] = {
+    {"parabola", "x = x0 + v0 t + g t^2/2; attitude by Jacobi's elliptic functions", "bodies under uniform gravity alone, no collision",
+     &make_flight},
+    {"torque-free", "Euler's equations by Jacobi's elliptic functions, precession by quadrature", "the same scene as parabola",
+     &make_flight},
+    {"oscillator", "x'' = -(k/m)(x - c) - (d/m) x', over-damped too", "one body or shaft; numbers stiffness and, if damped, damping",
+     &make_oscillator},
+    {"pendulum", "theta'' = -(w/J) sin theta by Jacobi's elliptic functions",
+     "one shaft; number weight_moment (m g l, N m): the torque at a right angle", &make_pendulum},
+    {"kepler", "x'' = -mu x/|x|^3 by Kepler's equation", "one body on an ellipse; number mu (m^3/s^2)", &make_kepler},
+    {"bounce", "a ball that falls, rebounds with restitution e, and rests when its bounces have summed up",
+     "one ball above one horizontal plane, gravity along -z, no spin, no sliding", &make_bounce},
+    {"slide", "x = v t - a t^2/2 up to v/a, a = g(mu cos - sin)", "one box that slides on one plane, Coulomb friction", &make_slide},
+    {"gear-pair", "a1 = T/(J1 + r^2 J2), a2 = r a1", "two shafts, one coupling; number torque (N m on the driver) if there is one",
+     &make_gear_pair},
+};
+
+Result<std::map<std::string, double>> parse_given(std::string_view text)
+{
+    std::map<std::string, double> out;
+    while (!text.empty())
+    {
+        const std::size_t comma = text.find(',');
+        const std::string_view pair = text.substr(0, comma);
+        const std::size_t equal = pair.find('=');
+        if (equal == std::string_view::npos) return reason("'" + std::string(pair) + "' is no key=value");
+        auto value = model::parse_real(model::trimmed(pair.substr(equal + 1)));
+        if (!value) return reason(std::string(pair) + ": " + value.error().reason);
+        out[std::string(model::trimmed(pair.substr(0, equal)))] = *value;
+        text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
+    }
+    return out;
+}
+
+}  // namespace
+
+std::span<const ExactEntry> exact_registry() { return kRegistry; }
+
+std::vector<std::uint32_t> SceneFacts::dynamic(Facet facet) const
+{
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t i : world().in_id_order())
+    {
+        const world::Component& c = world().component(i);
+        if (c.facet != facet) continue;
+        if (facet == Facet::Body ? bodies().dynamic(c.host_index) : shafts().dynamic(c.host_index)) out.push_back(i);
+    }
+    return out;
+}
+
+std::vector<std::uint32_t> SceneFacts::of_type(const std::string& prefix) const
+{
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t i : world().in_id_order())
+        if (const auto* type = world().type_of(i); type && type->info.name.starts_with(prefix)) out.push_back(i);
+    return out;
+}
+
+std::optional<double> SceneFacts::number(const std::string& name) const
+{
+    if (const auto found = given_.find(name); found != given_.end()) return found->second;
+    for (const std::uint32_t i : world().in_id_order())
+    {
+        if (world().component(i).facet != Facet::Component) continue;
+        const Value entry = world().get(i, "parameters." + name);
+        if (const auto* d = std::get_if<double>(&entry)) return *d;
+        const auto* type = world().type_of(i);
+        const Field* field = type ? type->schema.find_field(name) : nullptr;
+        // What a component computes is no fact of the scene.
+        if (!field || field->kind == FieldKind::Output || field->type != FieldType::Real) continue;
+        return std::get<double>(world().get(i, name));
+    }
+    return {};
+}
+
+Vec3 SceneFacts::gravity() const
+{
+    Vec3 g;
+    for (const std::uint32_t i : of_type("Field/Gravity")) g += std::get<Vec3>(world().get(i, "acceleration"));
+    return g;
+}
+
+std::string SceneFacts::foreign_force(const std::vector<std::string>& known) const
+{
+    for (const std::uint32_t i : world().in_id_order())
+    {
+        const auto* type = world().type_of(i);
+        if (!type || !(type->takes_part(Phase::Force) || type->takes_part(Phase::Constrain))) continue;
+        bool fine = false;
+        for (const std::string& prefix : known) fine = fine || type->info.name.starts_with(prefix);
+        if (!fine) return world().id_of(i) + " (" + type->info.name + ")";
+    }
+    return {};
+}
+
+Result<std::unique_ptr<ExactSolution>> make_exact(const std::string& text, const simulation::Simulation& s, double until)
+{
+    const std::string name = text.substr(0, text.find(':'));
+    auto given = parse_given(name.size() < text.size() ? std::string_view(text).substr(name.size() + 1) : std::string_view());
+    if (!given) return reason("--reference exact:" + text + ": " + given.error().reason);
+    std::vector<std::string> names;
+    for (const ExactEntry& e : kRegistry)
+    {
+        names.emplace_back(e.name);
+        if (e.name != name) continue;
+        auto made = e.make(SceneFacts(s, given.take()), until);
+        if (!made) return reason("the closed form '" + name + "' does not describe this scene: " + made.error().reason);
+        return made;
+    }
+    return reason("there is no closed form '" + name + "'" + model::did_you_mean(name, names) + "; there are " + model::quoted_list(names));
+}
+
+void read_exact(const ExactSolution& solution, const world::World& world, const Quantity& q, double t, std::vector<double>& out)
+{
+    const std::size_t before = out.size();
+    const auto put = [&](std::initializer_list<double> v)
+    {
+        if (q.part)
+            out.push_back(v.begin()[*q.part]);
+        else
+            out.insert(out.end(), v);
+    };
+    const auto put_vector = [&](const Vec3& v) { put({v.x, v.y, v.z}); };
+    ExactState s;
+    const std::uint32_t i = world.find(q.id);
+    if (i != kNoIndex && solution.state(q.id, t, s))
+    {
+        const bool body = world.component(i).facet == Facet::Body;
+        const Vec3 offset = body ? -1.0 * rotate(s.orientation, world.host().bodies.center_B[world.component(i).host_index]) : Vec3{};
+        if (body && q.field == "position") put_vector(s.position + offset);
+        if (body && q.field == "linear_velocity") put_vector(s.velocity + cross(s.angular_velocity, offset));
+        if (q.field == "orientation") put({s.orientation.w, s.orientation.x, s.orientation.y, s.orientation.z});
+        if (body && q.field == "angular_velocity") put_vector(s.angular_velocity);
+        if (!body && q.field == "angle") put({s.angle});
+        if (!body && q.field == "angular_velocity") put({s.speed});
+    }
+    out.resize(before + q.width, std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace plab::study

@@ -1,0 +1,99 @@
+/// Closed forms by name: what a scene would do without any error of method.
+///
+/// Parameters are read from the scene, or given: "oscillator:stiffness=100,damping=2". A scene that a closed form does
+/// not describe is refused with the reason.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "study/run.h"
+
+namespace plab::study
+{
+
+/// Pose and speeds of a body (p_WC, q_WB, v_WC, w_WB in W) or angle and speed of a shaft; SI.
+struct ExactState
+{
+    Vec3 position;
+    Quat orientation;
+    Vec3 velocity;
+    Vec3 angular_velocity;
+    double angle = 0, speed = 0;
+};
+
+inline constexpr double kExactPrecision = 1e-14;
+/// With a phase that has turned by so many rad.
+inline double precision_after(double radians) { return kExactPrecision + 1e-15 * radians; }
+
+class ExactSolution
+{
+public:
+    virtual ~ExactSolution() = default;
+    /// False if nothing is said of that object.
+    virtual bool state(const std::string& id, double t, ExactState& out) const = 0;
+    /// In words: the formula, and the parameters that were read.
+    virtual std::string words() const = 0;
+    /// How well it is evaluated in double precision, relative: phases lose what their number of turns takes.
+    virtual double precision(double until) const { return (void)until, kExactPrecision; }
+    /// Whether the moments of contact are part of it; those up to `until`.
+    virtual bool knows_contacts() const { return false; }
+    virtual std::vector<Touch> contacts(double until) const { return (void)until, std::vector<Touch>(); }
+};
+
+/// What a closed form may look at: the scene before its first step.
+class SceneFacts
+{
+public:
+    SceneFacts(const simulation::Simulation& simulation, std::map<std::string, double> given) : s_(&simulation), given_(std::move(given)) {}
+
+    const simulation::Simulation& simulation() const { return *s_; }
+    const world::World& world() const { return s_->world(); }
+    const Bodies& bodies() const { return world().host().bodies; }
+    const Shafts& shafts() const { return world().host().shafts; }
+    /// Directory indices of moving objects.
+    std::vector<std::uint32_t> dynamic(Facet facet) const;
+    std::vector<std::uint32_t> of_type(const std::string& prefix) const;
+    /// A number that was given, or that some component has under this name (a field or a script's parameter).
+    std::optional<double> number(const std::string& name) const;
+    /// Of all Field/Gravity, m/s^2.
+    Vec3 gravity() const;
+    /// The first type that adds forces and is not among `known` prefixes; empty if there is none.
+    std::string foreign_force(const std::vector<std::string>& known) const;
+    bool collides() const { return !of_type("CDetection/").empty(); }
+
+private:
+    const simulation::Simulation* s_;
+    std::map<std::string, double> given_;
+};
+
+using ExactMaker = Result<std::unique_ptr<ExactSolution>> (*)(const SceneFacts& facts, double until);
+
+struct ExactEntry
+{
+    std::string_view name;
+    std::string_view what;   ///< formula
+    std::string_view needs;  ///< of the scene
+    ExactMaker make;
+};
+/// All closed forms, in the order of the manual.
+std::span<const ExactEntry> exact_registry();
+
+/// `text`: NAME or NAME:key=value,key=value. `until`: the last time that is asked for, s.
+Result<std::unique_ptr<ExactSolution>> make_exact(const std::string& text, const simulation::Simulation& simulation, double until);
+
+/// The numbers of a quantity at t; NaN where the closed form says nothing.
+void read_exact(const ExactSolution& solution, const world::World& world, const Quantity& quantity, double t, std::vector<double>& out);
+
+// Makers, by file.
+Result<std::unique_ptr<ExactSolution>> make_flight(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_oscillator(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_pendulum(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_kepler(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_bounce(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_slide(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_gear_pair(const SceneFacts& facts, double until);
+
+}  // namespace plab::study

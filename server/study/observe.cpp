@@ -1,0 +1,154 @@
+#include "study/observe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/values.h"
+#include "publish/figures.h"
+
+namespace plab::study
+{
+namespace
+{
+
+/// A chattering contact must not fill the memory.
+constexpr std::size_t kMostContacts = 20'000;
+
+/// Whose algorithms a study is about.
+bool is_of_interest(const std::string& type)
+{
+    for (const char* kind : {"Solver/", "Manager/", "Response/", "Resolution/", "Constraint/", "CDetection/", "Script/"})
+        if (type.starts_with(kind)) return true;
+    return false;
+}
+
+std::optional<double> number_of(const Value& v)
+{
+    if (const auto* d = std::get_if<double>(&v)) return *d;
+    if (const auto* n = std::get_if<std::int64_t>(&v)) return static_cast<double>(*n);
+    return {};
+}
+
+void grow(double& largest, double value)
+{
+    if (value > largest || std::isnan(value)) largest = value;
+}
+
+}  // namespace
+
+double unstored_work(const simulation::Simulation& s)
+{
+    const simulation::Stepper& stepper = s.stepper();
+    double work = stepper.departed_work() + stepper.requests_work();
+    for (const std::uint32_t i : s.world().in_id_order())
+    {
+        const model::ComponentType* type = s.world().type_of(i);
+        if (i < stepper.work().size() && type && !type->takes_part(Phase::Potential)) work += stepper.work()[i];
+    }
+    return work;
+}
+
+Observation::Observation(const simulation::Simulation& s, RunRecord& out)
+    : s_(&s), out_(&out), start_(s.totals()), work_at_start_(unstored_work(s))
+{
+    for (const std::uint32_t i : s.world().in_id_order())
+    {
+        const model::ComponentType* type = s.world().type_of(i);
+        if (!type || !is_of_interest(type->info.name)) continue;
+        PartFigures part;
+        part.id = s.world().id_of(i), part.requested = type->info.name;
+        out.parts.push_back(std::move(part));
+    }
+}
+
+void Observation::note(const Event& e)
+{
+    ++out_->events[e.kind];
+    if (e.severity != Severity::Info)
+    {
+        if (out_->warnings.empty()) out_->first_warning = e.kind + (e.message.empty() ? "" : ": " + e.message);
+        ++out_->warnings[e.kind];
+    }
+    if (e.kind != "contact.begin" && e.kind != "contact.impact") return;
+    if (out_->contacts.size() >= kMostContacts)
+    {
+        out_->contacts_cut = true;
+        return;
+    }
+    out_->contacts.push_back({e.kind, s_->world().id_of(e.a), s_->world().id_of(e.b), e.time});
+}
+
+void Observation::step()
+{
+    for (const Event& e : s_->events()) note(e);
+    const simulation::StepReport& report = s_->stepper().report();
+    grow(out_->penetration, report.deepest);
+    grow(out_->residual, report.worst_residual);
+    out_->trials += static_cast<std::uint64_t>(report.trials);
+    out_->rewinds += static_cast<std::uint64_t>(report.rewinds);
+    out_->evaluations += report.evaluations;
+}
+
+void Observation::sample_energy(const simulation::Totals& t)
+{
+    EnergySeries& e = out_->energy;
+    const double energy = t.kinetic + t.stored, before = start_.kinetic + start_.stored;
+    e.time.push_back(s_->time()), e.energy.push_back(energy);
+    e.drift.push_back(energy - before - (unstored_work(*s_) - work_at_start_));
+    grow(e.scale, std::max(t.kinetic, std::fabs(t.stored - start_.stored)));
+}
+
+void Observation::sample_momenta(const simulation::Totals& t)
+{
+    grow(out_->momentum_change, length(t.momentum - start_.momentum));
+    grow(out_->angular_momentum_change, length(t.angular_momentum - start_.angular_momentum));
+    grow(out_->shaft_momentum_change, std::fabs(t.shaft_momentum - start_.shaft_momentum));
+    grow(out_->momentum_scale, length(t.momentum));
+    grow(out_->angular_momentum_scale, length(t.angular_momentum));
+}
+
+void Observation::sample_parts()
+{
+    for (PartFigures& part : out_->parts)
+    {
+        const std::uint32_t i = s_->world().find(part.id);
+        if (i == kNoIndex) continue;
+        grow(part.error, s_->error_of(i));
+        if (part.requested.starts_with("Constraint/")) grow(out_->violation, s_->error_of(i));
+        for (const Field& f : s_->world().table_of(i).schema().fields())
+        {
+            if (f.kind != FieldKind::Output || f.type != FieldType::Integer) continue;
+            grow(part.largest[f.name], *number_of(s_->world().get(i, f.name)));
+        }
+    }
+}
+
+void Observation::sample()
+{
+    out_->times.push_back(s_->time());
+    for (std::size_t k = 0; k < out_->quantities.size(); ++k) read(s_->world(), out_->quantities[k], out_->courses[k].values);
+    const simulation::Totals totals = s_->totals();
+    sample_energy(totals);
+    sample_momenta(totals);
+    sample_parts();
+}
+
+void Observation::finish()
+{
+    const std::vector<std::string> words = publish::resolved_algorithms(*s_);
+    for (PartFigures& part : out_->parts)
+    {
+        const std::uint32_t i = s_->world().find(part.id);
+        if (i == kNoIndex) continue;
+        part.resolved = words[i];
+        for (const Field& f : s_->world().table_of(i).schema().fields())
+        {
+            if (f.kind != FieldKind::Output) continue;
+            const Value v = s_->world().get(i, f.name);
+            if (const auto x = number_of(v)) part.outputs[f.name] = *x;
+            if (const auto* text = std::get_if<std::string>(&v); text && f.name == "resolved" && !text->empty()) part.resolved = *text;
+        }
+    }
+}
+
+}  // namespace plab::study

@@ -1,0 +1,172 @@
+#include "study/options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "model/numbers.h"
+
+namespace plab::study
+{
+namespace
+{
+
+constexpr const char* kExamples = R"(Examples:
+  plab-study scenes/studies/projectile.xml --vary solver=SemiImplicitEuler,RungeKutta4 --vary dt=1/60,1/120,1/240
+             --reference exact:parabola --until 2 -o out
+  plab-study scenes/studies/bounce.xml --vary contact.resolution=None,Bisection,LocalBisection --vary dt=1/60,1/240,1/960
+             --reference exact:bounce --quantity ball.position.z --until 2 -o out
+  plab-study scenes/fan_and_balloons.xml --vary gears=Assign,Impulse,Graph --vary dt=1/120,1/240 --until 5 -o out
+  plab-study SCENE --rung "penalty: contact.response=Penalty contact.resolution=None" --rung "impulse: contact.response=Impulse"
+             --vary dt=1/60,1/240 --until 5 -o out
+  plab-study SCENE --swap 120:contact.response=Response/None --vary dt=1/60 --until 5 -o out
+  plab-study --suite scenes/studies/suite.json -o out
+
+DIR then holds report.html (open it in a browser), results.csv, results.json, reference.csv and the pictures.
+Exit codes: 0 done (a run that fails is a result), 1 nothing could be studied, 2 wrong use.)";
+
+/// Texts as they come, before they are understood.
+struct Texts
+{
+    std::vector<std::string> vary, rungs, swaps, scales;
+    std::string reference = "auto", reference_rung, until, floor, budget, tolerance;
+};
+
+Result<double> positive(const std::string& name, const std::string& text)
+{
+    const auto v = model::parse_real(text);
+    if (!v || !(*v > 0) || *v > 1e12) return reason(name + " wants a positive number, not '" + text + "'");
+    return v;
+}
+
+Result<SwapAt> parse_swap(const std::string& text)
+{
+    const std::size_t colon = text.find(':'), equal = text.rfind('=');
+    SwapAt out;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + std::min(colon, text.size()), out.at);
+    const bool number = colon != std::string::npos && error == std::errc() && end == text.data() + colon && out.at >= 0;
+    if (!number || equal == std::string::npos || equal <= colon + 1 || equal + 1 == text.size())
+        return reason("--swap wants STEP:ID=TYPE, such as 120:contact.response=Response/None, not '" + text + "'");
+    out.id = text.substr(colon + 1, equal - colon - 1), out.type = text.substr(equal + 1);
+    return out;
+}
+
+Result<void> understand(const Texts& texts, Options& out)
+{
+    for (const std::string& text : texts.vary)
+    {
+        auto v = parse_vary(text);
+        if (!v) return v.errors();
+        out.varied.push_back(v.take());
+    }
+    for (const std::string& text : texts.rungs)
+    {
+        auto v = parse_rung(text);
+        if (!v) return v.errors();
+        out.rungs.push_back(v.take());
+    }
+    for (const std::string& text : texts.swaps)
+    {
+        auto v = parse_swap(text);
+        if (!v) return v.errors();
+        out.swaps.push_back(v.take());
+    }
+    for (const std::string& text : texts.scales)
+    {
+        const std::size_t equal = text.rfind('=');
+        const auto v = positive("--scale", equal == std::string::npos ? "" : text.substr(equal + 1));
+        if (!v) return reason("--scale wants ID.field=LENGTH with a positive number, not '" + text + "'");
+        out.scales[text.substr(0, equal)] = *v;
+    }
+    out.reference = parse_reference(texts.reference);
+    if (!texts.reference_rung.empty())
+    {
+        if (out.reference.kind != ReferencePlan::Kind::Auto) return reason("--reference-rung goes with --reference auto only");
+        auto rung = parse_rung(texts.reference_rung);
+        if (!rung) return rung.errors();
+        out.reference.rung = rung.take();
+    }
+    if (!texts.floor.empty())
+    {
+        const auto z = model::parse_real(texts.floor);
+        if (!z) return reason("--floor wants a height in m, not '" + texts.floor + "'");
+        out.floor = *z;
+    }
+    for (const auto& [name, text, value] :
+         {std::tuple("--until", &texts.until, &out.until), std::tuple("--budget", &texts.budget, &out.budget),
+          std::tuple("--tolerance", &texts.tolerance, &out.tolerance)})
+    {
+        if (text->empty()) continue;
+        const auto v = positive(name, *text);
+        if (!v) return v.errors();
+        *value = *v;
+    }
+    return {};
+}
+
+std::string typed(int argc, char** argv)
+{
+    std::string out = "plab-study";
+    for (int i = 1; i < argc; ++i)
+    {
+        const std::string word = argv[i];
+        const bool quote = word.find_first_of(" \t;&|<>()$*?\"") != std::string::npos;
+        out += quote ? " '" + word + "'" : " " + word;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
+{
+    CLI::App app{"plab-study: error against run time, for one scene and many algorithms", "plab-study"};
+    app.footer(kExamples);
+    app.set_version_flag("--version", std::string("plab-study ") + PLAB_VERSION);
+    Texts texts;
+    std::string suite;
+    const auto many = [&](const char* name, std::vector<std::string>& into, const char* what)
+    { app.add_option(name, into, what)->take_all()->allow_extra_args(false); };
+    app.add_option("scene", options.scene, "blueprint (XML)");
+    many("--vary", texts.vary, "ID=TypeA,TypeB or ID.param=v1,v2 or dt=1/30,1/60: what is varied (may be repeated: all combinations)");
+    many("--rung", texts.rungs, "[NAME:] ID=Type ID.param=value ...: settings that go together (may be repeated); each with all of --vary");
+    app.add_option("--reference", texts.reference,
+                   "auto (finest rung, extrapolated), exact:NAME[:key=value,..], none, or a CSV file; default: auto");
+    app.add_option("--reference-rung", texts.reference_rung,
+                   "ID=Type dt=..: the rung that auto extrapolates; default: the highest of --vary");
+    many("--quantity", options.quantities,
+         "ID.field that is compared, such as ball.position (may be repeated); default: places and angles");
+    many("--scale", texts.scales, "ID.field=A: the length a of the mixed error |y - r|/(a + |r|); default: how far the reference moves");
+    app.add_option("--until", texts.until, "simulated seconds")->type_name("T");
+    app.add_option("--repeat", options.repeat, "timed runs of each combination, interleaved")->check(CLI::Range(1, 1000));
+    app.add_option("--budget", texts.budget, "CPU seconds for one run; one that needs more is cut: a result, too slow")->type_name("S");
+    app.add_option("--floor", texts.floor, "height z in m; a body whose centre gets below it fell through")->type_name("Z");
+    many("--swap", texts.swaps, "STEP:ID=TYPE: exchange a component before that step of every run (may be repeated)");
+    app.add_option("-o,--out", options.out, "folder for report.html, results.csv, results.json and the pictures")->type_name("DIR");
+    app.add_option("--suite", suite, "a catalogue of studies (JSON) instead of a scene")->type_name("FILE");
+    app.add_option("--tolerance", texts.tolerance, "suite: an error up to here counts as solved; default: 1e-6");
+    app.add_flag("--list", options.list, "print the combinations and run nothing");
+    app.add_flag("--list-exact", options.list_exact, "print the closed forms that exact:NAME knows");
+    app.add_flag("--quiet", options.quiet, "no progress on standard error");
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError& e)
+    {
+        std::ostringstream out, err;
+        const int code = app.exit(e, out, err);
+        return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
+    }
+    if (!suite.empty() && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite names its scenes itself: leave SCENE out\n"};
+    options.suite = !suite.empty();
+    if (options.suite) options.scene = suite;
+    if (options.list_exact) return {};
+    if (options.scene.empty()) return ParseEnd{2, "plab-study: needs a scene; see plab-study --help\n"};
+    if (auto understood = understand(texts, options); !understood) return ParseEnd{2, "plab-study: " + understood.error().text() + "\n"};
+    if (!options.suite && !options.list && options.until < 0) return ParseEnd{2, "plab-study: needs --until T, in simulated seconds\n"};
+    if (!options.list && options.out.empty()) return ParseEnd{2, "plab-study: needs -o DIR, the folder for its results\n"};
+    options.command = typed(argc, argv);
+    return {};
+}
+
+}  // namespace plab::study

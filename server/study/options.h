@@ -1,0 +1,44 @@
+/// The command line of plab-study.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/settings.h"
+#include "study/study.h"
+
+namespace plab::study
+{
+
+struct Options
+{
+    std::string scene;  ///< or the suite's file
+    bool suite = false;
+    bool list = false;
+    bool list_exact = false;
+    bool quiet = false;
+    std::vector<Rung> rungs;
+    std::vector<std::vector<Setting>> varied;
+    ReferencePlan reference;
+    std::vector<std::string> quantities;
+    std::map<std::string, double> scales;
+    std::vector<SwapAt> swaps;
+    std::optional<double> floor;
+    double until = -1;
+    double budget = std::numeric_limits<double>::infinity();
+    double tolerance = 1e-6;  ///< suite: what counts as solved
+    int repeat = 5;
+    std::string out;
+    std::string command;  ///< as it was typed
+};
+
+/// What to print, and the exit code: 0 after --help and --version, 2 for a wrong use.
+struct ParseEnd
+{
+    int exit_code = 0;
+    std::string text;
+};
+std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options);
+
+}  // namespace plab::study

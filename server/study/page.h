@@ -1,0 +1,37 @@
+/// The frame of a report: one HTML page that needs nothing else. Light and dark, printable.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/plot/figures.h"
+
+namespace plab::study
+{
+
+/// A table whose columns sort by a click. A cell: what is shown, what it sorts by (empty: the text), a hint.
+struct PageCell
+{
+    std::string text, key, hint;
+};
+
+class Page
+{
+public:
+    Page(std::string title, std::string lead) : title_(std::move(title)), lead_(std::move(lead)) {}
+
+    void heading(const std::string& text);
+    void paragraph(const std::string& text);
+    void list(const std::vector<std::string>& items);
+    void code(const std::string& text);
+    void figure(const plot::Drawing& drawing, const std::string& caption);
+    void table(const std::vector<PageCell>& head, const std::vector<std::vector<PageCell>>& rows);
+    void facts(const std::vector<std::pair<std::string, std::string>>& facts);
+    void link(const std::string& target, const std::string& text);
+    std::string html() const;
+
+private:
+    std::string title_, lead_, body_;
+};
+
+}  // namespace plab::study

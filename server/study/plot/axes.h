@@ -1,0 +1,54 @@
+/// Axes: what a value is on the paper, ticks, grid, labels.
+#pragma once
+
+#include "study/plot/drawing.h"
+
+namespace plab::study::plot
+{
+
+struct Scale
+{
+    enum class Kind : std::uint8_t
+    {
+        Linear,
+        Log,
+        SymLog,  ///< linear within +-threshold, logarithmic beyond
+    };
+    Kind kind = Kind::Linear;
+    double low = 0, high = 1;
+    double threshold = 1;
+
+    /// 0 at low, 1 at high.
+    double at(double value) const;
+
+    /// Around the values, with room; those that are not finite (or, on log axes, not positive) do not count.
+    static Scale around(Kind kind, const std::vector<double>& values);
+};
+
+struct Mark
+{
+    double value = 0;
+    std::string label;  ///< empty: a minor one
+};
+std::vector<Mark> marks_of(const Scale& scale, int most = 8);
+
+/// The area where data stand.
+struct Panel
+{
+    double left = 0, top = 0, width = 1, height = 1;  ///< px
+    Scale x, y;
+
+    Spot at(double vx, double vy) const { return {left + width * x.at(vx), top + height * (1 - y.at(vy))}; }
+    double right() const { return left + width; }
+    double bottom() const { return top + height; }
+};
+
+/// Grid, frame, tick labels and the names of both axes.
+void draw_panel(Drawing& drawing, const Panel& panel, const std::string& x_name, const std::string& y_name);
+
+/// "10⁻⁶", "0.002": short numbers for ticks.
+std::string power_of_ten(int exponent);
+/// "3.2e-07" as people write it: 3.2·10⁻⁷, or plain where that is short.
+std::string short_number(double value);
+
+}  // namespace plab::study::plot

@@ -1,0 +1,259 @@
+#include "study/plot/figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/plot/axes.h"
+
+namespace plab::study::plot
+{
+namespace
+{
+
+const Ink kMuted{Ink::Role::Muted, 0, 0, 0, 0};
+constexpr double kWidth = 860, kHeight = 520;
+
+Ink ink_of(std::size_t rung) { return Ink::series(static_cast<int>(rung)); }
+int shape_of(std::size_t rung) { return static_cast<int>(rung % Drawing::kMarkers); }
+
+double shown(double error) { return std::isnan(error) ? error : std::max(error, kLeastError); }
+double milliseconds(const Point& p) { return 1e3 * p.cpu_per_second(); }
+
+std::size_t rung_index(const std::vector<std::string>& rungs, const Point& p)
+{
+    return static_cast<std::size_t>(std::find(rungs.begin(), rungs.end(), p.combination.rung) - rungs.begin());
+}
+
+/// The panel beside a legend of these names.
+Panel panel_beside(double widest, const Scale& x, const Scale& y)
+{
+    Panel p;
+    p.left = 84, p.top = 48, p.x = x, p.y = y;
+    p.width = kWidth - p.left - std::min(widest, 300.0) - 56, p.height = kHeight - p.top - 62;
+    return p;
+}
+
+double widest(const std::vector<std::string>& names)
+{
+    double out = 60;
+    for (const std::string& n : names) out = std::max(out, text_width(n, 12));
+    return out;
+}
+
+void draw_legend(Drawing& d, const Panel& p, const std::vector<std::string>& rungs)
+{
+    double y = p.top + 8;
+    for (std::size_t i = 0; i < rungs.size() && y < p.bottom(); ++i, y += 20)
+    {
+        d.line({{p.right() + 16, y}, {p.right() + 36, y}}, {ink_of(i), 1.5, false});
+        d.marker({p.right() + 26, y}, shape_of(i), 4.5, ink_of(i), true);
+        d.words({p.right() + 42, y + 4}, rungs[i], {12, {}, Anchor::Start, false, false});
+    }
+}
+
+void draw_title(Drawing& d, const std::string& title) { d.words({84, 26}, title, {16, {}, Anchor::Start, true, false}); }
+
+double uncertainty_of(const StudyResult& r)
+{
+    double out = 0;
+    for (const Distance& u : r.reference.uncertainty) out = std::isnan(u.series) ? out : std::max(out, u.series);
+    return out;
+}
+
+/// Errors down here are those of the reference as well.
+void draw_unresolved(Drawing& d, const Panel& p, double uncertainty)
+{
+    if (!(uncertainty > p.y.low)) return;
+    const double y = p.at(p.x.low, std::min(uncertainty, p.y.high)).y;
+    d.box({p.left, y}, p.width, p.bottom() - y, {Ink::Role::Shade, 0, 0, 0, 0}, "the reference is not known better than this");
+    d.words({p.left + 8, p.bottom() - 8}, "below " + short_number(uncertainty) + ": not resolved by the reference",
+            {11, kMuted, Anchor::Start, false, false});
+}
+
+std::string hint_of(const StudyResult& r, const Point& p)
+{
+    std::string out = p.combination.label() + "\nerror " + short_number(p.error()) + ", at the end " + short_number(p.final_error());
+    out += "\n" + short_number(milliseconds(p)) + " ms per simulated second";
+    for (std::size_t k = 0; k < r.quantities.size(); ++k)
+        out += "\n" + r.quantities[k].name + ": " + short_number(p.errors[k].series_absolute) + " " + r.quantities[k].unit;
+    return out;
+}
+
+void draw_front(Drawing& d, const Panel& p, const StudyResult& r)
+{
+    const std::vector<std::size_t> front = pareto_front(r);
+    std::vector<Spot> steps;
+    for (const std::size_t i : front)
+    {
+        const Spot at = p.at(milliseconds(r.points[i]), shown(r.points[i].error()));
+        if (!steps.empty()) steps.push_back({at.x, steps.back().y});
+        steps.push_back(at);
+    }
+    if (!steps.empty()) steps.push_back({p.right(), steps.back().y});
+    if (steps.size() > 1) d.line(std::move(steps), {{Ink::Role::Front, 0, 0, 0, 0}, 5, false}, "Pareto front: nobody is better in both");
+}
+
+/// Words beside markers, each only where no earlier one stands.
+class Labels
+{
+public:
+    void add(Drawing& d, Spot at, const std::string& text)
+    {
+        const double width = text_width(text, kSize);
+        for (const auto& [spot, w] : placed_)
+            if (at.x < spot.x + w && spot.x < at.x + width && std::fabs(at.y - spot.y) < kSize) return;
+        placed_.emplace_back(at, width);
+        d.words(at, text, {kSize, kMuted, Anchor::Start, false, false});
+    }
+
+private:
+    static constexpr double kSize = 10.5;
+    std::vector<std::pair<Spot, double>> placed_;
+};
+
+/// Points of each rung, joined by ascending x, with the step length beside each where there is room.
+void draw_series(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& rungs, double (*x_of)(const Point&),
+                 bool name_steps)
+{
+    Labels labels;
+    for (std::size_t k = 0; k < rungs.size(); ++k)
+    {
+        std::vector<const Point*> points;
+        for (const Point& q : r.points)
+            if (q.combination.rung == rungs[k] && std::isfinite(q.error()) && std::isfinite(x_of(q)) && x_of(q) > 0) points.push_back(&q);
+        std::sort(points.begin(), points.end(), [&](const Point* a, const Point* b) { return x_of(*a) < x_of(*b); });
+        std::vector<Spot> line;
+        for (const Point* q : points) line.push_back(p.at(x_of(*q), shown(q->error())));
+        if (line.size() > 1) d.line(line, {ink_of(k), 1.5, false});
+        for (std::size_t i = 0; i < points.size(); ++i)
+        {
+            d.marker(line[i], shape_of(k), 5.5, ink_of(k), points[i]->is_resolved(), hint_of(r, *points[i]));
+            if (name_steps && !points[i]->combination.dt.empty()) labels.add(d, {line[i].x + 8, line[i].y - 7}, points[i]->combination.dt);
+        }
+    }
+}
+
+/// Runs that have a cost but no error stand at the upper edge.
+void draw_failures(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& rungs, double (*x_of)(const Point&))
+{
+    for (const Point& q : r.points)
+    {
+        if (std::isfinite(q.error()) || !(x_of(q) > 0) || !std::isfinite(x_of(q))) continue;
+        const Spot at{p.at(x_of(q), p.y.low).x, p.top + 8};
+        const Ink ink = ink_of(rung_index(rungs, q));
+        const std::string hint = q.combination.label() + ": " + std::string(name_of(q.record.outcome)) + "\n" + q.record.why;
+        d.line({{at.x - 5, at.y - 5}, {at.x + 5, at.y + 5}}, {ink, 2, false}, hint);
+        d.line({{at.x - 5, at.y + 5}, {at.x + 5, at.y - 5}}, {ink, 2, false}, hint);
+    }
+}
+
+double step_of(const Point& p) { return p.record.dt; }
+
+/// Errors of a rung by step length, shortest first.
+std::vector<std::pair<double, double>> errors_by_step(const StudyResult& r, const std::string& rung)
+{
+    const double floor = 10 * std::max(kRoundOff, uncertainty_of(r));
+    std::vector<std::pair<double, double>> out;
+    for (const Point& q : r.points)
+        if (q.combination.rung == rung && q.error() > floor && std::isfinite(q.error())) out.emplace_back(q.record.dt, q.error());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+bool near(const std::pair<double, double>& a, const std::pair<double, double>& b)
+{
+    return a.first == b.first && std::fabs(std::log(a.second / b.second)) < 0.1;
+}
+
+/// A right triangle under the two shortest steps of a rung that are above round-off, with the slope that was seen.
+void draw_slope(Drawing& d, const Panel& p, const std::vector<std::pair<double, double>>& e, Ink ink)
+{
+    const double slope = std::log(e[1].second / e[0].second) / std::log(e[1].first / e[0].first);
+    if (!(slope > 0.3) || slope > 12) return;
+    const double x0 = e[0].first, x1 = e[1].first, y0 = e[0].second / 1.6;
+    const double y1 = y0 * std::pow(x1 / x0, slope);
+    if (y0 < p.y.low || y1 > p.y.high) return;
+    d.line({p.at(x0, y0), p.at(x1, y0), p.at(x1, y1), p.at(x0, y0)}, {ink, 1, true},
+           "slope between the two shortest steps above round-off");
+    char text[16];
+    std::snprintf(text, sizeof text, "%.2f", slope);
+    const Spot at = p.at(x1, std::sqrt(y0 * y1));
+    d.words({at.x + 6, at.y + 4}, text, {12, ink, Anchor::Start, true, false});
+}
+
+}  // namespace
+
+std::vector<std::string> rungs_of(const StudyResult& r)
+{
+    std::vector<std::string> out;
+    for (const Point& p : r.points)
+        if (std::find(out.begin(), out.end(), p.combination.rung) == out.end()) out.push_back(p.combination.rung);
+    return out;
+}
+
+std::vector<std::size_t> pareto_front(const StudyResult& r)
+{
+    // Below round-off, or what the reference can tell, nobody is better than another.
+    const double floor = std::max(kRoundOff, uncertainty_of(r));
+    const auto told = [&](const Point& p) { return std::max(p.error(), floor); };
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < r.points.size(); ++i)
+        if (r.points[i].record.ok() && std::isfinite(r.points[i].error()) && r.points[i].cpu_per_second() > 0) order.push_back(i);
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b)
+              {
+                  const Point &x = r.points[a], &y = r.points[b];
+                  return std::pair(x.cpu_per_second(), told(x)) < std::pair(y.cpu_per_second(), told(y));
+              });
+    std::vector<std::size_t> out;
+    for (const std::size_t i : order)
+        if (out.empty() || told(r.points[i]) < told(r.points[out.back()])) out.push_back(i);
+    return out;
+}
+
+Drawing work_precision(const StudyResult& r)
+{
+    std::vector<double> costs, errors;
+    for (const Point& q : r.points)
+        if (q.cpu_per_second() > 0) costs.push_back(milliseconds(q)), errors.push_back(shown(q.error()));
+    const std::vector<std::string> rungs = rungs_of(r);
+    Drawing d(kWidth, kHeight, "Error against CPU time: " + r.title);
+    Panel p = panel_beside(widest(rungs), Scale::around(Scale::Kind::Log, costs), Scale::around(Scale::Kind::Log, errors));
+    draw_title(d, "Error against CPU time");
+    draw_unresolved(d, p, uncertainty_of(r));
+    draw_panel(d, p, "CPU time, ms per simulated second", "largest error, whole series");
+    draw_front(d, p, r);
+    draw_series(d, p, r, rungs, &milliseconds, true);
+    draw_failures(d, p, r, rungs, &milliseconds);
+    draw_legend(d, p, rungs);
+    return d;
+}
+
+std::optional<Drawing> convergence(const StudyResult& r)
+{
+    std::vector<double> steps, errors;
+    for (const Point& q : r.points)
+        if (std::isfinite(q.error())) steps.push_back(q.record.dt), errors.push_back(shown(q.error()));
+    if (steps.empty() || std::all_of(steps.begin(), steps.end(), [&](double s) { return s == steps.front(); })) return {};
+    const std::vector<std::string> rungs = rungs_of(r);
+    Drawing d(kWidth, kHeight, "Error against step length: " + r.title);
+    Panel p = panel_beside(widest(rungs), Scale::around(Scale::Kind::Log, steps), Scale::around(Scale::Kind::Log, errors));
+    draw_title(d, "Error against step length");
+    draw_unresolved(d, p, uncertainty_of(r));
+    draw_panel(d, p, "step length, s", "largest error, whole series");
+    std::vector<std::pair<double, double>> drawn;
+    for (std::size_t k = 0; k < rungs.size(); ++k)
+    {
+        const auto e = errors_by_step(r, rungs[k]);
+        // Rungs that lie upon one another share a triangle.
+        if (e.size() < 2 || std::any_of(drawn.begin(), drawn.end(), [&](const auto& other) { return near(other, e[0]); })) continue;
+        draw_slope(d, p, e, ink_of(k));
+        drawn.push_back(e[0]);
+    }
+    draw_series(d, p, r, rungs, &step_of, false);
+    draw_failures(d, p, r, rungs, &step_of);
+    draw_legend(d, p, rungs);
+    return d;
+}
+
+}  // namespace plab::study::plot

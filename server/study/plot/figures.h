@@ -1,0 +1,55 @@
+/// The pictures of a study.
+#pragma once
+
+#include <optional>
+
+#include "study/plot/drawing.h"
+#include "study/study.h"
+
+namespace plab::study::plot
+{
+
+/// Error against CPU time, log-log: a marker per combination, a line per rung, the Pareto front, what the reference cannot
+/// resolve.
+Drawing work_precision(const StudyResult& result);
+/// Error against step length, log-log, with slope triangles. None if only one step length was studied.
+std::optional<Drawing> convergence(const StudyResult& result);
+/// Energy that nobody put in, over time; the vertical axis is symlog.
+std::optional<Drawing> energy(const StudyResult& result);
+/// Digits by combination and quantity.
+Drawing digit_map(const StudyResult& result);
+
+/// A named picture of a study, ready to be written as FILE.svg and FILE.png.
+struct Picture
+{
+    std::string file, caption;
+    Drawing drawing;
+};
+std::vector<Picture> pictures_of(const StudyResult& result);
+
+/// A table of digits: rows by columns; NaN: nothing, with the word that says why.
+struct Cell
+{
+    double digits = 0;
+    std::string word, hint;
+};
+Drawing heat_map(const std::string& title, const std::vector<std::string>& rows, const std::vector<std::string>& columns,
+                 const std::vector<std::vector<Cell>>& cells);
+
+/// Performance profile of Dolan and More: share of problems solved within tau times the best. `cost`: problem by solver,
+/// infinite where it failed.
+Drawing performance_profile(const std::string& title, const std::vector<std::string>& solvers,
+                            const std::vector<std::vector<double>>& cost);
+
+/// Rungs in the order of their first point.
+std::vector<std::string> rungs_of(const StudyResult& result);
+/// Relative errors up to here are round-off.
+inline constexpr double kRoundOff = 1e-13;
+/// Indices of the points that nobody beats in both error and cost, by cost; errors below round-off or the reference's
+/// uncertainty count as equal.
+std::vector<std::size_t> pareto_front(const StudyResult& result);
+
+/// An exact zero has no place on a logarithmic axis; it stands here.
+inline constexpr double kLeastError = 1e-17;
+
+}  // namespace plab::study::plot

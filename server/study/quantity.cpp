@@ -1,0 +1,192 @@
+#include "study/quantity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/type_summary.h"
+#include "model/units.h"
+#include "model/values.h"
+
+namespace plab::study
+{
+namespace
+{
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Numbers of a value; none for texts and lists.
+std::size_t width_of(const Value& v)
+{
+    switch (type_of(v))
+    {
+        case FieldType::Boolean:
+        case FieldType::Integer:
+        case FieldType::Real:
+            return 1;
+        case FieldType::Vector:
+            return 3;
+        case FieldType::Rotation:
+            return 4;
+        default:
+            return 0;
+    }
+}
+
+void append(const Value& v, std::vector<double>& out)
+{
+    if (const auto* b = std::get_if<bool>(&v)) out.push_back(*b ? 1 : 0);
+    if (const auto* n = std::get_if<std::int64_t>(&v)) out.push_back(static_cast<double>(*n));
+    if (const auto* d = std::get_if<double>(&v)) out.push_back(*d);
+    if (const auto* x = std::get_if<Vec3>(&v)) out.insert(out.end(), {x->x, x->y, x->z});
+    if (const auto* q = std::get_if<Quat>(&v)) out.insert(out.end(), {q->w, q->x, q->y, q->z});
+}
+
+/// "z" of "position.z": its place among the numbers of a vector or an attitude.
+std::optional<std::size_t> part_of(const std::string& letter, std::size_t width)
+{
+    const std::string letters = width == 4 ? "wxyz" : width == 3 ? "xyz" : "";
+    const std::size_t at = letter.size() == 1 ? letters.find(letter) : std::string::npos;
+    return at == std::string::npos ? std::nullopt : std::optional(at);
+}
+
+/// The longest beginning of `text` that is a component's id.
+std::uint32_t find_owner(const world::World& world, const std::string& text, std::string& field)
+{
+    for (std::size_t dot = text.rfind('.'); dot != std::string::npos && dot > 0; dot = text.rfind('.', dot - 1))
+        if (const std::uint32_t i = world.find(text.substr(0, dot)); i != kNoIndex)
+        {
+            field = text.substr(dot + 1);
+            return i;
+        }
+    return kNoIndex;
+}
+
+Error unknown_owner(const world::World& world, const std::string& text)
+{
+    std::vector<std::string> ids;
+    for (const std::uint32_t i : world.in_id_order()) ids.push_back(world.id_of(i));
+    return reason("quantity '" + text + "': no component has such an id" + model::did_you_mean(text.substr(0, text.find('.')), ids) +
+                  "; write ID.field, such as ball.position");
+}
+
+Error unknown_field(const world::World& world, std::uint32_t owner, const std::string& text)
+{
+    std::string names;
+    if (const model::ComponentType* type = world.type_of(owner))
+        for (const Field& f : type->schema.fields())
+            if (width_of(world.get(owner, f.name)) > 0) names += (names.empty() ? "" : ", ") + f.name;
+    return reason("quantity '" + text + "': " + world.id_of(owner) +
+                  (names.empty() ? " has no field that is a number" : " has no such number; it has " + names));
+}
+
+bool finite(std::span<const double> v)
+{
+    return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+Result<Quantity> resolve_quantity(const world::World& world, const std::string& text)
+{
+    Quantity q;
+    q.name = text;
+    const std::uint32_t owner = find_owner(world, text, q.field);
+    if (owner == kNoIndex) return unknown_owner(world, text);
+    q.id = world.id_of(owner);
+    Value value = world.get(owner, q.field);
+    if (width_of(value) == 0)
+    {
+        const std::size_t dot = q.field.rfind('.');
+        const Value whole = dot == std::string::npos ? Value() : world.get(owner, q.field.substr(0, dot));
+        q.part = dot == std::string::npos ? std::nullopt : part_of(q.field.substr(dot + 1), width_of(whole));
+        if (!q.part) return unknown_field(world, owner, text);
+        q.field.resize(dot), value = whole;
+    }
+    q.width = q.part ? 1 : width_of(value);
+    q.measure = q.width == 4 ? Measure::Geodesic : Measure::Mixed;
+    const model::ComponentType* type = world.type_of(owner);
+    const Field* field = type ? type->schema.find_field(q.field) : nullptr;
+    q.unit = q.measure == Measure::Geodesic ? "rad" : field ? std::string(field->unit.symbol) : "";
+    return q;
+}
+
+std::vector<std::string> default_quantities(const world::World& world, std::size_t most)
+{
+    std::vector<std::string> out;
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        const world::Component& c = world.component(i);
+        if (out.size() >= most) break;
+        if (c.facet == Facet::Body && world.host().bodies.dynamic(c.host_index)) out.push_back(c.id + ".position");
+        if (c.facet == Facet::Shaft && world.host().shafts.dynamic(c.host_index)) out.push_back(c.id + ".angle");
+    }
+    return out;
+}
+
+void read(const world::World& world, const Quantity& quantity, std::vector<double>& out)
+{
+    const std::size_t before = out.size();
+    const std::uint32_t i = world.find(quantity.id);
+    if (i != kNoIndex)
+    {
+        append(world.get(i, quantity.field), out);
+        if (quantity.part && before + *quantity.part < out.size()) out[before] = out[before + *quantity.part];
+    }
+    out.resize(before + quantity.width, kNaN);
+}
+
+double scale_of(const Course& reference)
+{
+    double travel = 0, largest = 0;
+    for (std::size_t i = 0; i < reference.values.size(); ++i)
+    {
+        travel = std::max(travel, std::fabs(reference.values[i] - reference.values[i % reference.width]));
+        largest = std::max(largest, std::fabs(reference.values[i]));
+    }
+    return travel > 0 ? travel : largest > 0 ? largest : 1.0;
+}
+
+double attitude_angle(std::span<const double> q, std::span<const double> r)
+{
+    const Quat d = conjugate(Quat{r[0], r[1], r[2], r[3]}) * Quat{q[0], q[1], q[2], q[3]};
+    return 2 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::fabs(d.w));
+}
+
+double absolute_distance_at(const Quantity& quantity, std::span<const double> y, std::span<const double> r)
+{
+    if (!finite(y) || !finite(r)) return kNaN;
+    if (quantity.measure == Measure::Geodesic) return attitude_angle(y, r);
+    double worst = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) worst = std::max(worst, std::fabs(y[i] - r[i]));
+    return worst;
+}
+
+double distance_at(const Quantity& quantity, std::span<const double> y, std::span<const double> r, double scale)
+{
+    if (!finite(y) || !finite(r)) return kNaN;
+    if (quantity.measure == Measure::Geodesic) return attitude_angle(y, r);
+    double worst = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) worst = std::max(worst, std::fabs(y[i] - r[i]) / (scale + std::fabs(r[i])));
+    return worst;
+}
+
+Distance distance(const Quantity& quantity, const Course& course, const Course& reference, double scale)
+{
+    Distance out;
+    const std::size_t n = std::min(course.samples(), reference.samples());
+    if (n == 0 || course.samples() < reference.samples()) out.last = out.last_absolute = kNaN;
+    if (n == 0) out.series = out.series_absolute = kNaN;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+        const double mixed = distance_at(quantity, course.at(i), reference.at(i), scale);
+        const double absolute = absolute_distance_at(quantity, course.at(i), reference.at(i));
+        // NaN stays: a run that was lost for one sample is lost.
+        out.series = mixed > out.series || std::isnan(mixed) ? mixed : out.series;
+        out.series_absolute = absolute > out.series_absolute || std::isnan(absolute) ? absolute : out.series_absolute;
+        if (i + 1 == n && n == reference.samples() && n == course.samples()) out.last = mixed, out.last_absolute = absolute;
+    }
+    return out;
+}
+
+}  // namespace plab::study

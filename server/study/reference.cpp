@@ -1,0 +1,215 @@
+#include "study/reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/values.h"
+#include "plab/rotation.h"
+#include "study/exact/exact.h"
+
+namespace plab::study
+{
+namespace
+{
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Differences of runs below this are round-off: no order can be read from them.
+constexpr double kRoundOff = 2e-14;
+
+/// y4 + share (y4 - y2); attitudes along the geodesic.
+void extrapolate(const Quantity& q, std::span<const double> y2, std::span<const double> y4, double share, std::vector<double>& out)
+{
+    if (q.measure == Measure::Geodesic)
+    {
+        const Quat a{y2[0], y2[1], y2[2], y2[3]}, b{y4[0], y4[1], y4[2], y4[3]};
+        const Quat r = normalized(b * exp_rotation(log_rotation(conjugate(a) * b) * share));
+        out.insert(out.end(), {r.w, r.x, r.y, r.z});
+        return;
+    }
+    for (std::size_t i = 0; i < y4.size(); ++i) out.push_back(y4[i] + share * (y4[i] - y2[i]));
+}
+
+/// The order to extrapolate with; 0: none.
+double usable_order(double seen)
+{
+    if (!(seen > 0.6) || seen > 14) return 0;
+    const double whole = std::round(seen);
+    return std::fabs(seen - whole) < 0.25 ? whole : seen;
+}
+
+Distance times(const Distance& d, double factor)
+{
+    return {d.series * factor, d.last * factor, d.series_absolute * factor, d.last_absolute * factor};
+}
+
+Distance larger(const Distance& a, const Distance& b)
+{
+    return {std::max(a.series, b.series), std::max(a.last, b.last), std::max(a.series_absolute, b.series_absolute),
+            std::max(a.last_absolute, b.last_absolute)};
+}
+
+void add_quantity(Reference& out, const Quantity& q, const Course& y1, const Course& y2, const Course& y4)
+{
+    const double scale = scale_of(y4);
+    const Distance far = distance(q, y1, y2, scale), near = distance(q, y2, y4, scale);
+    const bool round_off = near.series <= kRoundOff && far.series <= 16 * kRoundOff;
+    const double seen = round_off ? kNaN : std::log2(far.series / near.series), p = round_off ? 0 : usable_order(seen);
+    Course course{q.width, {}};
+    const double share = p > 0 ? 1 / (std::pow(2.0, p) - 1) : 0;
+    for (std::size_t i = 0; i < y4.samples(); ++i) extrapolate(q, y2.at(i), y4.at(i), share, course.values);
+    out.converges = out.converges && (round_off || p > 0);
+    out.order.push_back(seen);
+    out.scale.push_back(scale_of(course));
+    out.uncertainty.push_back(p > 0 ? times(near, share) : larger(far, near));
+    out.courses.push_back(std::move(course));
+}
+
+std::vector<std::string> split(const std::string& line)
+{
+    std::vector<std::string> out;
+    std::size_t from = 0;
+    while (true)
+    {
+        const std::size_t comma = line.find(',', from);
+        out.push_back(line.substr(from, comma - from));
+        if (comma == std::string::npos) return out;
+        from = comma + 1;
+    }
+}
+
+double number_or_nan(const std::string& text)
+{
+    char* end = nullptr;
+    const double v = std::strtod(text.c_str(), &end);
+    return end == text.c_str() ? kNaN : v;
+}
+
+struct FileCloser
+{
+    void operator()(std::FILE* f) const { std::fclose(f); }
+};
+
+bool read_line(std::FILE* f, std::string& line)
+{
+    line.clear();
+    for (int c = std::fgetc(f); c != EOF; c = std::fgetc(f))
+    {
+        if (c == '\n') return true;
+        if (c != '\r') line += static_cast<char>(c);
+    }
+    return !line.empty();
+}
+
+/// The columns that hold a quantity's numbers.
+Result<std::vector<std::size_t>> columns_of(const Quantity& q, const std::vector<std::string>& header, const std::string& path)
+{
+    const std::string whole = q.id + "." + q.field;
+    const std::string letters = q.measure == Measure::Geodesic ? "wxyz" : "xyz";
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < q.width; ++i)
+    {
+        const std::string name = q.part || q.width == 1 ? q.name : whole + "." + letters[i];
+        const auto found = std::find(header.begin(), header.end(), name);
+        if (found == header.end()) return reason(path + " has no column '" + name + "' for the quantity " + q.name);
+        out.push_back(static_cast<std::size_t>(found - header.begin()));
+    }
+    return out;
+}
+
+}  // namespace
+
+Reference no_reference(std::size_t quantities, const std::string& why)
+{
+    Reference out;
+    out.kind = "none", out.trouble = why, out.words = "no reference: " + why;
+    out.courses.resize(quantities), out.scale.assign(quantities, 1), out.order.assign(quantities, kNaN);
+    out.uncertainty.assign(quantities, {kNaN, kNaN, kNaN, kNaN});
+    return out;
+}
+
+Result<Reference> exact_reference(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options,
+                                  const std::string& text)
+{
+    simulation::Simulation s(types, 1);
+    if (auto loaded = s.load(scene); !loaded) return loaded.errors();
+    const double until = options.sample_times.empty() ? options.until : options.sample_times.back();
+    auto made = make_exact(text, s, until);
+    if (!made) return made.errors();
+    const ExactSolution& solution = **made;
+    Reference out;
+    out.kind = "exact", out.words = solution.words(), out.times = options.sample_times;
+    for (const std::string& name : options.quantities)
+    {
+        const auto q = resolve_quantity(s.world(), name);
+        if (!q) return q.errors();
+        Course course{q->width, {}};
+        for (const double t : out.times) read_exact(solution, s.world(), *q, t, course.values);
+        if (std::isnan(course.values.front()))
+            return reason("the closed form '" + text + "' says nothing about " + name + ": give it other quantities, such as a position");
+        out.scale.push_back(scale_of(course));
+        out.courses.push_back(std::move(course));
+        const double known = solution.precision(until), absolute = q->measure == Measure::Geodesic ? known : known * out.scale.back();
+        out.uncertainty.push_back({known, known, absolute, absolute});
+        out.order.push_back(kNaN);
+    }
+    out.knows_contacts = solution.knows_contacts();
+    if (out.knows_contacts) out.contacts = solution.contacts(until);
+    return out;
+}
+
+Result<Reference> file_reference(const std::vector<Quantity>& quantities, const std::vector<double>& times, const std::string& path)
+{
+    const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "r"));
+    if (!file) return reason("cannot read the reference " + path);
+    std::string line;
+    if (!read_line(file.get(), line)) return reason(path + " is empty: a reference is a CSV file that plabd --trace or plab-study wrote");
+    const std::vector<std::string> header = split(line);
+    if (header.front() != "time") return reason(path + " is no such CSV: its first column is '" + header.front() + "', not 'time'");
+    std::vector<std::vector<std::size_t>> columns;
+    for (const Quantity& q : quantities)
+    {
+        auto found = columns_of(q, header, path);
+        if (!found) return found.errors();
+        columns.push_back(found.take());
+    }
+    Reference out;
+    out.kind = "file", out.words = "the file " + path, out.times = times;
+    for (const Quantity& q : quantities) out.courses.push_back({q.width, {}});
+    std::vector<std::string> cells;
+    for (const double t : times)
+    {
+        const double slack = 1e-9 * std::max(1.0, std::fabs(t));
+        while (cells.empty() || number_or_nan(cells[0]) < t - slack)
+        {
+            if (!read_line(file.get(), line)) return reason(path + " ends before t = " + model::format_real(t) + " s");
+            cells = split(line);
+        }
+        if (std::fabs(number_or_nan(cells[0]) - t) > slack)
+            return reason(path + " has no row at t = " + model::format_real(t) +
+                          " s: write it with --every that divides the step lengths studied");
+        for (std::size_t k = 0; k < quantities.size(); ++k)
+            for (const std::size_t c : columns[k]) out.courses[k].values.push_back(c < cells.size() ? number_or_nan(cells[c]) : kNaN);
+    }
+    for (const Course& c : out.courses) out.scale.push_back(scale_of(c));
+    out.uncertainty.assign(quantities.size(), {kNaN, kNaN, kNaN, kNaN});
+    out.order.assign(quantities.size(), kNaN);
+    return out;
+}
+
+Reference auto_reference(const std::vector<RunRecord>& runs, const std::string& rung, const std::string& dt)
+{
+    const RunRecord &y1 = runs[0], &y2 = runs[1], &y4 = runs[2];
+    for (const RunRecord& r : runs)
+        if (!r.ok())
+            return no_reference(r.quantities.size(),
+                                rung + ", which was to be the reference, " + std::string(name_of(r.outcome)) + ": " + r.why);
+    Reference out;
+    out.kind = "auto", out.times = y4.times;
+    for (std::size_t k = 0; k < y4.quantities.size(); ++k) add_quantity(out, y4.quantities[k], y1.courses[k], y2.courses[k], y4.courses[k]);
+    out.knows_contacts = true, out.contacts = y4.contacts;
+    out.words = rung + " with dt = " + dt + " s, halved twice" +
+                (out.converges ? ", extrapolated by Richardson" : "; the three runs do not converge, the finest is taken as it is");
+    return out;
+}
+
+}  // namespace plab::study

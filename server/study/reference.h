@@ -1,0 +1,40 @@
+/// What a run is compared with: a closed form, a file, or the finest rung extrapolated.
+#pragma once
+
+#include "study/run.h"
+
+namespace plab::study
+{
+
+/// The truth at the sample times, as well as it is known.
+struct Reference
+{
+    std::string kind;                   ///< "exact", "file", "auto", "none"
+    std::string words;                  ///< what it is, for people
+    std::vector<double> times;          ///< s
+    std::vector<Course> courses;        ///< by quantity; NaN where nothing is known
+    std::vector<double> scale;          ///< a of the mixed error, by quantity
+    std::vector<Distance> uncertainty;  ///< by quantity; NaN: not known
+    std::vector<double> order;          ///< observed order of convergence by quantity; NaN: none to be seen
+    bool converges = true;              ///< auto: the three runs come closer to one another
+    bool knows_contacts = false;
+    std::vector<Touch> contacts;
+    std::string trouble;  ///< why there is none
+};
+
+Reference no_reference(std::size_t quantities, const std::string& why);
+
+/// A closed form by name ("parabola", "oscillator:stiffness=100").
+Result<Reference> exact_reference(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options,
+                                  const std::string& text);
+
+/// A CSV that plabd --trace or plab-study wrote: columns time, ID.field.x ... Rows are taken at the sample times.
+Result<Reference> file_reference(const std::vector<Quantity>& quantities, const std::vector<double>& times, const std::string& path);
+
+/// Three runs of one rung with dt, dt/2 and dt/4, extrapolated by Richardson:
+///   p = log2(|y1 - y2| / |y2 - y4|),   y = y4 + (y4 - y2)/(2^p - 1)
+/// with p the nearest whole number where it is near to one. The uncertainty is the size of that correction; where the three
+/// do not converge, or agree to round-off, it is their largest difference and nothing is extrapolated.
+Reference auto_reference(const std::vector<RunRecord>& coarse_to_fine, const std::string& rung, const std::string& dt);
+
+}  // namespace plab::study

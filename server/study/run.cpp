@@ -1,0 +1,178 @@
+#include "study/run.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/values.h"
+#include "study/observe.h"
+
+namespace plab::study
+{
+namespace
+{
+
+constexpr int kSamples = 200;
+/// The budget is looked at this often: a look costs less than a thousandth of the cheapest step.
+constexpr Tick kStepsPerLook = 16;
+
+/// The step boundary at t, to within a thousandth of a step.
+Tick tick_at(double t, double dt) { return static_cast<Tick>(std::floor(t / dt + 1e-3)); }
+
+std::vector<Tick> sample_ticks(const RunOptions& options, double dt)
+{
+    std::vector<Tick> out;
+    for (const double t : options.sample_times) out.push_back(tick_at(t, dt));
+    if (!out.empty()) return out;
+    const Tick last = std::max<Tick>(1, tick_at(options.until, dt));
+    const Tick stride = std::max<Tick>(1, last / kSamples);
+    for (Tick n = last % stride; n <= last; n += stride) out.push_back(n);
+    if (out.front() != 0) out.insert(out.begin(), 0);
+    return out;
+}
+
+std::string join(const Errors& errors)
+{
+    std::string out;
+    for (const Error& e : errors) out += (out.empty() ? "" : "; ") + e.text();
+    return out;
+}
+
+void post_swaps(simulation::Simulation& s, const std::vector<SwapAt>& swaps)
+{
+    for (const SwapAt& swap : swaps)
+    {
+        simulation::Request request;
+        request.operations.push_back(simulation::SwapOperation{swap.id, swap.type, {}});
+        request.at = swap.at;
+        s.post(std::move(request));
+    }
+}
+
+bool lost(const simulation::Simulation& s) { return !s.stepper().report().frozen.empty(); }
+
+/// The run that is recorded.
+class Recorder
+{
+public:
+    Recorder(simulation::Simulation& s, const RunOptions& options, RunRecord& out) : s_(s), options_(options), out_(out), observe_(s, out)
+    {
+    }
+
+    void go()
+    {
+        out_.dt = s_.dt();
+        post_swaps(s_, options_.swaps);
+        const std::vector<Tick> samples = sample_ticks(options_, s_.dt());
+        warm_ = samples.back() / 10;
+        const double begin = thread_cpu_seconds();
+        for (const Tick next : samples)
+        {
+            while (s_.tick() < next && out_.ok()) step(begin);
+            if (!out_.ok()) break;
+            observe_.sample();
+        }
+        out_.steps = s_.tick(), out_.reached = s_.time(), out_.hash = s_.state_hash();
+        observe_.finish();
+    }
+
+private:
+    void step(double begin)
+    {
+        const std::uint64_t before = options_.allocations ? options_.allocations() : 0;
+        const bool stepped = s_.step();
+        if (options_.allocations && s_.tick() > warm_) out_.allocations = out_.allocations.value_or(0) + options_.allocations() - before;
+        if (!stepped) return fail(Outcome::Frozen, "the scene was paused and did not step");
+        observe_.step();
+        for (simulation::Reply& reply : s_.take_replies()) out_.swaps.push_back(std::move(reply));
+        check();
+        if (s_.tick() % kStepsPerLook == 0 && thread_cpu_seconds() - begin > options_.budget)
+            fail(Outcome::TooSlow, "cut after " + std::to_string(options_.budget) + " s of CPU time");
+    }
+    void check()
+    {
+        if (lost(s_))
+            return fail(Outcome::NotFinite, "the state of " + s_.world().id_of(s_.stepper().report().frozen.front()) +
+                                                " was not finite any more at t = " + model::format_real(s_.time()) + " s");
+        for (const Event& e : s_.events())
+            if (e.severity == Severity::Failure)
+                return fail(Outcome::Quarantined,
+                            (e.component == kNoIndex ? std::string() : s_.world().id_of(e.component) + ": ") + e.kind + ": " + e.message);
+        if (!options_.floor) return;
+        const Bodies& bodies = s_.world().host().bodies;
+        for (const std::uint32_t i : s_.world().in_id_order())
+        {
+            const world::Component& c = s_.world().component(i);
+            if (c.facet != Facet::Body || !bodies.dynamic(c.host_index) || bodies.position[c.host_index].z >= *options_.floor) continue;
+            return fail(Outcome::FellThrough, c.id + " was below z = " + model::format_real(*options_.floor) +
+                                                  " m at t = " + model::format_real(s_.time()) + " s");
+        }
+    }
+    void fail(Outcome outcome, std::string why) { out_.outcome = outcome, out_.why = std::move(why); }
+
+    simulation::Simulation& s_;
+    const RunOptions& options_;
+    RunRecord& out_;
+    Observation observe_;
+    Tick warm_ = 0;
+};
+
+}  // namespace
+
+double thread_cpu_seconds()
+{
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+std::string_view name_of(Outcome outcome)
+{
+    constexpr std::string_view names[] = {"completed", "refused", "not finite", "component failed", "fell through", "too slow", "frozen"};
+    return names[static_cast<int>(outcome)];
+}
+
+RunRecord record_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options)
+{
+    RunRecord out;
+    out.dt = scene.settings.dt.seconds;
+    const auto refuse = [&](std::string why) { out.outcome = Outcome::Refused, out.why = std::move(why); };
+    simulation::Simulation s(types, 1);
+    if (auto loaded = s.load(scene); !loaded) return refuse(join(loaded.errors())), out;
+    for (const std::string& text : options.quantities)
+    {
+        auto quantity = resolve_quantity(s.world(), text);
+        if (!quantity) return refuse(quantity.error().reason), out;
+        out.courses.push_back({quantity->width, {}});
+        out.quantities.push_back(quantity.take());
+    }
+    Recorder(s, options, out).go();
+    return out;
+}
+
+Timing time_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options)
+{
+    Timing out;
+    simulation::Simulation s(types, 1);
+    if (!s.load(scene))
+    {
+        out.outcome = Outcome::Refused;
+        return out;
+    }
+    post_swaps(s, options.swaps);
+    const Tick last = sample_ticks(options, s.dt()).back();
+    const double begin = thread_cpu_seconds();
+    while (s.tick() < last && out.outcome == Outcome::Completed)
+    {
+        const Tick stop = std::min(last, s.tick() + kStepsPerLook);
+        while (s.tick() < stop && out.outcome == Outcome::Completed)
+            if (!s.step() || lost(s)) out.outcome = lost(s) ? Outcome::NotFinite : Outcome::Frozen;
+        if (out.outcome == Outcome::Completed && thread_cpu_seconds() - begin > options.budget) out.outcome = Outcome::TooSlow;
+    }
+    out.cpu = thread_cpu_seconds() - begin;
+    out.steps = s.tick(), out.reached = s.time();
+    return out;
+}
+
+}  // namespace plab::study

@@ -1,0 +1,236 @@
+#include "study/settings.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "model/text.h"
+#include "model/values.h"
+
+namespace plab::study
+{
+namespace
+{
+
+Error wrong(const Setting& s, const std::string& why) { return reason("'" + s.text() + "': " + why); }
+
+std::vector<std::string> split(std::string_view text, char separator)
+{
+    std::vector<std::string> out;
+    while (true)
+    {
+        const std::size_t at = text.find(separator);
+        out.emplace_back(model::trimmed(text.substr(0, at)));
+        if (at == std::string_view::npos) return out;
+        text.remove_prefix(at + 1);
+    }
+}
+
+model::ComponentSpec* find(model::SceneSpec& scene, const std::string& id)
+{
+    for (model::ComponentSpec& c : scene.components)
+        if (c.id == id) return c.alias_of.empty() ? &c : find(scene, c.alias_of);
+    return nullptr;
+}
+
+Error unknown_id(const model::SceneSpec& scene, const Setting& s, const std::string& id)
+{
+    std::vector<std::string> ids{"dt"};
+    for (const model::ComponentSpec& c : scene.components) ids.push_back(c.id);
+    return wrong(s, "no component has the id '" + id + "'" + model::did_you_mean(id, ids));
+}
+
+/// What the old type had and the new one knows as well stays; the rest takes the new type's defaults.
+Result<void> exchange(model::SceneSpec& scene, model::ComponentSpec& c, model::TypeSource& types, const Setting& s)
+{
+    auto old = types.require(c.type);
+    auto fresh = types.require(full_type_name(c.type, s.value));
+    if (!old || !fresh) return wrong(s, (old ? fresh : old).error().reason);
+    if (const std::string why = (*fresh)->why_not_exchangeable(**old); !why.empty())
+        return wrong(s, c.type + " cannot be exchanged for " + (*fresh)->info.name + ": " + why);
+    c.type = (*fresh)->info.name;
+    const Schema& schema = (*fresh)->schema;
+    std::erase_if(c.fields,
+                  [&](const model::FieldSpec& f)
+                  {
+                      const Field* field = schema.find_field(f.name);
+                      return !field || field->kind == FieldKind::Output || type_of(f.value) != field->type;
+                  });
+    std::erase_if(c.roles, [&](const model::RoleSpec& r) { return !schema.find_role(r.name); });
+    if (c.explicit_commands) std::erase_if(c.commands, [&](const std::string& name) { return (*fresh)->find_command(name) < 0; });
+    for (const Role& role : schema.roles())
+    {
+        const bool given = std::any_of(c.roles.begin(), c.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
+        if (!given && role.family == "Solver/" && scene.find(scene.settings.solver))
+            c.roles.push_back({role.name, {scene.settings.solver}, false, {}});
+    }
+    return {};
+}
+
+Result<void> set_parameter(model::ComponentSpec& c, model::TypeSource& types, const std::string& name, const Setting& s)
+{
+    auto type = types.require(c.type);
+    if (!type) return wrong(s, type.error().reason);
+    const std::size_t dot = name.find('.');
+    const Field* field = (*type)->schema.find_field(name.substr(0, dot));
+    if (!field || field->kind == FieldKind::Output || field->kind == FieldKind::Scratch)
+    {
+        std::vector<std::string> names;
+        for (const Field& f : (*type)->schema.fields())
+            if (f.kind == FieldKind::Param || f.kind == FieldKind::State) names.push_back(f.name);
+        return wrong(s, c.type + " has no parameter '" + name + "'" + model::did_you_mean(name, names));
+    }
+    Field numbers = *field;
+    if (dot != std::string::npos) numbers.type = FieldType::Real;
+    auto value = model::parse_value(s.value, numbers);
+    if (!value) return wrong(s, value.error().reason);
+    auto given = std::find_if(c.fields.begin(), c.fields.end(), [&](const model::FieldSpec& f) { return f.name == field->name; });
+    if (dot == std::string::npos)
+    {
+        if (given == c.fields.end())
+            c.fields.push_back({field->name, value.take(), {}});
+        else
+            given->value = value.take();
+        return {};
+    }
+    auto* entries = given == c.fields.end() ? nullptr : std::get_if<Entries>(&given->value);
+    if (entries)
+        for (Entry& e : *entries)
+            if (e.name == name.substr(dot + 1)) return e.value = std::get<double>(*value), Result<void>();
+    return wrong(s, c.id + " has no entry '" + name + "'");
+}
+
+Result<void> apply_one(model::SceneSpec& scene, model::TypeSource& types, const Setting& s)
+{
+    if (s.is_dt())
+    {
+        auto dt = model::parse_step_length(s.value);
+        if (!dt) return wrong(s, dt.error().reason);
+        scene.settings.dt = *dt;
+        return {};
+    }
+    if (model::ComponentSpec* c = find(scene, s.target))
+        return c->type.empty() ? Result<void>(wrong(s, s.target + " is a group and has no type")) : exchange(scene, *c, types, s);
+    for (std::size_t dot = s.target.rfind('.'); dot != std::string::npos && dot > 0; dot = s.target.rfind('.', dot - 1))
+        if (model::ComponentSpec* c = find(scene, s.target.substr(0, dot))) return set_parameter(*c, types, s.target.substr(dot + 1), s);
+    return unknown_id(scene, s, s.target);
+}
+
+/// "RungeKutta4" for the type of a component, "thickness 1 mm" for a parameter.
+std::string words_for(const Setting& s)
+{
+    const bool is_type = !s.value.empty() && model::is_upper(s.value[0]);
+    if (!is_type) return s.target.substr(s.target.rfind('.') + 1) + " " + s.value;
+    const std::size_t slash = s.value.find('/');
+    return slash == std::string::npos ? s.value : s.value.substr(slash + 1);
+}
+
+void add_setting(Combination& c, const Setting& s)
+{
+    c.settings.push_back(s);
+    if (s.is_dt())
+        c.dt = s.value;
+    else
+        c.rung += (c.rung.empty() ? "" : " + ") + words_for(s);
+}
+
+}  // namespace
+
+std::string full_type_name(const std::string& present_type, const std::string& written)
+{
+    if (written.find('/') != std::string::npos) return written;
+    return present_type.substr(0, present_type.rfind('/') + 1) + written;
+}
+
+Result<std::vector<Setting>> parse_vary(const std::string& text)
+{
+    const std::size_t equal = text.find('=');
+    if (equal == std::string::npos || equal == 0 || equal + 1 == text.size())
+        return reason("--vary wants ID=TypeA,TypeB, ID.param=v1,v2 or dt=1/30,1/60, not '" + text + "'");
+    std::vector<Setting> out;
+    for (std::string& value : split(std::string_view(text).substr(equal + 1), ','))
+    {
+        if (value.empty()) return reason("--vary: an empty value in '" + text + "'");
+        out.push_back({std::string(model::trimmed(text.substr(0, equal))), std::move(value)});
+    }
+    return out;
+}
+
+Result<Rung> parse_rung(const std::string& text)
+{
+    Rung out;
+    std::string_view rest = text;
+    if (const std::size_t colon = rest.find(':');
+        colon != std::string_view::npos && rest.substr(0, colon).find('=') == std::string_view::npos)
+        out.name = model::trimmed(rest.substr(0, colon)), rest.remove_prefix(colon + 1);
+    for (const std::string_view word : model::split_words(rest))
+    {
+        const std::size_t equal = word.find('=');
+        if (equal == std::string_view::npos || equal == 0 || equal + 1 == word.size())
+            return reason("--rung wants [NAME:] ID=Type ID.param=value ..., not '" + std::string(word) + "'");
+        out.settings.push_back({std::string(word.substr(0, equal)), std::string(word.substr(equal + 1))});
+    }
+    if (out.settings.empty() && out.name.empty()) return reason("--rung is empty: it wants [NAME:] ID=Type ID.param=value ...");
+    return out;
+}
+
+std::vector<Combination> combine(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied)
+{
+    std::vector<Combination> out;
+    for (const Rung& rung : rungs)
+    {
+        Combination c;
+        for (const Setting& s : rung.settings) add_setting(c, s);
+        if (!rung.name.empty()) c.rung = rung.name;
+        out.push_back(std::move(c));
+    }
+    if (out.empty()) out.emplace_back();
+    std::vector<const std::vector<Setting>*> order;
+    for (const auto& v : varied)
+        if (!v.front().is_dt()) order.push_back(&v);
+    for (const auto& v : varied)
+        if (v.front().is_dt()) order.push_back(&v);
+    for (const auto* choices : order)
+    {
+        std::vector<Combination> next;
+        for (const Combination& c : out)
+            for (const Setting& s : *choices)
+            {
+                next.push_back(c);
+                add_setting(next.back(), s);
+            }
+        out = std::move(next);
+    }
+    for (Combination& c : out)
+        if (c.rung.empty()) c.rung = "as written";
+    return out;
+}
+
+Result<model::SceneSpec> apply(const model::SceneSpec& scene, model::TypeSource& types, const std::vector<Setting>& settings)
+{
+    model::SceneSpec out = scene;
+    // Types first: a parameter may be one that only the new type has.
+    const auto is_type = [&](const Setting& s) { return !s.is_dt() && find(out, s.target) != nullptr; };
+    for (const bool wanted : {true, false})
+        for (const Setting& s : settings)
+            if (is_type(s) == wanted)
+                if (auto done = apply_one(out, types, s); !done) return done.errors();
+    return out;
+}
+
+Result<model::StepLength> common_instants(const std::vector<model::StepLength>& lengths)
+{
+    model::StepLength out = lengths.front();
+    for (const model::StepLength& l : lengths)
+    {
+        if (l.denominator == 0 || out.denominator == 0)
+            return reason("a step length is no fraction of whole numbers: write it as 1/240 or 0.001");
+        // lcm of a/b and c/d in lowest terms: lcm(a, c) / gcd(b, d).
+        const std::int64_t share = out.numerator / std::gcd(out.numerator, l.numerator);
+        if (__builtin_mul_overflow(share, l.numerator, &out.numerator)) return reason("the step lengths have no common instants");
+        out.denominator = std::gcd(out.denominator, l.denominator);
+        out.seconds = static_cast<double>(out.numerator) / static_cast<double>(out.denominator);
+    }
+    return out;
+}
+
+}  // namespace plab::study

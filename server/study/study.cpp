@@ -1,0 +1,297 @@
+#include "study/study.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "model/values.h"
+
+namespace plab::study
+{
+namespace
+{
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kMostSamples = 1000;
+
+/// The largest; NaN if one is.
+double worst(const std::vector<Distance>& errors, double Distance::*which)
+{
+    double out = errors.empty() ? kNaN : 0;
+    for (const Distance& e : errors) out = e.*which > out || std::isnan(e.*which) ? e.*which : out;
+    return out;
+}
+
+/// How far up its ladder a type stands: order first, then what it promises.
+int height_of(model::TypeSource& types, const std::string& name)
+{
+    const auto type = types.require(name);
+    if (!type) return -1;
+    const TypeInfo& info = (*type)->info;
+    return 100 * info.order + 4 * info.certifies + 2 * info.locates + info.local;
+}
+
+class Run
+{
+public:
+    Run(model::TypeSource& types, const Plan& plan) : types_(types), plan_(plan), options_(plan.run) {}
+    Result<StudyResult> go();
+
+private:
+    Result<void> prepare();
+    Result<void> choose_samples();
+    Result<void> choose_quantities();
+    Result<void> make_reference();
+    Result<void> make_auto();
+    const Combination& finest() const;
+    void record_all();
+    void time_all();
+    void judge(Point& point);
+    void tell(const std::string& what, double share);
+
+    model::TypeSource& types_;
+    const Plan& plan_;
+    RunOptions options_;
+    std::vector<Result<model::SceneSpec>> scenes_;
+    StudyResult out_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+void Run::tell(const std::string& what, double share)
+{
+    if (!plan_.progress) return;
+    const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    char text[64] = "";
+    if (share > 0.02 && passed > 1) std::snprintf(text, sizeof text, ", about %.0f s left", std::ceil(passed / share * (1 - share)));
+    plan_.progress(what + text);
+}
+
+Result<void> Run::prepare()
+{
+    if (plan_.combinations.empty()) return reason("there is no combination to study");
+    if (!(plan_.run.until > 0)) return reason("--until must be positive");
+    for (const Combination& c : plan_.combinations) scenes_.push_back(apply(plan_.scene, types_, c.settings));
+    if (auto chosen = choose_samples(); !chosen) return chosen;
+    return choose_quantities();
+}
+
+/// Instants that all step lengths share, at most kMostSamples of them, from the start to the last one.
+Result<void> Run::choose_samples()
+{
+    std::vector<model::StepLength> lengths;
+    for (const auto& scene : scenes_)
+        if (scene) lengths.push_back(scene->settings.dt);
+    if (lengths.empty()) return scenes_.front().errors();
+    const auto common = common_instants(lengths);
+    if (!common) return common.errors();
+    const auto last = static_cast<std::int64_t>(std::floor(plan_.run.until / common->seconds * (1 + 1e-12) + 1e-9));
+    if (last < 1)
+        return reason("the step lengths meet for the first time at t = " + model::format_real(common->seconds) +
+                      " s, after --until: choose lengths that divide one another, or a later end");
+    const std::int64_t stride = (last + kMostSamples - 1) / kMostSamples;
+    for (std::int64_t n = last % stride; n <= last; n += stride) options_.sample_times.push_back(common->at(n));
+    if (options_.sample_times.front() > 0) options_.sample_times.insert(options_.sample_times.begin(), 0.0);
+    out_.until = options_.until = options_.sample_times.back();
+    if (std::fabs(out_.until - plan_.run.until) > 1e-9 * plan_.run.until)
+        out_.notes.push_back("Compared up to t = " + model::format_real(out_.until) + " s, the last instant that all step lengths share.");
+    return {};
+}
+
+Result<void> Run::choose_quantities()
+{
+    for (const auto& scene : scenes_)
+    {
+        simulation::Simulation s(types_, 1);
+        if (!scene || !s.load(*scene)) continue;
+        if (options_.quantities.empty()) options_.quantities = default_quantities(s.world());
+        if (options_.quantities.empty()) return reason("nothing moves in the scene: name a quantity with --quantity ID.field");
+        for (const std::string& text : options_.quantities)
+        {
+            auto q = resolve_quantity(s.world(), text);
+            if (!q) return q.errors();
+            out_.quantities.push_back(q.take());
+        }
+        return {};
+    }
+    // No scene loads: each combination says why.
+    return {};
+}
+
+const Combination& Run::finest() const
+{
+    // In order: the highest types, then the shortest step, then the last in the list.
+    const Combination* best = nullptr;
+    std::pair<int, double> best_rank;
+    for (std::size_t i = 0; i < scenes_.size(); ++i)
+    {
+        if (!scenes_[i]) continue;
+        int height = 0;
+        for (const Setting& s : plan_.combinations[i].settings)
+            if (const auto* c = scenes_[i]->find(s.target)) height += height_of(types_, c->type);
+        const std::pair<int, double> rank{height, -scenes_[i]->settings.dt.seconds};
+        if (!best || rank >= best_rank) best = &plan_.combinations[i], best_rank = rank;
+    }
+    return *best;
+}
+
+Result<void> Run::make_auto()
+{
+    Combination chosen = finest();
+    double shortest = std::numeric_limits<double>::infinity();
+    model::StepLength dt;
+    for (const auto& scene : scenes_)
+        if (scene && scene->settings.dt.seconds < shortest) dt = scene->settings.dt, shortest = dt.seconds;
+    if (plan_.reference.rung) chosen = combine({*plan_.reference.rung}, {}).front();
+    auto scene = apply(plan_.scene, types_, chosen.settings);
+    if (!scene) return scene.errors();
+    if (plan_.reference.rung && !chosen.dt.empty()) dt = scene->settings.dt;
+    RunOptions options = options_;
+    options.budget = 20 * options_.budget;
+    std::vector<RunRecord> runs;
+    for (int i = 0; i < 3; ++i)
+    {
+        scene->settings.dt = dt;
+        scene->settings.dt.denominator = dt.denominator << i;
+        scene->settings.dt.seconds = dt.seconds / (1 << i);
+        tell("reference " + std::to_string(i + 1) + " of 3: " + chosen.rung, 0);
+        runs.push_back(record_run(types_, *scene, options));
+    }
+    out_.reference = auto_reference(runs, chosen.rung, model::format_real(dt.seconds));
+    return {};
+}
+
+Result<void> Run::make_reference()
+{
+    const std::size_t n = out_.quantities.size();
+    switch (plan_.reference.kind)
+    {
+        case ReferencePlan::Kind::None:
+            out_.reference = no_reference(n, "none was asked for");
+            break;
+        case ReferencePlan::Kind::Exact:
+        {
+            const auto scene = std::find_if(scenes_.begin(), scenes_.end(), [](const auto& s) { return s.ok(); });
+            auto made = exact_reference(types_, **scene, options_, plan_.reference.text);
+            if (!made) return made.errors();
+            out_.reference = made.take();
+            break;
+        }
+        case ReferencePlan::Kind::File:
+        {
+            auto made = file_reference(out_.quantities, options_.sample_times, plan_.reference.text);
+            if (!made) return made.errors();
+            out_.reference = made.take();
+            break;
+        }
+        case ReferencePlan::Kind::Auto:
+            if (auto made = make_auto(); !made) return made;
+    }
+    for (std::size_t k = 0; k < n; ++k)
+        if (const auto given = plan_.scales.find(out_.quantities[k].name); given != plan_.scales.end())
+            out_.reference.scale[k] = given->second;
+    return {};
+}
+
+/// The first run of each is the warm-up of the machine, and the one that is recorded.
+void Run::record_all()
+{
+    const double runs = static_cast<double>(scenes_.size() * (static_cast<std::size_t>(plan_.repeat) + 1));
+    for (std::size_t i = 0; i < scenes_.size(); ++i)
+    {
+        Point point;
+        point.combination = plan_.combinations[i];
+        tell("recording " + std::to_string(i + 1) + " of " + std::to_string(scenes_.size()) + ": " + point.combination.label(),
+             static_cast<double>(i) / runs);
+        if (scenes_[i])
+            point.record = record_run(types_, *scenes_[i], options_);
+        else
+            point.record.outcome = Outcome::Refused, point.record.why = scenes_[i].error().text();
+        out_.points.push_back(std::move(point));
+    }
+}
+
+void Run::time_all()
+{
+    const std::size_t n = scenes_.size();
+    std::vector<std::vector<double>> seconds(n);
+    for (int r = 0; r < plan_.repeat; ++r)
+        for (std::size_t k = 0; k < n; ++k)
+        {
+            // Rotated, so that nobody always runs after the same neighbour.
+            const std::size_t i = (k + static_cast<std::size_t>(r)) % n;
+            Point& point = out_.points[i];
+            if (point.record.outcome == Outcome::Refused || point.record.outcome == Outcome::TooSlow) continue;
+            tell("timing, round " + std::to_string(r + 1) + " of " + std::to_string(plan_.repeat) + ": " + point.combination.label(),
+                 static_cast<double>(n + static_cast<std::size_t>(r) * n + k) /
+                     static_cast<double>(n * (static_cast<std::size_t>(plan_.repeat) + 1)));
+            const Timing t = time_run(types_, *scenes_[i], options_);
+            if (t.outcome == Outcome::Completed || t.outcome == point.record.outcome) seconds[i].push_back(t.cpu);
+        }
+    for (std::size_t i = 0; i < n; ++i)
+    {
+        std::vector<double>& s = seconds[i];
+        Point& point = out_.points[i];
+        std::sort(s.begin(), s.end());
+        point.timed = static_cast<int>(s.size());
+        point.cpu_min = s.empty() ? kNaN : s.front();
+        point.cpu_median = s.empty() ? kNaN : s.size() % 2 == 1 ? s[s.size() / 2] : 0.5 * (s[s.size() / 2 - 1] + s[s.size() / 2]);
+    }
+}
+
+void Run::judge(Point& point)
+{
+    const RunRecord& record = point.record;
+    const Reference& reference = out_.reference;
+    for (std::size_t k = 0; k < out_.quantities.size(); ++k)
+    {
+        const bool known = reference.kind != "none" && k < record.courses.size();
+        Distance e{kNaN, kNaN, kNaN, kNaN};
+        if (known) e = distance(out_.quantities[k], record.courses[k], reference.courses[k], reference.scale[k]);
+        if (!record.ok()) e.last = e.last_absolute = kNaN;
+        point.errors.push_back(e);
+        point.resolved.push_back(!(e.series <= reference.uncertainty[k].series));
+    }
+    double drift = 0;
+    for (const double d : record.energy.drift) drift = std::fabs(d) > drift || std::isnan(d) ? std::fabs(d) : drift;
+    point.energy_drift = record.energy.scale > 0 ? drift / record.energy.scale : drift;
+    if (reference.knows_contacts && record.ok()) point.contacts = compare_contacts(record.contacts, reference.contacts);
+}
+
+Result<StudyResult> Run::go()
+{
+    if (auto fine = prepare(); !fine) return fine.errors();
+    if (auto made = make_reference(); !made) return made.errors();
+    record_all();
+    time_all();
+    for (Point& point : out_.points) judge(point);
+    out_.title = plan_.title.empty() ? (plan_.scene.settings.title.empty() ? plan_.scene.file : plan_.scene.settings.title) : plan_.title;
+    out_.scene_file = plan_.scene.file, out_.command = plan_.command, out_.repeat = plan_.repeat;
+    out_.machine = describe_machine();
+    out_.swaps = !plan_.run.swaps.empty();
+    return std::move(out_);
+}
+
+}  // namespace
+
+ReferencePlan parse_reference(const std::string& text)
+{
+    ReferencePlan out;
+    if (text == "auto") return out;
+    if (text == "none") return out.kind = ReferencePlan::Kind::None, out;
+    out.kind = text.starts_with("exact:") ? ReferencePlan::Kind::Exact : ReferencePlan::Kind::File;
+    out.text = text.starts_with("exact:") ? text.substr(6) : text;
+    return out;
+}
+
+double Point::error() const { return worst(errors, &Distance::series); }
+double Point::final_error() const { return worst(errors, &Distance::last); }
+bool Point::is_resolved() const
+{
+    return std::any_of(resolved.begin(), resolved.end(), [](bool b) { return b; });
+}
+
+double digits(double error) { return std::isnan(error) ? kNaN : std::clamp(-std::log10(error), 0.0, 16.0); }
+
+Result<StudyResult> run_study(model::TypeSource& types, const Plan& plan) { return Run(types, plan).go(); }
+
+}  // namespace plab::study

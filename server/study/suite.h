@@ -1,0 +1,45 @@
+/// A catalogue of studies, and what they say together: digits by problem and rung, and the performance profile.
+///
+/// JSON: {"studies": [{"name", "scene", "title", "vary": [..], "rungs": [..], "reference", "reference_rung", "quantities": [..],
+/// "until", "floor", "ladder"}]}, with the words of the command line; scenes are found beside the file.
+#pragma once
+
+#include "study/study.h"
+
+namespace plab::study
+{
+
+struct SuiteEntry
+{
+    std::string name, title, scene;  ///< scene: path
+    std::string ladder;              ///< studies of one ladder are looked at together; empty: those with the same rungs
+    std::vector<Rung> rungs;
+    std::vector<std::vector<Setting>> varied;
+    ReferencePlan reference;
+    std::vector<std::string> quantities;
+    double until = 1;
+    std::optional<double> floor;
+};
+struct Suite
+{
+    std::string file, title;
+    std::vector<SuiteEntry> entries;
+};
+Result<Suite> read_suite(const std::string& path);
+
+struct SuiteOptions
+{
+    int repeat = 3;
+    double budget = std::numeric_limits<double>::infinity();
+    double tolerance = 1e-6;
+    std::string command;
+    std::uint64_t (*allocations)() = nullptr;
+    std::function<void(const std::string&)> progress;
+};
+
+/// Each study in a folder of its own below `folder`, and report.html, suite.json, digits and profile in `folder`. The
+/// findings, in sentences. A study that cannot be made is listed as such.
+Result<std::vector<std::string>> run_suite(model::TypeSource& types, const Suite& suite, const SuiteOptions& options,
+                                           const std::string& folder);
+
+}  // namespace plab::study

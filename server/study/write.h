@@ -1,0 +1,26 @@
+/// What a study leaves behind in its folder: results.csv, results.json, the pictures, report.html.
+#pragma once
+
+#include <string>
+
+#include "study/study.h"
+
+namespace plab::study
+{
+
+/// One row per combination. Columns are described in server/docs/study.md.
+std::string results_csv(const StudyResult& result);
+/// The same and more; numbers with 17 significant digits, null where nothing is known.
+std::string results_json(const StudyResult& result);
+/// The reference's course as CSV: time and the quantities, to be used as --reference FILE.
+std::string course_csv(const StudyResult& result, const std::vector<double>& times, const std::vector<Course>& courses);
+/// One self-contained page: inline pictures, tables, plain words.
+std::string report_html(const StudyResult& result);
+/// What the numbers say, a sentence each; for the report and the terminal.
+std::vector<std::string> findings(const StudyResult& result);
+
+Result<void> write_file(const std::string& path, const std::string& text);
+/// All of it into a folder, which is made if need be.
+Result<void> write_all(const StudyResult& result, const std::string& folder);
+
+}  // namespace plab::study

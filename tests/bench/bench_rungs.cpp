@@ -1,0 +1,260 @@
+// What a step costs with each rung of the ladders, in small standard scenes: a Markdown table on standard output.
+//
+//   build/bin/bench_rungs [FAMILY ...]     families as types begin: Solver Resolution Response Manager Constraint (default: all)
+//
+// Types come from the registry, so a new rung appears by itself. The figure is the least mean of five runs, microseconds per step
+// of 1/240 s, one thread, no bus.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "blueprint/reader.h"
+#include "model/compile.h"
+#include "plugins/library.h"
+#include "simulation/clock.h"
+#include "simulation/simulation.h"
+
+using namespace plab;
+
+namespace
+{
+
+constexpr int kRuns = 5;
+constexpr int kSteps = 1200;  // 5 s
+
+plugins::PluginLibrary& library()
+{
+    static plugins::PluginLibrary instance({PLAB_BINARY_DIR "/lib/plab"});
+    return instance;
+}
+
+Result<std::unique_ptr<simulation::Simulation>> load(const std::string& text)
+{
+    const auto blueprint = blueprint::read_blueprint(text, "rung.xml");
+    if (!blueprint) return blueprint.errors();
+    const auto scene = model::compile(*blueprint, library());
+    if (!scene) return scene.errors();
+    auto simulation = std::make_unique<simulation::Simulation>(library());
+    if (auto loaded = simulation->load(*scene); !loaded) return loaded.errors();
+    return simulation;
+}
+
+/// us per step.
+Result<double> cost_of(const std::string& text)
+{
+    double least = 1e300;
+    for (int run = 0; run < kRuns; ++run)
+    {
+        auto simulation = load(text);
+        if (!simulation) return simulation.errors();
+        const std::uint64_t before = simulation::now_ns();
+        for (int i = 0; i < kSteps; ++i) (*simulation)->step();
+        least = std::min(least, static_cast<double>(simulation::now_ns() - before) * 1e-3 / kSteps);
+    }
+    return least;
+}
+
+std::string cell_of(const Result<double>& cost)
+{
+    if (!cost)
+    {
+        std::string why = cost.error().reason.substr(0, 90);
+        std::replace(why.begin(), why.end(), '|', '/');
+        return why;
+    }
+    char text[32];
+    std::snprintf(text, sizeof text, *cost < 10 ? "%.2f" : "%.1f", *cost);
+    return text;
+}
+
+// Scenes ---------------------------------------------------------------------------------------------------------------
+
+const std::string kGravity = "<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\"/>";
+
+std::string scene(const std::string& body, const std::string& settings = "")
+{
+    return "<plab version=\"1\"><scene dt=\"1/240\" " + settings + "/>" + body + "</plab>";
+}
+
+std::string body(const std::string& id, const std::string& where, const std::string& more = "")
+{
+    return "<component id=\"" + id + "\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 2 3\" position=\"" + where + "\" " + more + "/>";
+}
+
+std::string cubes_on_ground(int n)
+{
+    std::string out =
+        "<component id=\"plane\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"plane\"/>"
+        "<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.5 0.5 0.5\"/>";
+    for (int i = 0; i < n; ++i)
+        out += "<component id=\"cube" + std::to_string(i) + "\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"0 0 " +
+               std::to_string(i) + ".5\"/>";
+    return out + kGravity;
+}
+
+std::string contact(const std::string& more) { return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" " + more + "/>"; }
+
+std::string free_body(const std::string& solver)
+{
+    return scene(body("top", "0 0 0", "angular_velocity=\"0.1 5 0.1\"") + kGravity, "solver=\"" + solver + "\"");
+}
+
+std::string swinging_chain(const std::string& solver)
+{
+    return scene(body("a", "0.5 0 0") + body("b", "1.5 0 0") + body("c", "2.5 0 0") +
+                     "<component id=\"j1\" type=\"Constraint/Hinge\" b=\"a\" anchor=\"0 0 0\" axis=\"0 1 0\"/>"
+                     "<component id=\"j2\" type=\"Constraint/Hinge\" a=\"a\" b=\"b\" anchor=\"1 0 0\" axis=\"0 1 0\"/>"
+                     "<component id=\"j3\" type=\"Constraint/Hinge\" a=\"b\" b=\"c\" anchor=\"2 0 0\" axis=\"0 1 0\"/>" +
+                     kGravity,
+                 "solver=\"" + solver + "\"");
+}
+
+std::string bouncing_ball(const std::string& resolution, const std::string& response)
+{
+    return scene(
+        "<component id=\"plane\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"plane\"/>"
+        "<component id=\"form\" type=\"Shape/Sphere\" radius=\"0.1\"/>"
+        "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"form\" position=\"0 0 1.1\"/>" +
+        kGravity + contact("resolution=\"" + resolution + "\" response=\"" + response + "\" response.restitution=\"1\""));
+}
+
+// Families -------------------------------------------------------------------------------------------------------------
+
+struct Rung
+{
+    std::string name;
+    const model::ComponentType* type = nullptr;
+};
+
+std::vector<Rung> rungs_of(const std::string& family)
+{
+    std::vector<Rung> out;
+    for (const std::string& name : library().names())
+    {
+        if (name.rfind(family + "/", 0) != 0) continue;
+        if (const auto type = library().require(name)) out.push_back({name, *type});
+    }
+    return out;
+}
+
+void print_head(const std::string& family, const std::vector<std::string>& columns)
+{
+    std::printf("\n### %s\n\n| type | order |", family.c_str());
+    for (const std::string& c : columns) std::printf(" %s |", c.c_str());
+    std::printf(" declared cost |\n|---|---:|");
+    for (std::size_t i = 0; i < columns.size(); ++i) std::printf("---:|");
+    std::printf("---|\n");
+}
+
+void print_row(const Rung& rung, const std::vector<std::string>& cells)
+{
+    const TypeInfo& info = rung.type->info;
+    std::printf("| `%s` | %s |", rung.name.c_str(), info.order > 0 ? std::to_string(info.order).c_str() : "");
+    for (const std::string& c : cells) std::printf(" %s |", c.c_str());
+    std::printf(" %s |\n", info.cost.c_str());
+    std::fflush(stdout);
+}
+
+void solvers()
+{
+    print_head("Solver", {"free body, us", "3 hinged bodies, us"});
+    for (const Rung& r : rungs_of("Solver")) print_row(r, {cell_of(cost_of(free_body(r.name))), cell_of(cost_of(swinging_chain(r.name)))});
+}
+
+void resolutions()
+{
+    print_head("Resolution", {"ball, 5 bounces in 1200 steps, us"});
+    for (const Rung& r : rungs_of("Resolution"))
+        print_row(r, {cell_of(cost_of(bouncing_ball(r.name, r.type->info.speculates ? "Response/Rows" : "Response/Impulse")))});
+}
+
+void responses()
+{
+    print_head("Response", {"cube at rest, us"});
+    for (const Rung& r : rungs_of("Response"))
+        print_row(r, {cell_of(cost_of(scene(cubes_on_ground(1) + contact("response=\"" + r.name + "\""))))});
+}
+
+void managers()
+{
+    print_head("Manager", {"5 cubes stacked, us", "20 cubes stacked, us"});
+    for (const Rung& r : rungs_of("Manager"))
+    {
+        const auto stack = [&r](int n)
+        {
+            return scene(cubes_on_ground(n) + "<component id=\"manager\" type=\"" + r.name + "\"/>" +
+                         "<component id=\"contact.response\" type=\"Response/Rows\" manager=\"manager\" friction=\"0.8\"/>" + contact(""));
+        };
+        print_row(r, {cell_of(cost_of(stack(5))), cell_of(cost_of(stack(20)))});
+    }
+}
+
+/// Something that a parameter without default may be.
+std::string some_value(const Field& field)
+{
+    for (const Rule& rule : field.rules)
+        if (rule.kind == Rule::Kind::OneOf) return rule.options.front();
+    return field.type == FieldType::Vector ? "0 1 0" : "1";
+}
+
+/// Who a role takes: bodies or shafts in turn.
+std::string some_participants(const Role& role, std::size_t& next)
+{
+    const bool shafts = std::count(role.facets.begin(), role.facets.end(), Facet::Body) == 0;
+    const std::size_t n = std::max<std::size_t>(role.max > 1 ? 2 : 1, role.min);
+    std::string out;
+    for (std::size_t i = 0; i < n; ++i) out += (i > 0 ? " " : "") + std::string(shafts ? "shaft" : "body") + std::to_string(next++ % 3);
+    return out;
+}
+
+std::string constraint_scene(const model::ComponentType* type)
+{
+    std::string out = kGravity;
+    for (int i = 0; i < 3; ++i)
+    {
+        const std::string n = std::to_string(i);
+        out +=
+            body("body" + n, n + " 0 0") + "<component id=\"shaft" + n + "\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"0\"/>";
+    }
+    if (type == nullptr) return scene(out);
+    std::size_t next = 0;
+    out += "<component id=\"rung\" type=\"" + type->info.name + "\"";
+    for (const Role& role : type->schema.roles())
+    {
+        const bool objects =
+            std::any_of(role.facets.begin(), role.facets.end(), [](Facet f) { return f == Facet::Body || f == Facet::Shaft; });
+        if (objects) out += " " + role.name + "=\"" + some_participants(role, next) + "\"";
+    }
+    for (const Field& field : type->schema.fields())
+        if (field.required && field.kind == FieldKind::Param) out += " " + field.name + "=\"" + some_value(field) + "\"";
+    return scene(out + "/>");
+}
+
+void constraints()
+{
+    const auto without = cost_of(constraint_scene(nullptr));
+    print_head("Constraint", {"3 free bodies and shafts with it, us", "more than without, us"});
+    for (const Rung& r : rungs_of("Constraint"))
+    {
+        const auto with = cost_of(constraint_scene(r.type));
+        print_row(r, {cell_of(with), with && without ? cell_of(*with - *without) : ""});
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    struct Family
+    {
+        const char* name;
+        void (*print)();
+    };
+    const std::vector<std::string> wanted(argv + 1, argv + argc);
+    for (const Family& f : {Family{"Solver", solvers}, Family{"Resolution", resolutions}, Family{"Response", responses},
+                            Family{"Manager", managers}, Family{"Constraint", constraints}})
+        if (wanted.empty() || std::count(wanted.begin(), wanted.end(), f.name) > 0) f.print();
+    return 0;
+}

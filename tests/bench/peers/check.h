@@ -1,0 +1,21 @@
+/// Known figures of the peers, which adapters and metrics have to reach.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace plab::peers
+{
+
+struct Checked
+{
+    std::string run, metric;
+    double known = 0, measured = 0;
+    bool good = false;
+};
+
+/// Reaches known figures that do not depend on the machine: closed forms of first-order methods, and what the peers showed in
+/// measurements made with other programs. Also that the reference of case a does not change when its step is halved.
+std::vector<Checked> check_adapters();
+
+}  // namespace plab::peers

@@ -1,0 +1,71 @@
+/// Scenes of impacts, from blueprint text.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "support/scene.h"
+
+namespace plab::test
+{
+
+inline const char* const kGround =
+    "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>";
+
+inline std::string number(double x)
+{
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", x);
+    return text;
+}
+inline std::string numbers(const Vec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
+
+inline std::string sphere(const std::string& id, double radius, const std::string& attributes, const char* state = "RigidBody")
+{
+    return "<component id=\"" + id + ".shape\" type=\"Shape/Sphere\" radius=\"" + number(radius) + "\"/><component id=\"" + id +
+           "\" type=\"State/" + state + "\" shape=\"" + id + ".shape\" " + attributes + "/>";
+}
+inline std::string box(const std::string& id, const Vec3& half, const std::string& attributes, const char* state = "RigidBody")
+{
+    return "<component id=\"" + id + ".shape\" type=\"Shape/Box\" half_extents=\"" + numbers(half) + "\"/><component id=\"" + id +
+           "\" type=\"State/" + state + "\" shape=\"" + id + ".shape\" " + attributes + "/>";
+}
+inline std::string at(const Vec3& p, const Vec3& v = {}, double mass = 1)
+{
+    return "mass=\"" + number(mass) + "\" position=\"" + numbers(p) + "\" linear_velocity=\"" + numbers(v) + "\"";
+}
+inline std::string gravity(const std::string& between)
+{
+    return "<component id=\"g\" type=\"Field/Gravity\" between=\"" + between + "\"/>";
+}
+inline std::string contact(const std::string& between, const std::string& resolution, const std::string& restitution,
+                           const std::string& more = "")
+{
+    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + resolution +
+           "\" response=\"Response/Impulse\" response.restitution=\"" + restitution + "\" " + more + "/>";
+}
+inline std::string sensor(const std::string& between, const std::string& resolution, const std::string& against = "")
+{
+    const std::string others = against.empty() ? "" : "\" against=\"" + against;
+    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + others + "\" resolution=\"Resolution/" + resolution +
+           "\" response=\"Response/None\"/>";
+}
+
+inline std::vector<Event> events_of(const Scene& s, const char* kind)
+{
+    std::vector<Event> out;
+    for (const Event& e : s.events)
+        if (e.kind == kind) out.push_back(e);
+    return out;
+}
+inline double energy(const Scene& s)
+{
+    const auto& host = s.simulation().world().host();
+    double sum = 0;
+    for (std::uint32_t b = 0; b < host.bodies.size(); ++b)
+        if (host.bodies.dynamic(b)) sum += host.bodies.kinetic_energy(b) + 9.81 * host.bodies.mass[b] * host.bodies.position[b].z;
+    return sum;
+}
+
+}  // namespace plab::test

@@ -1,0 +1,171 @@
+// Many impacts: their number, their order and what they leave. C4 to C9 and C13 as in the catalogue.
+#include <algorithm>
+
+#include "impacts.h"
+
+using namespace plab;
+using namespace plab::test;
+
+TEST_CASE("C4: 49 elastic balls keep their energy and their heights at dt = 0.01")
+{
+    std::string balls, all;
+    for (int i = 0; i < 49; ++i)
+    {
+        const std::string id = "b" + std::to_string(100 + i);
+        balls += sphere(id, 0.1, at({0.5 * (i % 7), 0.5 * (i / 7), 5.1 + 0.01 * i}, {}, 10));
+        all += id + " ";
+    }
+    Scene s(kGround + balls + gravity(all) + contact(all, "LocalRoot", "1", "against=\"ground\""), "dt=\"0.01\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    const double e0 = energy(s);
+    double worst = 0, worst_height = 0;
+    for (int i = 0; i < 2000; ++i)
+    {
+        s.step();
+        worst = std::max(worst, std::fabs(energy(s) / e0 - 1));
+        const double h = 5, fall = std::sqrt(2 * h / 9.81), phase = std::fmod(s.simulation().time() + fall, 2 * fall) - fall;
+        worst_height = std::max(worst_height, std::fabs(s.vec("b100", "position").z - 0.1 - (h - 0.5 * 9.81 * phase * phase)));
+    }
+    CHECK(worst < 1e-12);
+    CHECK(worst_height < 1e-9);
+}
+
+TEST_CASE("C5: bounces that lose speed end at the sum of their series, in few events")
+{
+    struct Case
+    {
+        std::string e;
+        double rest;
+        int most;  ///< impacts in one step
+    };
+    for (const Case& c : {Case{"0.5", 1.35457092295719271, 60}, Case{"0.9", 8.57894917872888718, 60}, Case{"0.99", 89.85320455616045, 600}})
+    {
+        CAPTURE(c.e);
+        Scene s(kGround + sphere("a", 0.1, at({0, 0, 1.1})) + gravity("a") + contact("a ground", "LocalRoot", c.e), "dt=\"1/60\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true;
+        int most = 0;
+        while (s.simulation().time() < c.rest + 0.5)
+        {
+            const std::size_t before = s.count("contact.impact");
+            s.step();
+            most = std::max(most, static_cast<int>(s.count("contact.impact") - before));
+        }
+        const auto rests = events_of(s, "contact.rest");
+        REQUIRE(rests.size() == 1);
+        CHECK(std::fabs(rests[0].time - c.rest) < 1e-6);
+        CHECK(s.count("contact.zeno") == 1);
+        CHECK(most <= c.most);
+        CHECK(std::fabs(s.vec("a", "position").z - 0.1) < 1e-12);
+        CHECK(length(s.vec("a", "linear_velocity")) < 1e-12);
+        MESSAGE("e = ", c.e, ": ", s.count("contact.impact"), " impacts, at most ", most, " in a step, rest off by ",
+                rests[0].time - c.rest);
+    }
+}
+
+TEST_CASE("C6: Galperin's balls count the digits of pi, whatever happens within one step")
+{
+    int k = 0;
+    for (const std::size_t digits : {3u, 31u, 314u, 3141u})
+    {
+        CAPTURE(k);
+        Scene s("<component id=\"wall.shape\" type=\"Shape/Plane\"/><component id=\"wall\" type=\"State/Static\" shape=\"wall.shape\"/>" +
+                    sphere("light", 0.5, at({0, 0, 1.5})) + sphere("heavy", 0.5, at({0, 0, 3}, {0, 0, -0.1}, std::pow(100.0, k))) +
+                    contact("light heavy wall", "LocalRoot", "1"),
+                "dt=\"0.1\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true;
+        s.run(600);  // the last ones nearly move along with one another
+        CHECK(s.count("contact.impact") == digits);
+        ++k;
+    }
+}
+
+TEST_CASE("C8: Newton's cradle with gaps: k in, k out")
+{
+    for (const double gap : {1e-6, 1e-9})
+        for (int k = 1; k <= 3; ++k)
+        {
+            CAPTURE(gap);
+            CAPTURE(k);
+            std::string balls, all;
+            for (int i = 0; i < 5; ++i)
+            {
+                const std::string id = "b" + std::to_string(i);
+                const bool comes = i < k;
+                balls += sphere(id, 0.1, at({i * (0.2 + gap) - (comes ? 0.1 : 0), 0, 0}, {comes ? 1.0 : 0.0, 0, 0}));
+                all += id + " ";
+            }
+            Scene s(balls + contact(all, "LocalRoot", "1"), "dt=\"1/60\"");
+            REQUIRE_MESSAGE(s.loaded(), s.error());
+            s.run(0.5);
+            for (int i = 0; i < 5; ++i)
+                CHECK(std::fabs(s.vec("b" + std::to_string(i), "linear_velocity").x - (i >= 5 - k ? 1 : 0)) < 1e-10);
+        }
+}
+
+TEST_CASE("C9: Galileo's cannon: the small ball leaves with (3M - m)/(M + m) of the speed")
+{
+    Scene s(kGround + sphere("big", 0.1, at({0, 0, 1.1}, {}, 1)) + sphere("small", 0.05, at({0, 0, 1.251}, {}, 0.1)) +
+                gravity("big small") + contact("big small ground", "LocalRoot", "1"),
+            "dt=\"1/60\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.keep_events = true;
+    while (s.count("contact.impact") < 2 && s.simulation().time() < 1) s.step();
+    const auto impacts = events_of(s, "contact.impact");
+    REQUIRE(impacts.size() >= 2);
+    // The big one turns at t1, and meets the small one, a gap of 1 mm above it, at t2; both fall alike.
+    const double g = 9.81, v = std::sqrt(2 * g), t1 = v / g, t2 = t1 + 1e-3 / (2 * v);
+    CHECK(std::fabs(impacts[0].time - t1) < 1e-13);
+    CHECK(std::fabs(impacts[1].time - t2) < 1e-13);
+    const double up = v - g * (t2 - t1), down = -g * t2, M = 1, m = 0.1;
+    const double after = (m * down + M * up + M * (up - down)) / (M + m);
+    CHECK(near(s.vec("small", "linear_velocity").z, after - g * (s.simulation().time() - t2), 1e-12));
+}
+
+namespace
+{
+/// Cue ball into a rack of 15, along its axis; ids run through `rank`. Returns final velocities by place.
+std::vector<Vec3> break_rack(const std::vector<int>& rank, double gap)
+{
+    std::string balls, all;
+    std::vector<std::string> ids;
+    const double d = 0.1 + gap;
+    for (int row = 0, n = 0; row < 5; ++row)
+        for (int i = 0; i <= row; ++i, ++n)
+        {
+            ids.push_back("b" + std::to_string(100 + rank[static_cast<std::size_t>(n)]));
+            balls += sphere(ids.back(), 0.05, at({row * d * std::sqrt(0.75), (i - 0.5 * row) * d, 0}));
+            all += ids.back() + " ";
+        }
+    balls += sphere("cue", 0.05, at({-0.5, 0, 0}, {10, 0, 0}));
+    Scene s(balls + contact(all + "cue", "LocalRoot", "1"), "dt=\"1/60\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(0.5);
+    std::vector<Vec3> out;
+    for (const std::string& id : ids) out.push_back(s.vec(id, "linear_velocity"));
+    return out;
+}
+}  // namespace
+
+TEST_CASE("C13: a rack breaks as symmetric as it stands, whatever the ids")
+{
+    std::vector<int> straight, mixed;
+    for (int i = 0; i < 15; ++i) straight.push_back(i), mixed.push_back((i * 7 + 3) % 15);
+    for (const double gap : {0.0, 1e-4})
+    {
+        CAPTURE(gap);
+        const std::vector<Vec3> v = break_rack(straight, gap), w = break_rack(mixed, gap);
+        double worst = 0, other = 0, energy_sum = 0;
+        for (int row = 0, first = 0; row < 5; first += ++row)
+            for (int i = 0; i <= row; ++i)
+            {
+                const Vec3 &a = v[static_cast<std::size_t>(first + i)], &b = v[static_cast<std::size_t>(first + row - i)];
+                worst = std::max({worst, std::fabs(a.x - b.x), std::fabs(a.y + b.y)});
+            }
+        for (std::size_t i = 0; i < v.size(); ++i) other = std::max(other, length(v[i] - w[i])), energy_sum += length_squared(v[i]);
+        CHECK(worst < 1e-12);
+        CHECK(other < 1e-12);
+        CHECK(energy_sum > 50);
+    }
+}

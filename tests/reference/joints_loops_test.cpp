@@ -1,0 +1,93 @@
+// Closed loops of joints: singular, redundant and contradictory ones (catalogue: E2, E3, E4, E8).
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "support/joints.h"
+#include "support/linkages.h"
+
+using namespace plab;
+using namespace plab::test;
+
+TEST_CASE("E2: two four-bars go through their singular configuration on the right branch")
+{
+    Scene s(four_bars(2), dt(2000));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(10);
+    const Vec3 at10 = top_of(s);
+    MESSAGE("N=2 t=10: ", at10.x - .328458111540815379, " ", at10.z - .944518538178600962);
+    CHECK(std::fabs(at10.x - .328458111540815379) < 1e-8);
+    CHECK(std::fabs(at10.z - .944518538178600962) < 1e-8);
+    for (int i = 0; i < 2; ++i) CHECK(s.real("r" + number(i), "position_error") < 1e-12);
+}
+
+TEST_CASE("E4: a four-bar follows Freudenstein's equation")
+{
+    // Crank .2, coupler .5, rocker .4, ground .5; the crank is turned at 1 rev/s.
+    constexpr double a = .2, b = .5, c = .4, d = .5;
+    const auto rocker_at = [](double crank)
+    {
+        // The circle of b about the crank's end meets that of c about the other foot, above the ground.
+        const double x = a * std::cos(crank), z = a * std::sin(crank), dx = d - x, dz = -z, r2 = dx * dx + dz * dz, r = std::sqrt(r2);
+        const double along = (b * b - c * c + r2) / (2 * r), up = std::sqrt(b * b - along * along);
+        return Vec3{x + along * dx / r - up * dz / r, 0, z + along * dz / r + up * dx / r};
+    };
+    const Vec3 p = rocker_at(0);
+    const auto link = [](const std::string& id, const Vec3& from, const Vec3& to) {
+        return body(id, 1, {.01, .01, .01}, 0.5 * (from + to));
+    };
+    Scene s(solver_is("RungeKutta4") + gravity() + link("crank", {0, 0, 0}, {a, 0, 0}) + link("coupler", {a, 0, 0}, p) +
+                link("rocker", {d, 0, 0}, p) + hinge("j1", "", "crank", {0, 0, 0}, "0 -1 0") + hinge("j2", "crank", "coupler", {a, 0, 0}) +
+                hinge("j3", "coupler", "rocker", p) + hinge("j4", "", "rocker", {d, 0, 0}) +
+                joint("m", "Motor", "", "crank", "axis='0 -1 0' speed='" + text(2 * std::numbers::pi) + "'"),
+            dt(240));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    double worst = 0;
+    for (int i = 1; i <= 3 * 240; ++i)
+    {
+        s.step();
+        const double crank = 2 * std::numbers::pi * i / 240;
+        // The middle of the rocker is half way up to its end.
+        worst = std::fmax(worst, length(2 * s.vec("rocker", "position") - Vec3{d, 0, 0} - rocker_at(crank)));
+    }
+    MESSAGE("worst place of the rocker's end: ", worst);
+    CHECK(worst < 1e-9);
+    CHECK(near(s.real("j1", "angle"), 6 * std::numbers::pi, 1e-9));
+    // The loop lies in a plane: three of its rows say nothing new.
+    double redundant = 0;
+    for (const char* j : {"j1", "j2", "j3", "j4", "m"}) redundant += static_cast<double>(std::get<std::int64_t>(s.get(j, "redundant")));
+    CHECK(redundant == 3);
+}
+
+TEST_CASE("E8: pins too far apart share the error, and say so")
+{
+    // A body with arms of 0.9 m between pins 2 m apart.
+    Scene s(solver_is("RungeKutta4") + gravity() + body("rod", 1, {.1, .3, .3}, {0, 0, 0}) +
+                joint("left", "Ball", "", "rod", "anchor_a='-1 0 0' anchor_b='-0.9 0 0'") +
+                joint("right", "Ball", "", "rod", "anchor_a='1 0 0' anchor_b='0.9 0 0'"),
+            dt(240));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = s.keep_events = true;
+    s.run(5);
+    CHECK(near(s.real("left", "position_error"), .1, 1e-6));
+    CHECK(near(s.real("right", "position_error"), .1, 1e-6));
+    CHECK(length(s.vec("rod", "position")) < 1e-6);
+    CHECK(length(s.vec("rod", "linear_velocity")) < 1e-6);
+    CHECK(s.count("constraint.contradiction") == 2);
+    for (const Event& e : s.events)
+    {
+        const bool left = e.component == s.simulation().world().find("left");
+        CHECK(e.message.find(left ? "right" : "left") != std::string::npos);
+    }
+}
+
+TEST_CASE("E3: Bricard's linkage moves though a count of its rows says it cannot")
+{
+    const BricardRun coarse = run_bricard(500, 3), fine = run_bricard(1000, 3);
+    MESSAGE("drift of energy ", coarse.drift, " ", fine.drift, " of ", fine.kinetic, " J");
+    CHECK(fine.kinetic > 4);
+    CHECK(fine.drift < 1e-6 * fine.kinetic);
+    CHECK(std::log2(coarse.drift / fine.drift) > 3);
+    CHECK(fine.error < 1e-13);
+    CHECK(fine.redundant == 1);  // 30 rows, 30 degrees of freedom, and it moves
+}

@@ -1,0 +1,195 @@
+// The real program in a process of its own.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "support/process.h"
+
+using namespace plab::test;
+
+namespace
+{
+
+const std::string kFolder = std::string(PLAB_BINARY_DIR) + "/study_test";
+
+std::string folder(const std::string& name)
+{
+    const std::string out = kFolder + "/" + name;
+    std::filesystem::remove_all(out);
+    return out;
+}
+
+Outcome study(std::vector<std::string> arguments)
+{
+    arguments.insert(arguments.begin(), program("plab-study"));
+    return run(std::move(arguments), Milliseconds(60000));
+}
+
+std::string read(const std::string& file)
+{
+    std::ifstream in(file);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+nlohmann::json results(const std::string& where) { return nlohmann::json::parse(read(where + "/results.json")); }
+
+}  // namespace
+
+TEST_CASE("a study writes its report, tables and pictures, and says what it found")
+{
+    const std::string where = folder("box");
+    const Outcome done = study({scene_file("studies/free_box.xml"), "--vary", "solver=SemiImplicitEuler,RungeKutta4", "--vary",
+                                "dt=1/50,1/100", "--reference", "exact:torque-free", "--quantity", "box.orientation", "--quantity",
+                                "box.angular_velocity", "--until", "2", "--repeat", "2", "-o", where});
+    REQUIRE_MESSAGE(done.code == 0, done.errors);
+    CHECK(has(done.output, "RungeKutta4 at 1/100 s is the most accurate"));
+    CHECK(has(done.errors, "timing, round 2 of 2"));
+    for (const char* file : {"report.html", "results.csv", "results.json", "reference.csv", "work-precision.svg", "work-precision.png",
+                             "convergence.svg", "convergence.png", "energy.svg", "digits.svg", "digits.png"})
+        CHECK_MESSAGE(std::filesystem::file_size(where + "/" + file) > 100, file);
+    const auto json = results(where);
+    CHECK(json["schema"] == "plab-study 1");
+    REQUIRE(json["points"].size() == 4);
+    const auto& best = json["points"][3];
+    CHECK(best["settings"]["solver"] == "RungeKutta4");
+    CHECK(best["errors"]["box.orientation"]["series"] < 1e-6);
+    CHECK(best["outcome"] == "completed");
+    CHECK(best["allocations"] == 0);
+    CHECK(best["evaluations"] == 4 * 200);
+    CHECK(best["hash"].get<std::string>().size() == 16);
+    CHECK(best["cpu"]["min"] > 0);
+    CHECK(best["cpu"]["median"] >= best["cpu"]["min"]);
+    CHECK(best["angular_momentum_change"] == 0);
+    const auto order = std::log2(json["points"][2]["error"].get<double>() / best["error"].get<double>());
+    CHECK(order == doctest::Approx(4).epsilon(0.1));
+}
+
+TEST_CASE("two runs of the same study give the same errors and hashes")
+{
+    std::string first;
+    for (const char* name : {"once", "again"})
+    {
+        const std::string where = folder(name);
+        const Outcome done = study({scene_file("fan_and_balloons.xml"), "--vary", "gears=Graph,Impulse", "--vary", "dt=1/60,1/120",
+                                    "--until", "2", "--quantity", "red.position", "--repeat", "1", "--quiet", "-o", where});
+        REQUIRE_MESSAGE(done.code == 0, done.errors);
+        CHECK(done.errors.empty());
+        std::string figures;
+        for (const auto& p : results(where)["points"]) figures += p["hash"].dump() + p["error"].dump() + " ";
+        if (first.empty()) first = figures;
+        CHECK(figures == first);
+    }
+}
+
+TEST_CASE("a run that fails is a result; one that cannot be made is named")
+{
+    const std::string where = folder("failures");
+    const Outcome done =
+        study({scene_file("studies/bounce.xml"), "--vary", "contact.response=Impulse,None", "--vary", "contact.response.restitution=0.5",
+               "--vary", "dt=1/60", "--floor", "-1", "--until", "2", "--reference", "none", "--quiet", "--repeat", "1", "-o", where});
+    REQUIRE_MESSAGE(done.code == 0, done.errors);
+    const auto points = results(where)["points"];
+    CHECK(points[0]["outcome"] == "completed");
+    CHECK(points[1]["outcome"] == "refused");
+    CHECK(has(points[1]["why"], "restitution"));
+    const std::string through = folder("through");
+    REQUIRE(study({scene_file("studies/bounce.xml"), "--vary", "contact.response=Impulse,None", "--floor", "-1", "--until", "2",
+                   "--reference", "none", "--quiet", "--repeat", "1", "-o", through})
+                .code == 0);
+    CHECK(results(through)["points"][1]["outcome"] == "fell through");
+    CHECK(has(read(through + "/report.html"), "ball was below z = -1 m"));
+}
+
+TEST_CASE("a swap inside the runs, and plabd's trace as reference")
+{
+    const std::string where = folder("swap"), trace = kFolder + "/trace.csv";
+    std::filesystem::create_directories(kFolder);
+    REQUIRE(run({program("plabd"), scene_file("studies/projectile.xml"), "--until", "2", "--trace", trace, "--no-bus"}).code == 0);
+    const Outcome done =
+        study({scene_file("studies/projectile.xml"), "--vary", "dt=1/60,1/120", "--swap", "30:solver=Solver/SemiImplicitEuler",
+               "--reference", trace, "--quantity", "ball.position", "--until", "2", "--quiet", "--repeat", "1", "-o", where});
+    REQUIRE_MESSAGE(done.code == 0, done.errors);
+    const auto json = results(where);
+    const auto& swap = json["points"][0]["swaps"][0];
+    CHECK(swap["done"] == true);
+    CHECK(swap["step"] == 30);
+    CHECK(swap["swaps"][0]["to"] == "Solver/SemiImplicitEuler");
+    // From t = 0.5 on late by g dt/2 a second.
+    CHECK(json["points"][0]["errors"]["ball.position"]["final_absolute"] == doctest::Approx(1.5 * 9.81 / 120).epsilon(1e-6));
+    CHECK(json["reference"]["kind"] == "file");
+}
+
+TEST_CASE("a suite makes all of its studies and a report over them")
+{
+    const std::string where = folder("suite"), file = kFolder + "/suite.json";
+    std::filesystem::create_directories(kFolder);
+    nlohmann::json suite;
+    suite["studies"] = {{{"name", "throw"},
+                         {"scene", scene_file("studies/projectile.xml")},
+                         {"until", 1},
+                         {"reference", "exact:parabola"},
+                         {"quantities", {"ball.position"}},
+                         {"vary", {"solver=SemiImplicitEuler,RungeKutta4", "dt=1/60,1/120"}}},
+                        {{"name", "missing"}, {"scene", scene_file("studies/nothing.xml")}, {"until", 1}}};
+    std::ofstream(file) << suite;
+    const Outcome done = study({"--suite", file, "--quiet", "--repeat", "1", "-o", where});
+    REQUIRE_MESSAGE(done.code == 0, done.errors);
+    CHECK(has(done.output, "throw: RungeKutta4 is the cheapest"));
+    CHECK(has(done.output, "missing: could not be studied"));
+    const auto json = nlohmann::json::parse(read(where + "/suite.json"));
+    CHECK(json["studies"][0]["digits"]["RungeKutta4"] > 12);
+    CHECK(std::filesystem::exists(where + "/throw/report.html"));
+    CHECK(std::filesystem::exists(where + "/digits-1.png"));
+    CHECK(has(read(where + "/report.html"), "throw/report.html"));
+}
+
+TEST_CASE("the catalogue of the repository can be read, and each of its plans holds")
+{
+    const auto json = nlohmann::json::parse(read(scene_file("studies/suite.json")));
+    CHECK(json["studies"].size() >= 8);
+    for (const auto& entry : json["studies"])
+    {
+        std::vector<std::string> arguments{scene_file("studies/" + entry["scene"].get<std::string>()), "--list"};
+        for (const char* key : {"vary", "rungs"})
+            if (entry.contains(key))
+                for (const auto& text : entry[key])
+                    arguments.insert(arguments.end(), {key == std::string("vary") ? "--vary" : "--rung", text});
+        const Outcome done = study(arguments);
+        CHECK_MESSAGE(done.code == 0, entry["name"]);
+        CHECK_MESSAGE(has(done.output, ", 0 refused"), entry["name"], ": ", done.output);
+    }
+}
+
+TEST_CASE("wrong use ends with code 2, nothing to study with code 1, and both say what would be right")
+{
+    const std::string scene = scene_file("studies/projectile.xml");
+    for (const auto& [arguments, code, word] : std::vector<std::tuple<std::vector<std::string>, int, std::string>>{
+             {{}, 2, "needs a scene"},
+             {{scene, "-o", "x"}, 2, "needs --until"},
+             {{scene, "--until", "1"}, 2, "needs -o DIR"},
+             {{scene, "--until", "nan", "-o", "x"}, 2, "positive number"},
+             {{scene, "--until", "1", "-o", "x", "--vary", "dt"}, 2, "--vary wants"},
+             {{scene, "--until", "1", "-o", "x", "--swap", "solver=x"}, 2, "STEP:ID=TYPE"},
+             {{scene, "--until", "1", "-o", "x", "--reference", "none", "--reference-rung", "dt=1/60"}, 2, "--reference auto only"},
+             {{scene, "--until", "1", "-o", "x", "--suite", "y"}, 2, "leave SCENE out"},
+             {{"nowhere.xml", "--until", "1", "-o", "x"}, 1, "nowhere.xml"},
+             {{scene, "--until", "1", "-o", "x", "--reference", "exact:bounce"}, 1, "does not describe this scene"},
+             {{scene, "--until", "1", "-o", "x", "--quantity", "bell.position"}, 1, "did you mean 'ball'"},
+             {{scene, "--until", "1", "-o", "/dev/null/x", "--reference", "none", "--repeat", "1"}, 1, "/dev/null/x"}})
+    {
+        const Outcome done = study(arguments);
+        CHECK_MESSAGE(done.code == code, done.errors);
+        CHECK_MESSAGE(has(done.errors, word), done.errors);
+    }
+    CHECK(study({"--help"}).code == 0);
+    CHECK(has(study({"--list-exact"}).output, "exact:kepler"));
+    CHECK(has(study({scene, "--vary", "dt=1/30,1/60", "--vary", "solver=Nothing,RungeKutta4", "--list"}).output,
+              "4 combinations, 2 refused"));
+}

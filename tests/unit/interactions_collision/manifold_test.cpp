@@ -1,0 +1,233 @@
+// Points of contact: how many, where, how deep, and under which features, of solids that lie, stand, roll and slide.
+#include <doctest/doctest.h>
+
+#include <numbers>
+#include <set>
+
+#include "bodies.h"
+
+using namespace plab;
+using namespace plab::detection;
+using namespace plab::test;
+
+namespace
+{
+Collider solid(GeometryKind kind, const Vec3& size)
+{
+    Geometry g;
+    g.kind = kind, g.size = size;
+    return Collider(g);
+}
+const Collider& plane()
+{
+    static const Collider instance = solid(GeometryKind::Plane, {});
+    return instance;
+}
+std::vector<Touch> touches(const Collider& a, const Pose& X, const Collider& b, const Pose& Y, double margin = 0)
+{
+    Touches out(margin);
+    collide(a, X, b, Y, out);
+    std::vector<Touch> sorted(out.all().begin(), out.all().end());
+    std::sort(sorted.begin(), sorted.end(), [](const Touch& s, const Touch& t) { return s.feature < t.feature; });
+    return sorted;
+}
+std::set<std::uint32_t> features(const std::vector<Touch>& t)
+{
+    std::set<std::uint32_t> out;
+    for (const Touch& k : t) out.insert(k.feature);
+    return out;
+}
+Quat about(const Vec3& axis, double angle)
+{
+    const Vec3 n = normalized(axis) * std::sin(angle / 2);
+    return {std::cos(angle / 2), n.x, n.y, n.z};
+}
+const Quat kLying = about({0, 1, 0}, std::numbers::pi / 2);
+}  // namespace
+
+TEST_CASE("stacked boxes: four points, their corners, to the last bit, with a gap as with a depth")
+{
+    const Collider cube = solid(GeometryKind::Box, {0.5, 0.5, 0.5});
+    for (const double depth : {1e-3, 1e-9, 1e-15, -1e-9, -1e-4})
+    {
+        const auto t = touches(cube, {}, cube, {{0, 0, 1 - depth}, {}}, 1e-3);
+        REQUIRE(t.size() == 4);
+        for (const Touch& k : t)
+        {
+            CHECK(k.normal == Vec3{0, 0, 1});
+            CHECK(std::fabs(k.depth - depth) < 3e-16);
+            CHECK(std::fabs(std::fabs(k.point.x) - 0.5) < 1e-15);
+            CHECK(std::fabs(std::fabs(k.point.y) - 0.5) < 1e-15);
+            CHECK(std::fabs(k.point.z - 0.5) < 1e-3);
+        }
+    }
+    CHECK(touches(cube, {}, cube, {{0, 0, 1 + 1e-9}, {}}).empty());
+    CHECK(touches(cube, {}, cube, {{0, 0, 1 + 2e-3}, {}}, 1e-3).empty());
+}
+
+TEST_CASE("an overhanging block ends exactly at the edge below it")
+{
+    const Collider block = solid(GeometryKind::Box, {0.5, 0.25, 0.05});
+    for (const double overhang : {0.1, 0.5 - 1e-6, 0.5 + 1e-6, 0.9})
+    {
+        const auto t = touches(block, {}, block, {{overhang, 0, 0.1 - 1e-9}, {}});
+        REQUIRE(t.size() == 4);
+        double from = 1, to = -1;
+        for (const Touch& k : t) from = std::min(from, k.point.x), to = std::max(to, k.point.x);
+        CHECK(from == doctest::Approx(overhang - 0.5).epsilon(1e-15).scale(1));
+        CHECK(to == doctest::Approx(0.5).epsilon(1e-15).scale(1));
+    }
+}
+
+TEST_CASE("features stay while boxes slide, turn and rock a little")
+{
+    const Collider slab = solid(GeometryKind::Box, {2, 2, 0.1}), cube = solid(GeometryKind::Box, {0.3, 0.3, 0.3});
+    const auto first = features(touches(slab, {}, cube, {{0, 0, 0.4}, {}}, 1e-3));
+    CHECK(first.size() == 4);
+    std::uint64_t seed = 5;
+    for (int i = 0; i < 300; ++i)
+    {
+        const Pose X{{uniform(seed, -1, 1), uniform(seed, -1, 1), 0.4 + uniform(seed, -1e-4, 1e-4)},
+                     about({0, 0, 1}, uniform(seed, -3, 3)) * about({1, uniform(seed, -1, 1), 0}, uniform(seed, -1e-4, 1e-4))};
+        CHECK(features(touches(slab, {}, cube, X, 1e-3)) == first);
+    }
+}
+
+TEST_CASE("edges that cross: one point, square to both; nothing prefers a face")
+{
+    const Collider beam = solid(GeometryKind::Box, {1, 0.1, 0.1});
+    const Quat on_edge = about({1, 0, 0}, std::numbers::pi / 4);
+    const Quat across = about({0, 0, 1}, 1.1) * on_edge;
+    const double height = 0.2 * std::sqrt(2.0);
+    for (const double depth : {1e-3, 1e-8, -1e-8})
+    {
+        const auto t = touches(beam, {{}, on_edge}, beam, {{0.1, 0.05, height - depth}, across}, 1e-6);
+        REQUIRE(t.size() == 1);
+        CHECK(length(t[0].normal - Vec3{0, 0, 1}) < 1e-14);
+        CHECK(std::fabs(t[0].depth - depth) < 1e-15);
+    }
+}
+
+TEST_CASE("(b, a) is the mirror of (a, b) to the last bit, features changed over")
+{
+    std::uint64_t seed = 9;
+    const std::vector<Collider> solids{solid(GeometryKind::Box, {0.4, 0.3, 0.2}), solid(GeometryKind::Capsule, {0.2, 0, 0.4}),
+                                       solid(GeometryKind::Cylinder, {0.3, 0, 0.3}), Collider(mesh_of(box_corners({0.2, 0.4, 0.3})))};
+    int met = 0;
+    for (int i = 0; i < 2000; ++i)
+    {
+        const Collider &a = solids[static_cast<std::size_t>(i) % 4], &b = solids[static_cast<std::size_t>(i / 4) % 4];
+        const Quat q = random_rotation(seed);
+        const Pose X{random_vector(seed, 0.1), q}, Y{random_vector(seed, 0.6), i % 3 ? random_rotation(seed) : q};
+        Touches one(0.01), other(0.01), again(0.01);
+        collide(a, X, b, Y, one), collide(b, Y, a, X, other), collide(a, X, b, Y, again);
+        REQUIRE(one.all().size() == other.all().size());
+        for (std::size_t k = 0; k < one.all().size(); ++k)
+        {
+            CHECK(one.all()[k].point == other.all()[k].point);
+            CHECK(one.all()[k].normal == -other.all()[k].normal);
+            CHECK(one.all()[k].depth == other.all()[k].depth);
+            CHECK(one.all()[k].point == again.all()[k].point);
+        }
+        met += one.all().empty() ? 0 : 1;
+    }
+    CHECK(met > 500);
+}
+
+TEST_CASE("the deepest point is as deep as the solids are, and no point is deeper")
+{
+    std::uint64_t seed = 21;
+    const std::vector<Collider> solids{solid(GeometryKind::Box, {0.4, 0.3, 0.2}), solid(GeometryKind::Capsule, {0.2, 0, 0.4}),
+                                       solid(GeometryKind::Cylinder, {0.3, 0, 0.3}), Collider(mesh_of(box_corners({0.2, 0.4, 0.3})))};
+    for (int i = 0; i < 1000; ++i)
+    {
+        const Collider &a = solids[static_cast<std::size_t>(i) % 4], &b = solids[static_cast<std::size_t>(i / 4) % 4];
+        const Pose X{{}, random_rotation(seed)}, Y{random_vector(seed, 0.7), random_rotation(seed)};
+        const Separation s = separation(a, X, b, Y);
+        const auto t = touches(a, X, b, Y);
+        CHECK(t.empty() == (s.gap >= 0));
+        double deepest = -1;
+        for (const Touch& k : t) deepest = std::max(deepest, k.depth);
+        CAPTURE(i);
+        if (!t.empty()) CHECK(std::fabs(deepest + s.gap) < 2e-3 * std::fabs(s.gap) + 1e-12);
+    }
+}
+
+TEST_CASE("a capsule lies on two points, and stands on one")
+{
+    const Collider pill = solid(GeometryKind::Capsule, {0.1, 0, 0.4}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
+    for (const bool on_plane : {true, false})
+    {
+        const Collider& ground = on_plane ? plane() : slab;
+        const double level = on_plane ? 0 : 0.1;
+        const auto lying = touches(pill, {{0, 0, level + 0.1 - 1e-9}, kLying}, ground, {});
+        REQUIRE(lying.size() == 2);
+        CHECK(std::fabs(lying[0].point.x - lying[1].point.x) == doctest::Approx(0.8).epsilon(1e-12));
+        for (const Touch& k : lying) CHECK(std::fabs(k.depth - 1e-9) < 1e-15);
+        CHECK(touches(pill, {{0, 0, level + 0.5 - 1e-9}, {}}, ground, {}).size() == 1);
+    }
+    const auto side = touches(pill, {}, pill, {{0.2 - 1e-9, 0, 0.3}, {}});
+    REQUIRE(side.size() == 2);
+    CHECK(std::fabs(side[0].point.z - side[1].point.z) == doctest::Approx(0.5).epsilon(1e-12));
+}
+
+TEST_CASE("a cylinder stands on four points, leans on the exact edge, rolls on two")
+{
+    const Collider can = solid(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
+    for (const bool on_plane : {true, false})
+    {
+        const Collider& ground = on_plane ? plane() : slab;
+        const double level = on_plane ? 0 : 0.1;
+        CHECK(touches(can, {{0.1, 0, level + 0.3 - 1e-9}, {}}, ground, {}).size() == 4);
+        const auto rolling = touches(can, {{0, 0, level + 0.2 - 1e-9}, about({0, 0, 1}, 0.3) * kLying}, ground, {});
+        REQUIRE(rolling.size() == 2);
+        CHECK(length(rolling[0].point - rolling[1].point) == doctest::Approx(0.6).epsilon(1e-12));
+        // Leaning by a in a direction between the four: the lowest point of the rim carries it.
+        const double a = 0.2, low = 0.3 * std::cos(a) + 0.2 * std::sin(a);
+        const auto leaning = touches(can, {{0, 0, level + low - 1e-6}, about({1, 0.4, 0}, a)}, ground, {});
+        REQUIRE(leaning.size() == 1);
+        CHECK(std::fabs(leaning[0].depth - 1e-6) < 1e-12);
+    }
+}
+
+TEST_CASE("a can on the edge of a table: its points are inside both, on the rim, the edge and where they cross")
+{
+    const Collider can = solid(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
+    const auto t = touches(can, {{1.1, 0, 0.4 - 1e-9}, {}}, slab, {});
+    REQUIRE(t.size() >= 3);
+    double furthest = 0, widest = 0;
+    for (const Touch& k : t)
+    {
+        CHECK(k.point.x < 1 + 1e-8);
+        CHECK(std::hypot(k.point.x - 1.1, k.point.y) < 0.2 + 1e-8);
+        furthest = std::max(furthest, k.point.x);
+        if (k.point.x > 1 - 1e-8) widest = std::max(widest, std::fabs(k.point.y));
+    }
+    CHECK(furthest == doctest::Approx(1).epsilon(1e-9));
+    CHECK(widest == doctest::Approx(std::sqrt(0.04 - 0.01)).epsilon(1e-8));
+}
+
+TEST_CASE("a compound's parts collide, each under features of its own")
+{
+    Bodies bodies;
+    Shapes shapes;
+    const std::uint32_t floor = add_shape(shapes, GeometryKind::Plane);
+    const std::uint32_t left = add_shape(shapes, GeometryKind::Sphere, {0.1, 0, 0}, {{-0.5, 0, 0}, {}});
+    const std::uint32_t right = add_shape(shapes, GeometryKind::Sphere, {0.1, 0, 0}, {{0.5, 0, 0}, {}});
+    const std::uint32_t both = add_shape(shapes, GeometryKind::Compound, {}, {{0, 0, 0.2}, {}});
+    shapes.geometry[both].parts = {left, right};
+    add_body(bodies, 0, {}, {}), add_body(bodies, 1, {1, 1, 1}, {0, 0, -0.11});
+    bodies.shapes[0] = {{Facet::Shape, floor}}, bodies.shapes[1] = {{Facet::Shape, both}};
+    Detection detection;
+    detection.between_all(bodies);
+    auto found = detection.look(bodies, shapes);
+    REQUIRE(found.size() == 2);
+    CHECK(found[0].feature != found[1].feature);
+    for (const Contact& c : found)
+    {
+        CHECK(c.depth == doctest::Approx(0.01).epsilon(1e-13));
+        CHECK(std::fabs(c.point.x) == doctest::Approx(0.5).epsilon(1e-13));
+    }
+    shapes.geometry[right].pose.p.z = 1;  // a change of a part is seen
+    CHECK(detection.look(bodies, shapes).size() == 1);
+}

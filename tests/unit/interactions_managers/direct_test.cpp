@@ -1,0 +1,154 @@
+// Newton's method on the contact law, against what the law says in closed form.
+#include <cmath>
+
+#include "islands.h"
+#include "managers/newton.h"
+#include "plab/random.h"
+
+using namespace plab;
+using namespace plab::managers;
+using plab::test::IslandWorld;
+using plab::test::problem_of;
+
+namespace
+{
+
+constexpr double kStep = 1.0 / 60, kGravity = 9.81;
+
+double normal_sum(const Problem& p, std::size_t first, std::size_t count)
+{
+    double sum = 0;
+    for (std::size_t i = first; i < first + count; ++i) sum += p.points[i].impulse.z;
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a stack of n boxes rests on its weight, from a cold start, in a few steps whatever n is")
+{
+    for (const std::size_t n : {1u, 2u, 10u, 50u, 100u})
+    {
+        CAPTURE(n);
+        IslandWorld w;
+        w.add_stack(std::vector<double>(n, 1.0), 0.8);
+        w.kick({0, 0, -kGravity * kStep});
+        Problem p = problem_of(w);
+        const Solved s = NewtonSolver().solve(p, {});
+        CHECK(s.converged);
+        CHECK_FALSE(s.fell_back);
+        CHECK(s.steps <= 12);
+        const double weight = kGravity * kStep;
+        for (std::size_t k = 0; k < n; ++k)
+            CHECK(normal_sum(p, 4 * k, 4) == doctest::Approx(weight * static_cast<double>(n - k)).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("D1: a heavy box on a light one, mass ratios to 1e8: both loads to 1e-10")
+{
+    for (const double r : {1.0, 1e2, 1e4, 1e6, 1e8})
+    {
+        CAPTURE(r);
+        IslandWorld w;
+        w.add_stack({1, r}, 0.8);
+        w.kick({0, 0, -kGravity * kStep});
+        Problem p = problem_of(w);
+        const Solved s = NewtonSolver().solve(p, {});
+        CHECK(s.converged);
+        CHECK(normal_sum(p, 0, 4) == doctest::Approx((1 + r) * kGravity * kStep).epsilon(1e-10));
+        CHECK(normal_sum(p, 4, 4) == doctest::Approx(r * kGravity * kStep).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("a solution is its own solution: no step is made from it")
+{
+    IslandWorld w;
+    w.add_stack(std::vector<double>(20, 1.0), 0.8);
+    w.kick({0, 0, -kGravity * kStep});
+    Problem p = problem_of(w);
+    NewtonSolver solver;
+    (void)solver.solve(p, {});
+    CHECK(solver.solve(p, {}).steps == 0);
+}
+
+TEST_CASE("friction is a cone: a sliding box is braked by mu m g against its slip, in every direction alike")
+{
+    const double mu = 0.3;
+    for (int k = 0; k < 12; ++k)
+    {
+        const double angle = 0.5235987755982988 * k + 0.05;
+        IslandWorld w;
+        w.add_stack({2}, mu);
+        const Vec3 along{std::cos(angle), std::sin(angle), 0};
+        w.kick(along * 3.0 + Vec3{0, 0, -kGravity * kStep});
+        Problem p = problem_of(w);
+        const Solved s = NewtonSolver().solve(p, {});
+        CHECK(s.converged);
+        // Its corners slip alike only if it does not turn over: mu h < half its width.
+        CHECK(length(p.movers[0].v - along * (3 - mu * kGravity * kStep)) < 1e-12);
+        for (const Point& q : p.points) CHECK(std::hypot(q.impulse.x, q.impulse.y) == doctest::Approx(mu * q.impulse.z).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("D6: a table with four legs: the split is the even one, as nothing says otherwise")
+{
+    IslandWorld w;
+    const auto ground = w.add_box(0, {5, 5, 1}, {0, 0, -1}), table = w.add_box(8, {1, 0.6, 0.4}, {0, 0, 0.4});
+    w.add_face(ground, table, {0, 0, 0}, 1, 0.6, 0.5);
+    w.kick({0, 0, -kGravity * kStep});
+    Problem p = problem_of(w);
+    CHECK(NewtonSolver().solve(p, {}).converged);
+    for (const Point& q : p.points) CHECK(q.impulse.z == doctest::Approx(2 * kGravity * kStep).epsilon(1e-9));
+}
+
+TEST_CASE("wherever Newton's method says that it converged, the law holds at every contact")
+{
+    std::uint64_t random = 7;
+    int converged = 0, trials = 0;
+    for (const double mu : {0.0, 0.2, 0.4})
+        for (int t = 0; t < 10; ++t, ++trials)
+        {
+            IslandWorld w;
+            w.add_stack({1, 3, 0.5, 2}, mu);
+            const auto any = [&] { return 2 * next_uniform(random) - 1; };
+            for (const std::uint32_t b : w.members)
+            {
+                w.bodies.velocity[b] = {any(), any(), any()};
+                w.bodies.angular_velocity[b] = {any(), any(), any()};
+            }
+            Problem p = problem_of(w);
+            const Solved s = NewtonSolver().solve(p, {});
+            if (!s.converged) continue;
+            ++converged;
+            for (const Point& q : p.points)
+            {
+                const Vec3 u = p.slip(q);
+                const double slip = std::hypot(u.x, u.y), held = std::hypot(q.impulse.x, q.impulse.y);
+                CHECK(u.z >= -1e-11);
+                CHECK(q.impulse.z >= -1e-11);
+                CHECK(std::fabs(u.z * q.impulse.z) < 1e-10);
+                CHECK(held <= mu * q.impulse.z + 1e-10);
+                // Slip against friction, and only with all of it.
+                if (slip > 1e-8) CHECK(std::fabs(q.impulse.x * u.x + q.impulse.y * u.y + mu * q.impulse.z * slip) < 1e-9);
+            }
+        }
+    CHECK(converged >= trials * 9 / 10);
+}
+
+TEST_CASE("a one-sided row and an equality row share an island with contacts")
+{
+    // A box on the ground, pulled along x by a row that wants 1 m/s with at most 2 N, friction 0.1: it accelerates.
+    IslandWorld w;
+    w.add_stack({1}, 0.1);
+    ConstraintRow pull;
+    pull.count = 1, pull.kind = RowKind::Rate, pull.rate = 1;
+    pull.blocks[0] = {{Facet::Body, w.members[0]}, {1, 0, 0}, {}};
+    pull.lower = -2, pull.upper = 2;
+    w.rows.push_back(pull);
+    w.kick({0, 0, -kGravity * kStep});
+    Problem p = problem_of(w);
+    p.lines[0].target = 1, p.lines[0].least = -2 * kStep, p.lines[0].most = 2 * kStep;
+    const Solved s = NewtonSolver().solve(p, {});
+    CHECK(s.converged);
+    CHECK(p.lines[0].impulse == doctest::Approx(2 * kStep).epsilon(1e-12));
+    CHECK(p.movers[0].v.x == doctest::Approx((2 - 0.1 * kGravity) * kStep).epsilon(1e-9));
+}

@@ -1,0 +1,177 @@
+// Bounds inside a piece hold, and are sharp where motion is simple. Played against dense sampling.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plab/random.h"
+#include "plab/rotation.h"
+#include "simulation/course.h"
+
+using namespace plab;
+using namespace plab::simulation;
+
+namespace
+{
+
+/// Two bodies with constant acceleration and constant spin about a principal axis of a ball-like inertia.
+struct Pair
+{
+    Bodies bodies;
+    Shapes shapes;
+    Vec3 acceleration[2];
+
+    std::uint32_t add(const Geometry& g, const Vec3& p, const Vec3& v, const Vec3& w, const Vec3& a)
+    {
+        const auto i = static_cast<std::uint32_t>(bodies.size());
+        shapes.geometry.push_back(g);
+        bodies.motion.push_back(Motion::Dynamic), bodies.position.push_back(p), bodies.velocity.push_back(v);
+        bodies.orientation.push_back({}), bodies.angular_velocity.push_back(w), bodies.angular_momentum.push_back(w);
+        bodies.mass.push_back(1), bodies.inverse_mass.push_back(1), bodies.inertia_B.push_back(Mat3::diagonal(1, 1, 1));
+        bodies.inverse_inertia_B.push_back(Mat3::diagonal(1, 1, 1)), bodies.needle.push_back(0), bodies.center_B.push_back({});
+        bodies.material.push_back(0), bodies.shapes.push_back({{Facet::Shape, i}});
+        acceleration[i] = a;
+        return i;
+    }
+    BodyState at(std::uint32_t b, double t) const
+    {
+        const Vec3 v = bodies.velocity[b], w = bodies.angular_velocity[b], a = acceleration[b];
+        return {bodies.position[b] + v * t + a * (0.5 * t * t), exp_rotation(w * t) * bodies.orientation[b], v + a * t, w};
+    }
+    /// Width of the gap along n at t.
+    double width(const Vec3& n, double t) const
+    {
+        const BodyState A = at(0, t), B = at(1, t);
+        return dot(B.position - A.position, n) - support(bodies, shapes, 0, A.orientation, n) -
+               support(bodies, shapes, 1, B.orientation, -n);
+    }
+    Clearance clearance(double t, double T, Course (&courses)[2], BodyExtent (&extents)[2]) const
+    {
+        for (std::uint32_t b = 0; b < 2; ++b)
+        {
+            extents[b] = extent_of(bodies, shapes, b);
+            courses[b] = course_of(bodies, b, 0, at(b, 0), T, at(b, T));
+        }
+        return {bodies, shapes, {0, &courses[0], &extents[0], at(0, t)}, {1, &courses[1], &extents[1], at(1, t)}, T - t};
+    }
+};
+
+Geometry sphere(double r)
+{
+    Geometry g;
+    g.kind = GeometryKind::Sphere, g.size = {r, 0, 0};
+    return g;
+}
+Geometry box(const Vec3& h)
+{
+    Geometry g;
+    g.kind = GeometryKind::Box, g.size = h;
+    return g;
+}
+double uniform(std::uint64_t& seed, double low, double high) { return low + (high - low) * next_uniform(seed); }
+Vec3 anywhere(std::uint64_t& seed, double size)
+{
+    const double x = uniform(seed, -size, size), y = uniform(seed, -size, size), z = uniform(seed, -size, size);
+    return {x, y, z};
+}
+
+}  // namespace
+
+TEST_CASE("balls: the bound is the time of impact itself")
+{
+    Pair p;
+    p.add(sphere(0.1), {}, {1, 0, 0}, {0, 9, 0}, {0, 0, -9.81});
+    p.add(sphere(0.2), {2, 0.1, 0}, {-9, 0, 0}, {}, {0, 0, -9.81});
+    Course courses[2];
+    BodyExtent extents[2];
+    const double T = 1, hit = (2 - std::sqrt(0.09 - 0.01)) / 10;
+    CHECK(std::fabs(p.clearance(0, T, courses, extents).of_balls() - hit) < 1e-14);
+    CHECK(extents[0].arm == 0);
+    // Falling onto a flat thing, the way along its normal is as exact.
+    Pair q;
+    q.add(box({5, 5, 0.1}), {}, {}, {}, {});
+    q.add(sphere(0.1), {0.3, 0.2, 1.2}, {3, 0, -1}, {1, 2, 3}, {0, 0, -9.81});
+    const double fall = (-1 + std::sqrt(1 + 2 * 9.81)) / 9.81;
+    CHECK(std::fabs(q.clearance(0, T, courses, extents).along({0, 0, 1}, 1) - fall) < 1e-14);
+}
+
+TEST_CASE("whatever spins, flies and falls: along a normal nothing closes before the bound says so")
+{
+    std::uint64_t seed = 11;
+    int hits = 0, early = 0;
+    double sharp = 0;
+    for (int round = 0; round < 400; ++round)
+    {
+        Pair p;
+        p.add(box({0.3, 0.1, 0.2}), {}, anywhere(seed, 1), anywhere(seed, round % 2 == 0 ? 3 : 30), {0, 0, -9.81});
+        p.add(round % 3 == 0 ? sphere(0.2) : box({0.2, 0.2, 0.1}), Vec3{uniform(seed, 0.6, 1), 0, 0}, anywhere(seed, 3), anywhere(seed, 3),
+              {});
+        const Vec3 n{1, 0, 0};
+        const double T = 0.2, gap = p.width(n, 0);
+        if (!(gap > 0)) continue;
+        Course courses[2];
+        BodyExtent extents[2];
+        const double clear = p.clearance(0, T, courses, extents).along(n, gap);
+        double first = T;
+        for (int i = 1; i <= 4000 && first == T; ++i)
+            if (p.width(n, T * i / 4000) < 0) first = T * i / 4000;
+        early += clear > first;
+        if (first < T) ++hits, sharp += clear / first;
+    }
+    CHECK(early == 0);
+    REQUIRE(hits > 60);
+    CHECK(sharp / hits > 0.4);  // and it is of some use
+}
+
+TEST_CASE("steps by the bound converge to a corner's impact like Newton's method")
+{
+    Pair p;
+    p.add(box({9, 9, 0.1}), {0, 0, -0.1}, {}, {}, {});
+    p.add(box({0.5, 0.1, 0.1}), {0, 0, 0.505}, {}, {0, 40, 0}, {});
+    const Vec3 n{0, 0, 1};
+    const double T = 0.05, r = std::hypot(0.5, 0.1), want = (std::asin(0.505 / r) - std::atan2(0.1, 0.5)) / 40;
+    double t = 0;
+    int looks = 0;
+    for (; looks < 30 && p.width(n, t) > 1e-13; ++looks)
+    {
+        Course courses[2];
+        BodyExtent extents[2];
+        t += p.clearance(t, T, courses, extents).along(n, p.width(n, t));
+        CHECK(t <= want + 1e-14);
+    }
+    CHECK(std::fabs(t - want) < 1e-13);
+    CHECK(looks <= 12);
+}
+
+TEST_CASE("a spin that shows at no end of a piece is bounded by the momentum")
+{
+    // I = (1, 2, 3), almost about the middle axis: it turns over within the piece.
+    Pair p;
+    p.add(box({0.1, 0.1, 0.1}), {}, {}, {0.01, 5, 0.01}, {});
+    p.bodies.inertia_B[0] = Mat3::diagonal(1, 2, 3), p.bodies.inverse_inertia_B[0] = Mat3::diagonal(1, 0.5, 1.0 / 3);
+    const Course c = course_of(p.bodies, 0, 0, p.at(0, 0), 1, p.at(0, 0));
+    CHECK(c.spin >= 10);
+    CHECK(c.spin_up >= 2 * 25 * 0.3);
+}
+
+TEST_CASE("how far a body gets is no less than any point of it")
+{
+    Pair p;
+    p.add(box({0.3, 0.1, 0.2}), {1, 2, 3}, {2, 0, 4}, {0, 20, 0}, {0, 0, -40});
+    const double T = 0.2;
+    const BodyExtent e = extent_of(p.bodies, p.shapes, 0);
+    const double reach = reach_of(course_of(p.bodies, 0, 0, p.at(0, 0), T, p.at(0, T)), e);
+    double most = 0;
+    for (int i = 0; i <= 200; ++i)
+    {
+        const BodyState s = p.at(0, T * i / 200), end = p.at(0, T);
+        for (int k = 0; k < 8; ++k)
+        {
+            const Vec3 corner{k & 1 ? 0.3 : -0.3, k & 2 ? 0.1 : -0.1, k & 4 ? 0.2 : -0.2};
+            const Vec3 there = s.position + rotate(s.orientation, corner), then = end.position + rotate(end.orientation, corner);
+            most = std::max(most, length(there - then));
+        }
+    }
+    CHECK(reach >= most);
+    CHECK(reach < 2.5 * most);
+}

@@ -1,0 +1,145 @@
+// One run: what it notes is what the scene did, and a run that goes wrong is a record that says so.
+#include "study/run.h"
+
+#include "publish/sampler.h"
+#include "study/observe.h"
+#include "study/settings.h"
+#include "study/study.h"
+#include "support/scene.h"
+
+using namespace plab;
+using namespace plab::study;
+using plab::test::library;
+using plab::test::Scene;
+
+namespace
+{
+
+model::SceneSpec compiled(const std::string& body, const std::string& settings = "dt='1/100'")
+{
+    auto blueprint = blueprint::read_blueprint("<plab version='1'><scene " + settings + "/>" + body + "</plab>", "scene.xml");
+    REQUIRE_MESSAGE(blueprint.ok(), (blueprint ? "" : blueprint.error().text()));
+    auto scene = model::compile(*blueprint, library());
+    REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().text()));
+    return scene.take();
+}
+
+const std::string kBall = "<component id='ball' type='State/RigidBody' mass='1' inertia='1 1 1' position='0 0 1'/>";
+const std::string kWeight = "<component id='weight' type='Field/Gravity' between='ball'/>";
+
+std::string force(const std::string& code)
+{
+    return "<component id='script' type='Script/Lua' driven='ball'><param name='code'>function force(t, state) " + code +
+           " end</param></component>";
+}
+
+RunOptions options(double until)
+{
+    RunOptions out;
+    out.until = until;
+    out.quantities = {"ball.position"};
+    return out;
+}
+
+std::uint64_t count_nothing() { return 42; }
+
+}  // namespace
+
+TEST_CASE("a recorded run ends in the state that the scene ends in; so does a timed one")
+{
+    const std::string file = "scenes/fan_and_balloons.xml";
+    Scene scene = Scene::file(file);
+    scene.run(4);
+    auto blueprint = blueprint::read_blueprint_file(std::string(PLAB_SOURCE_DIR) + "/" + file);
+    REQUIRE(blueprint.ok());
+    const auto spec = model::compile(*blueprint, library());
+    REQUIRE(spec.ok());
+    RunOptions how;
+    how.until = 4, how.quantities = {"red.position", "fan.angle", "contact.penetration", "red.orientation.w"};
+    const RunRecord record = record_run(library(), *spec, how);
+    CHECK(record.hash == scene.hash());
+    CHECK(record.steps == 960);
+    CHECK(record.ok());
+    CHECK(record.courses[0].at(record.times.size() - 1)[2] == scene.vec("red", "position").z);
+    CHECK(record.courses[1].values.back() == scene.angle("fan"));
+    CHECK(record.courses[3].values.front() == 1);
+    CHECK(record.events.at("contact.impact") >= 1);
+    const Timing timing = time_run(library(), *spec, how);
+    CHECK(timing.steps == 960);
+    CHECK(timing.cpu > 0);
+    CHECK(timing.outcome == Outcome::Completed);
+}
+
+TEST_CASE("the figures of a study are those that the server publishes live")
+{
+    const model::SceneSpec spec = compiled(kBall + kWeight + "<component id='air' type='Field/Drag' between='ball' linear='0.3'/>");
+    RunOptions how = options(1);
+    how.sample_times = {0, 0.5, 1};
+    const RunRecord record = record_run(library(), spec, how);
+    simulation::Simulation s(library(), 1);
+    REQUIRE(s.load(spec).ok());
+    publish::Sampler sampler;
+    const publish::Metrics start = sampler.sample(s, 1);
+    for (int half = 1; half <= 2; ++half)
+    {
+        for (int n = 0; n < 50; ++n) s.step();
+        const publish::Metrics live = sampler.sample(s, 1 + half);
+        const auto at = static_cast<std::size_t>(half);
+        CHECK(record.energy.energy[at] == live.kinetic + live.stored);
+        double unstored = live.of_requests;
+        for (const publish::InteractionMetrics& m : live.interactions) unstored += m.component == "air" ? m.work : 0;
+        CHECK(unstored < 0);
+        CHECK(record.energy.drift[at] ==
+              doctest::Approx(live.kinetic + live.stored - start.kinetic - start.stored - unstored).epsilon(1e-9));
+        for (const publish::InteractionMetrics& m : live.interactions)
+            for (const PartFigures& part : record.parts)
+                if (part.id == m.component && half == 2)
+                {
+                    CHECK(part.resolved == m.resolved);
+                    CHECK(part.error >= m.error);
+                }
+    }
+    CHECK(record.momentum_change == doctest::Approx(length(sampler.sample(s, 9).momentum)));
+}
+
+TEST_CASE("a run that goes wrong is a record with the reason")
+{
+    const RunRecord lost =
+        record_run(library(), compiled(kBall + force("driven:add_force(driven.position * (1e300 * 10 ^ (400 * t)))")), options(2));
+    CHECK(lost.outcome != Outcome::Completed);
+    CHECK(!lost.why.empty());
+    CHECK(lost.reached < 2);
+    const RunRecord failed = record_run(library(), compiled(kBall + force("error('no more')")), options(1));
+    CHECK(failed.outcome == Outcome::Quarantined);
+    CHECK(failed.why.find("no more") != std::string::npos);
+    RunOptions floor = options(5);
+    floor.floor = -1;
+    const RunRecord fell = record_run(library(), compiled(kBall + kWeight), floor);
+    CHECK(fell.outcome == Outcome::FellThrough);
+    CHECK(fell.reached == doctest::Approx(std::sqrt(4 / 9.81)).epsilon(0.05));
+    RunOptions broke = options(1e6);
+    broke.budget = 0.02;
+    const RunRecord slow = record_run(library(), compiled(kBall + kWeight), broke);
+    CHECK(slow.outcome == Outcome::TooSlow);
+    CHECK(slow.reached < 1e6);
+    CHECK(time_run(library(), compiled(kBall + kWeight), broke).outcome == Outcome::TooSlow);
+    RunOptions unknown = options(1);
+    unknown.quantities = {"bell.position"};
+    CHECK(record_run(library(), compiled(kBall), unknown).outcome == Outcome::Refused);
+}
+
+TEST_CASE("a swap inside a run is carried out and answered")
+{
+    RunOptions how = options(1);
+    how.swaps = {{40, "solver", "Solver/SemiImplicitEuler"}, {60, "nobody", "Solver/SemiImplicitEuler"}};
+    how.allocations = &count_nothing;
+    const RunRecord record = record_run(library(), compiled(kBall + kWeight), how);
+    REQUIRE(record.swaps.size() == 2);
+    CHECK(record.swaps[0].done);
+    CHECK(record.swaps[0].step == 40);
+    CHECK(record.swaps[0].swaps.front().to == "Solver/SemiImplicitEuler");
+    CHECK(!record.swaps[1].done);
+    CHECK(record.allocations == 0);
+    // Semi-implicit Euler from t = 0.4 on: late by g dt/2 a second.
+    CHECK(record.courses[0].values.back() == doctest::Approx(1 - 0.5 * 9.81 - 0.6 * 9.81 * 0.005).epsilon(1e-9));
+}
