@@ -65,7 +65,7 @@ struct Object
 struct Shape
 {
     std::string id, type;
-    std::string form;  ///< "sphere", "box", "plane", "mesh", "none"
+    std::string form;  ///< "sphere", "box", "plane", "capsule", "cylinder", "mesh", "none"
     Vec3 position;
     Quat orientation;  ///< X_BS
     Vec3 size;         ///< sphere: x is the radius; box: half extents

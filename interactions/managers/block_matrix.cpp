@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace plab::managers
 {
@@ -15,36 +16,65 @@ enum Kind : std::uint8_t
     kLower,
 };
 
-/// Row i of a, times b; sums in the order of b's rows.
-std::array<double, 6> row_times(const Block& a, std::size_t i, const Block& b)
+/// Two doubles at a time: the compiler does not find that by itself. Each sum keeps its order.
+using Two = double __attribute__((vector_size(16)));
+
+Two load_two(const double* from)
 {
-    std::array<double, 6> sum{};
-    for (std::size_t k = 0; k < 6; ++k)
-    {
-        const double f = a[6 * i + k];
-        const double* row = b.data() + 6 * k;
-        for (std::size_t j = 0; j < 6; ++j) sum[j] += f * row[j];
-    }
-    return sum;
+    Two out;
+    std::memcpy(&out, from, sizeof out);
+    return out;
 }
+
+void store_two(double* to, Two value) { std::memcpy(to, &value, sizeof value); }
+
+/// Two rows of a, from row i, times b; sums in the order of b's rows.
+struct TwoRows
+{
+    Two first[3], second[3];
+
+    [[gnu::always_inline]] TwoRows(const Block& a, std::size_t i, const Block& b) : first{}, second{}
+    {
+#pragma GCC unroll 6
+        for (std::size_t k = 0; k < 6; ++k)
+        {
+            const double f = a[6 * i + k], g = a[6 * i + 6 + k];
+            const Two both_f = {f, f}, both_g = {g, g};
+#pragma GCC unroll 3
+            for (std::size_t j = 0; j < 3; ++j)
+            {
+                const Two row = load_two(b.data() + 6 * k + 2 * j);
+                first[j] += both_f * row, second[j] += both_g * row;
+            }
+        }
+    }
+};
 
 /// c -= a b.
 void subtract_product(Block& c, const Block& a, const Block& b)
 {
-    for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t i = 0; i < 6; i += 2)
     {
-        const std::array<double, 6> row = row_times(a, i, b);
-        for (std::size_t j = 0; j < 6; ++j) c[6 * i + j] -= row[j];
+        const TwoRows rows(a, i, b);
+#pragma GCC unroll 3
+        for (std::size_t j = 0; j < 3; ++j)
+        {
+            double* to = c.data() + 6 * i + 2 * j;
+            store_two(to, load_two(to) - rows.first[j]);
+            store_two(to + 6, load_two(to + 6) - rows.second[j]);
+        }
     }
 }
 
 Block product(const Block& a, const Block& b)
 {
     Block c;
-    for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t i = 0; i < 6; i += 2)
     {
-        const std::array<double, 6> row = row_times(a, i, b);
-        std::copy(row.begin(), row.end(), c.begin() + static_cast<std::ptrdiff_t>(6 * i));
+        const TwoRows rows(a, i, b);
+#pragma GCC unroll 3
+        for (std::size_t j = 0; j < 3; ++j)
+            store_two(c.data() + 6 * i + 2 * j, rows.first[j]), store_two(c.data() + 6 * i + 6 + 2 * j, rows.second[j]);
     }
     return c;
 }
@@ -116,14 +146,21 @@ void BlockMatrix::order_nodes()
     for (std::uint32_t i = 0; i < size_; ++i) std::sort(neighbours_[i].begin(), neighbours_[i].end());
     order_.clear(), begin_.clear(), earlier_.clear(), later_.clear();
     rank_.assign(size_, UINT32_MAX);
-    std::vector<std::uint32_t> left(size_), merged;
-    for (std::uint32_t i = 0; i < size_; ++i) left[i] = i;
-    while (!left.empty())
+    // A heap with the least on top; a node stands in it once for each degree that it has had.
+    const auto later = [](const Degree& x, const Degree& y) { return x > y; };
+    heap_.clear();
+    const auto note = [&](std::uint32_t i)
     {
-        const auto least = std::min_element(
-            left.begin(), left.end(), [&](std::uint32_t i, std::uint32_t j) { return neighbours_[i].size() < neighbours_[j].size(); });
-        const std::uint32_t node = *least;
-        left.erase(least);
+        heap_.emplace_back(static_cast<std::uint32_t>(neighbours_[i].size()), i);
+        std::push_heap(heap_.begin(), heap_.end(), later);
+    };
+    for (std::uint32_t i = 0; i < size_; ++i) note(i);
+    while (!heap_.empty())
+    {
+        std::pop_heap(heap_.begin(), heap_.end(), later);
+        const auto [degree, node] = heap_.back();
+        heap_.pop_back();
+        if (rank_[node] != UINT32_MAX || degree != neighbours_[node].size()) continue;
         rank_[node] = static_cast<std::uint32_t>(order_.size());
         order_.push_back(node);
         begin_.push_back(static_cast<std::uint32_t>(earlier_.size()));
@@ -131,10 +168,11 @@ void BlockMatrix::order_nodes()
         for (const std::uint32_t i : around)
         {
             earlier_.push_back(node), later_.push_back(i);
-            merged.clear();
-            std::set_union(neighbours_[i].begin(), neighbours_[i].end(), around.begin(), around.end(), std::back_inserter(merged));
-            std::erase_if(merged, [&](std::uint32_t k) { return k == i || k == node; });
-            neighbours_[i].swap(merged);
+            merged_.clear();
+            std::set_union(neighbours_[i].begin(), neighbours_[i].end(), around.begin(), around.end(), std::back_inserter(merged_));
+            std::erase_if(merged_, [&](std::uint32_t k) { return k == i || k == node; });
+            neighbours_[i].assign(merged_.begin(), merged_.end());
+            note(i);
         }
     }
     begin_.push_back(static_cast<std::uint32_t>(earlier_.size()));

@@ -35,6 +35,8 @@ public:
     /// In place; after factor().
     void solve(std::span<Column6> x) const;
     std::size_t pairs() const { return earlier_.size(); }
+    /// Products of blocks in one factor(): its cost.
+    std::size_t products() const { return targets_.size() + pairs(); }
 
 private:
     void order_nodes();
@@ -57,6 +59,9 @@ private:
     std::vector<std::size_t> first_target_;        ///< by place
     std::vector<Block> diagonal_, upper_, lower_;  ///< upper: (earlier, later); lower: (later, earlier)
     std::vector<std::vector<std::uint32_t>> neighbours_;
+    std::vector<std::uint32_t> merged_;
+    using Degree = std::pair<std::uint32_t, std::uint32_t>;  ///< degree, node
+    std::vector<Degree> heap_;
 };
 
 }  // namespace plab::managers

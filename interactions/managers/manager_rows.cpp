@@ -11,10 +11,11 @@ namespace
 
 constexpr Unit kHertz{"1/s", {{0, 0, -1, 0}}};
 
-/// Share of the points that start without a guess: they need more sweeps than others.
+/// Share of the points that close and start without a guess: they need more sweeps than others.
 double unknown_share(const Problem& problem)
 {
-    const auto is_new = [](const Point& p) { return p.K(2, 2) > 0 && p.impulse == Vec3{} && p.least > kFar; };
+    const auto is_new = [&](const Point& p)
+    { return p.K(2, 2) > 0 && p.impulse == Vec3{} && p.least > kFar && problem.slip(p).z < p.least; };
     const auto count = std::count_if(problem.points.begin(), problem.points.end(), is_new);
     return problem.points.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(problem.points.size());
 }
@@ -148,17 +149,18 @@ void solve_sequential(const StepContext& context, Row row, SequentialRows& rows,
 
 void DirectRows::describe(Schema& s)
 {
-    s.param(tolerance, "tolerance", unit::metre_per_second, "violation that counts as none; never less than rounding leaves")
-        .or_else(1e-12)
+    s.param(tolerance, "tolerance", unit::metre_per_second,
+            "violation that counts as none; never less than rounding leaves: 1e-11 in a wall of 1000 bricks")
+        .or_else(1e-13)
         .positive();
-    s.param(max_steps, "max_steps", unit::one, "Newton steps before sweeps have to finish").or_else(150).positive();
+    s.param(max_steps, "max_steps", unit::one, "Newton steps before sweeps have to finish").or_else(80).positive();
     s.param(max_iterations, "max_iterations", unit::one,
-            "sweeps where Newton's method does not converge, and in islands beyond max_contacts")
-        .or_else(40)
+            "sweeps at a time where Newton's method does not converge, up to four times; and in islands beyond max_contacts")
+        .or_else(100)
         .positive();
     s.param(max_contacts, "max_contacts", unit::one,
             "islands with more contact points are left to sweeps: one factorisation would cost too much")
-        .or_else(2000)
+        .or_else(20000)
         .positive();
     account.describe(s);
     s.scratch(memory, "memory", "working memory: factors of the island's matrix");
@@ -193,16 +195,21 @@ void SoftStepRows::describe(Schema& s)
         .positive();
     s.param(damping_ratio, "damping_ratio", unit::one, "damping of that oscillation").or_else(10).not_negative();
     s.param(push_speed, "push_speed", unit::metre_per_second, "overlap is parted no faster than this").or_else(3).positive();
+    s.param(tolerance, "tolerance", unit::metre_per_second,
+            "speed at which overlap may go on closing; above it contacts are not held, and the step counts as not converged")
+        .or_else(1e-2)
+        .positive();
     account.describe(s);
     s.scratch(memory, "memory", "working memory");
 }
 
 void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bodies& bodies, Shafts& shafts, Island& island)
 {
-    const SoftChoices choices{whole(rows.substeps[row]), whole(rows.relax_iterations[row]), rows.hertz[row], rows.damping_ratio[row],
-                              rows.push_speed[row]};
+    const SoftChoices choices{whole(rows.substeps[row]), whole(rows.relax_iterations[row]),
+                              rows.hertz[row],           rows.damping_ratio[row],
+                              rows.push_speed[row],      rows.tolerance[row]};
     report(island, advance_softly(island, bodies, shafts, choices, rows.memory[row]));
-    rows.account.add(context, row, island, 0);
+    rows.account.add(context, row, island, rows.tolerance[row]);
 }
 
 }  // namespace plab::managers

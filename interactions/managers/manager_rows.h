@@ -62,7 +62,7 @@ void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies&
 struct SoftStepRows
 {
     Column<std::int64_t> substeps, relax_iterations;
-    Column<double> hertz, damping_ratio, push_speed;
+    Column<double> hertz, damping_ratio, push_speed, tolerance;
     Account account;
     Column<SoftMemory> memory;
 

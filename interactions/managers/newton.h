@@ -22,8 +22,9 @@ namespace plab::managers
 struct Solving
 {
     double tolerance = 1e-12;  ///< m/s
-    int most_steps = 150;      ///< Newton steps, of both kinds
-    int most_sweeps = 200;     ///< Gauss-Seidel where Newton's method does not get there
+    int most_steps = 80;       ///< Newton steps, of both kinds
+    int most_sweeps = 100;     ///< Gauss-Seidel where Newton's method does not get there
+    double finest = 1e-12;     ///< m/s: what was asked for; rounding may raise `tolerance`
 };
 struct Solved
 {
@@ -53,7 +54,10 @@ private:
     void go(Problem& problem, double share);
     double advance(Problem& problem, double now);
     bool newton(Problem& problem, const Solving& how, Solved& out);
+    void polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out);
     void approach(Problem& problem, const Solving& how, Solved& out);
+    bool settles_by_sweeps(Problem& problem, double guess, const Solving& how, Solved& out);
+    void finish_by_sweeps(Problem& problem, const Solving& how, Solved& out);
     void remember(const Problem& problem);
     void recall(Problem& problem) const;
 

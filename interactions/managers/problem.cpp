@@ -81,7 +81,11 @@ void Problem::add_point(const Contact& c, const Bodies& bodies)
     if (p.a != kNoIndex) add_mobility(p, movers[p.a], p.r_a);
     if (p.b != kNoIndex) add_mobility(p, movers[p.b], p.r_b);
     p.slip_mobility = slip_mobility(p.K);
-    if (p.K(2, 2) > 0) p.impulse = to_contact(p, c.impulse);
+    if (!(p.K(2, 2) > 0)) return;
+    // The normal may have turned since, and friction may be another: a guess within the law.
+    p.impulse = to_contact(p, c.impulse);
+    p.impulse.z = std::max(0.0, p.impulse.z);
+    p.impulse = within_disc(p.impulse, p.friction * p.impulse.z);
 }
 
 void Problem::add_line(const ConstraintRow& row, std::uint32_t index)
@@ -238,7 +242,7 @@ void Problem::push(const Line& line, double j)
     }
 }
 
-double Problem::rounding() const
+double Problem::rounding(double terms) const
 {
     double speed = 0, given = 0;
     for (const Point& p : points)
@@ -253,7 +257,7 @@ double Problem::rounding() const
         speed = std::max(speed, std::fabs(rate(line)));
         given = std::max(given, std::fabs(line.impulse) * line.mobility);
     }
-    return std::max(0x1p-46 * speed, 0x1p-50 * given);
+    return std::max(0x1p-46 * speed, 0x1p-50 * std::sqrt(terms) * given);
 }
 
 double violation(const Point& p, const Vec3& u)
@@ -272,6 +276,25 @@ double violation(const Line& line, double rate)
     if (line.count == 0) return 0;
     const double held = std::clamp(line.impulse - (rate - line.target) / line.mobility, line.least, line.most);
     return std::fabs(held - line.impulse) * line.mobility;
+}
+
+double kinetic_energy(const Problem& problem)
+{
+    double twice = 0;
+    for (std::size_t i = 0; i < problem.movers.size(); ++i)
+    {
+        const Anchor& m = problem.anchors[i];
+        const Vec3 &v = problem.movers[i].v, &w = problem.movers[i].w;
+        twice += m.mass * length_squared(v) + dot(w, m.inertia * w);
+    }
+    return 0.5 * twice;
+}
+
+double kinetic_energy_without(const Problem& problem)
+{
+    double twice = 0;
+    for (const Anchor& m : problem.anchors) twice += m.mass * length_squared(m.v) + dot(m.w, m.inertia * m.w);
+    return 0.5 * twice;
 }
 
 double violation(const Problem& problem)

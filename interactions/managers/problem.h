@@ -91,8 +91,8 @@ public:
     void push(const Point& p, const Vec3& j);
     void push(const Line& line, double j);
     /// m/s: what rounding may leave of a contact law: a share of the largest speed, and of what the largest impulse alone
-    /// would give.
-    double rounding() const;
+    /// would give; of sums of that many terms, like a random walk.
+    double rounding(double terms = 1) const;
 
     std::vector<Mover> movers;
     std::vector<Anchor> anchors;  ///< beside movers
@@ -119,6 +119,10 @@ double violation(const Point& p, const Vec3& u);
 double violation(const Line& line, double rate);
 /// The largest of all.
 double violation(const Problem& problem);
+
+/// J, of the movers at their present speeds; and without any impulse.
+double kinetic_energy(const Problem& problem);
+double kinetic_energy_without(const Problem& problem);
 
 /// The point of the disc of radius `radius` that is nearest to (x, y); z is passed through.
 inline Vec3 within_disc(Vec3 j, double radius)

@@ -40,23 +40,22 @@ double relax(Problem& problem, Line& line, double relaxation)
     return std::fabs(change) * line.mobility;
 }
 
-/// Impulses of contacts alone, with a world that stands still: they may not make energy.
-bool makes_energy(const Problem& problem)
+/// Somebody else's motion, restitution or a motor may put energy in.
+bool is_driven(const Problem& problem)
 {
     const auto pushed = [](const Point& p) { return p.given != Vec3{} || p.least > 0; };
-    if (!problem.lines.empty() || std::any_of(problem.points.begin(), problem.points.end(), pushed)) return false;
-    double before = 0, after = 0;
-    for (std::size_t i = 0; i < problem.movers.size(); ++i)
-    {
-        const Anchor& m = problem.anchors[i];
-        const Vec3 &v = problem.movers[i].v, &w = problem.movers[i].w;
-        before += m.mass * length_squared(m.v) + dot(m.w, m.inertia * m.w);
-        after += m.mass * length_squared(v) + dot(w, m.inertia * w);
-    }
-    return after > before * (1 + 1e-9);
+    const auto driven = [](const Line& line)
+    { return line.count > 0 && (line.given != 0 || line.target > 0 || (line.target != 0 && line.least < 0)); };
+    return std::any_of(problem.points.begin(), problem.points.end(), pushed) ||
+           std::any_of(problem.lines.begin(), problem.lines.end(), driven);
 }
 
 }  // namespace
+
+bool makes_energy(const Problem& problem)
+{
+    return !is_driven(problem) && kinetic_energy(problem) > kinetic_energy_without(problem) * (1 + 1e-9);
+}
 
 double sweep_once(Problem& problem, double relaxation, bool backwards)
 {

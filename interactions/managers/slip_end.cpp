@@ -42,7 +42,7 @@ Verdict SlipEnds::try_part(double h)
     Problem& problem = memory_.problem;
     island_.motion->kick(h);
     problem.read_speeds(bodies_, shafts_);
-    set_targets(problem, island_, h, slop_);
+    set_targets(problem, island_, h, slop_, memory_.passing);
     problem.apply_impulses();
     return method_.find_impulses(problem);
 }

@@ -50,12 +50,15 @@ public:
             kick();
             sweep_points(true), sweep_lines(true);
             write();
+            if (bounces_) count_way();
             island_.motion->move(h_);
             turn_arms();
             for (int i = 0; i < choices_.relax_iterations; ++i) sweep_lines(false), sweep_points(false);
             write();
+            const int more = calm();
+            if (more > 0) write();
             gather();
-            out.iterations += 1 + choices_.relax_iterations;
+            out.iterations += 1 + choices_.relax_iterations + more;
         }
         give_back();
         finish(out);
@@ -69,7 +72,11 @@ private:
     void turn_arms();
     void sweep_points(bool soft);
     void sweep_lines(bool soft);
+    int calm();
     void gather();
+    void note_kicks(bool before);
+    void count_way();
+    double bounce(double share);
     void give_back();
     void finish(Verdict& out);
     double depth_now(std::size_t i) const;
@@ -82,6 +89,8 @@ private:
     Problem& problem_;
     double h_, rate_;
     Softness soft_, against_fixed_;
+    bool bounces_ = false;
+    double allowed_ = 0;  ///< J: kinetic energy that the start and the forces on the way allow
 };
 
 void SoftIsland::start()
@@ -103,13 +112,44 @@ void SoftIsland::start()
     memory_.greatest.assign(problem_.points.size(), 0.0);
     memory_.sum.assign(problem_.points.size(), Vec3{});
     memory_.line_sum.assign(problem_.lines.size(), 0.0);
+    bounces_ =
+        std::any_of(island_.contacts.begin(), island_.contacts.end(), [](const Contact& c) { return c.approach > 0 && c.restitution > 0; });
+    if (!bounces_) return;
+    problem_.read_speeds(bodies_, shafts_);
+    allowed_ = kinetic_energy_without(problem_);
+    memory_.kicks.resize(problem_.anchors.size());
+}
+
+/// Before and after a kick: what it did to the momenta.
+void SoftIsland::note_kicks(bool before)
+{
+    problem_.read_speeds(bodies_, shafts_);
+    for (std::size_t i = 0; i < problem_.anchors.size(); ++i)
+    {
+        const Anchor& m = problem_.anchors[i];
+        SoftMemory::Kick& k = memory_.kicks[i];
+        const SoftMemory::Kick now{m.v * m.mass, m.inertia * m.w};
+        if (before)
+            k = now;
+        else
+            k = {now.push - k.push, now.turn - k.turn};
+    }
+}
+
+/// Forces do their work on the way that the bodies go, also where they are pushed apart.
+void SoftIsland::count_way()
+{
+    for (std::size_t i = 0; i < problem_.movers.size(); ++i)
+        allowed_ += dot(memory_.kicks[i].push, problem_.movers[i].v) + dot(memory_.kicks[i].turn, problem_.movers[i].w);
 }
 
 void SoftIsland::kick()
 {
+    if (bounces_) note_kicks(true);
     island_.motion->kick(h_);
     if (!island_.rows.empty()) island_.motion->refresh_rows();
     problem_.read_speeds(bodies_, shafts_);
+    if (bounces_) note_kicks(false);
     // What stopped an impact is no guess for what comes after it.
     for (std::size_t i = 0; i < problem_.points.size(); ++i)
         if (island_.contacts[i].approach > 0) problem_.points[i].impulse = {};
@@ -197,24 +237,64 @@ void SoftIsland::gather()
     for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
 }
 
-void SoftIsland::give_back()
+/// Where the sub-step made energy: hard sweeps, then as much off all impulses as leaves none. The number of sweeps.
+int SoftIsland::calm()
 {
-    problem_.read_speeds(bodies_, shafts_);
+    constexpr int kSweeps = 2;
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, depth_now(i)) * rate_;
+    if (!makes_energy(problem_)) return 0;
+    const Swept done = sweep(problem_, {kSweeps, 0, 1});
+    problem_.apply_impulses();
+    if (!makes_energy(problem_)) return done.sweeps;
+    // With v0 without impulses and dv by them: the energy of s of them is 1/2 |v0 + s dv|^2, that of none again at this s.
+    double linear = 0, square = 0;
+    for (std::size_t i = 0; i < problem_.movers.size(); ++i)
+    {
+        const Anchor& m = problem_.anchors[i];
+        const Vec3 dv = problem_.movers[i].v - m.v, dw = m.inertia * (problem_.movers[i].w - m.w);
+        linear += m.mass * dot(m.v, dv) + dot(m.w, dw);
+        square += m.mass * length_squared(dv) + dot(problem_.movers[i].w - m.w, dw);
+    }
+    problem_.scale_impulses(std::clamp(-2 * linear / square, 0.0, 1.0));
+    return done.sweeps;
+}
+
+/// Impulses that give back a share of the restitution; the kinetic energy with them, J.
+double SoftIsland::bounce(double share)
+{
     problem_.clear_impulses();
     problem_.apply_impulses();
-    bool any = false;
     for (std::size_t i = 0; i < problem_.points.size(); ++i)
     {
         Point& p = problem_.points[i];
         const Contact& c = island_.contacts[i];
         if (!(c.approach > 0) || !(memory_.greatest[i] > 0) || c.restitution == 0) continue;
-        const double missing = c.restitution * c.approach - problem_.slip(p).z;
+        const double missing = share * c.restitution * c.approach - problem_.slip(p).z;
         if (missing <= 0) continue;
         p.impulse.z = missing / p.K(2, 2);
         problem_.push(p, {0, 0, p.impulse.z});
-        any = true;
     }
-    if (!any) return;
+    return kinetic_energy(problem_);
+}
+
+void SoftIsland::give_back()
+{
+    constexpr int kHalvings = 24;
+    problem_.read_speeds(bodies_, shafts_);
+    problem_.clear_impulses();
+    problem_.apply_impulses();
+    if (!bounces_) return;
+    const double most = std::max(allowed_, kinetic_energy_without(problem_));
+    double low = 0, high = 1;
+    if (bounce(1) > most)
+    {
+        for (int i = 0; i < kHalvings; ++i)
+        {
+            const double share = 0.5 * (low + high);
+            (bounce(share) > most ? high : low) = share;
+        }
+        (void)bounce(low);
+    }
     problem_.apply_impulses();
     problem_.write_speeds(bodies_, shafts_);
 }
@@ -225,7 +305,8 @@ void SoftIsland::finish(Verdict& out)
     {
         const Point& p = problem_.points[i];
         Contact& c = island_.contacts[i];
-        const Vec3 u = problem_.slip(p), j = memory_.sum[i];
+        const Vec3 u = problem_.slip(p), j = memory_.sum[i] + p.impulse;  // what was given back is in p
+
         c.impulse = p.t1 * j.x + p.t2 * j.y + p.n * j.z;
         c.slip = std::hypot(u.x, u.y);
         if (p.impulse.z == 0 && p.K(2, 2) > 0 && depth_now(i) >= 0) out.residual = std::max(out.residual, -u.z);
@@ -237,6 +318,7 @@ void SoftIsland::finish(Verdict& out)
         if (line.count > 0 && island_.rows[line.row].kind != RowKind::OneSided)
             out.residual = std::max(out.residual, std::fabs(problem_.rate(line) - island_.rows[line.row].rate));
     }
+    out.converged = out.residual <= choices_.tolerance;
 }
 
 }  // namespace

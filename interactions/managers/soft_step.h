@@ -10,7 +10,9 @@
 /// with omega = 2 pi hertz, zeta the damping ratio, c = h omega (2 zeta + h omega):
 ///   bias = omega / (2 zeta + h omega) * overlap (not faster than push_speed),  mass_share = c / (1 + c),
 ///   impulse_share = 1 / (1 + c).   Gaps: bias = gap / h, hard.
-/// After the last sub-step restitution, where a contact pressed and met faster than it now parts.
+/// Where speeds that pushed overlap apart are left over that make kinetic energy, hard sweeps follow, which make none.
+/// After the last sub-step restitution, where a contact pressed and met faster than it now parts; as much of it as the energy
+/// at the start of the step allows, what gravity did on the way counted.
 /// Source: Catto, Solver2D (2024), "Soft Step" (solve_soft_step.c); Macklin et al., Small Steps (2019), for sub-steps.
 #pragma once
 
@@ -25,7 +27,8 @@ struct SoftChoices
     int relax_iterations = 1;
     double hertz = 60;  ///< of a contact; not more than a quarter of the sub-steps' rate
     double damping_ratio = 10;
-    double push_speed = 3;  ///< m/s
+    double push_speed = 3;    ///< m/s
+    double tolerance = 1e-2;  ///< m/s: overlap that closes faster than this is not held
 };
 
 struct SoftMemory
@@ -38,6 +41,11 @@ struct SoftMemory
     std::vector<double> greatest;  ///< N s, largest normal impulse of a sub-step
     std::vector<Vec3> sum;         ///< N s, over the step
     std::vector<double> line_sum;
+    struct Kick
+    {
+        Vec3 push, turn;  ///< N s, N m s: by forces, in the sub-step
+    };
+    std::vector<Kick> kicks;
 };
 
 Verdict advance_softly(Island& island, Bodies& bodies, Shafts& shafts, const SoftChoices& choices, SoftMemory& memory);

@@ -13,13 +13,20 @@ namespace
 
 /// A gap that counts as touching while others collide, m.
 constexpr double kTouching = 1e-6;
+/// Steps in which a contact that parts is left to itself.
+constexpr double kSoon = 8;
+/// Slower than this nothing meets, m/s.
+constexpr double kSlow = 1e-9;
 
 bool meets(const Contact& c, double h) { return c.approach > 0 && (c.depth >= 0 || c.approach * h > -c.depth); }
 
-double closing(const Problem& problem, const Line& line, const ConstraintRow& row)
+/// Speed at which a limit is met: at its bound, or on the way to it where it rebounds within the step.
+double closing(const Problem& problem, const Line& line, const ConstraintRow& row, double h)
 {
-    if (line.count == 0 || row.kind != RowKind::OneSided || row.error > 0) return 0;
-    return row.rate - problem.rate(line);
+    if (line.count == 0 || row.kind != RowKind::OneSided) return 0;
+    const double speed = row.rate - problem.rate(line);
+    const bool met = row.error <= 0 || (row.restitution > 0 && speed * h > row.error);
+    return met ? std::max(0.0, speed) : 0.0;
 }
 
 bool any_impact(const Problem& problem, const Island& island)
@@ -29,43 +36,47 @@ bool any_impact(const Problem& problem, const Island& island)
                        [&](const Line& line)
                        {
                            const ConstraintRow& row = island.rows[line.row];
-                           return row.restitution > 0 && closing(problem, line, row) > 0;
+                           return row.restitution > 0 && closing(problem, line, row, island.h) > 0;
                        });
 }
 
-void set_impact_targets(Problem& problem, const Island& island, double share)
+/// Moreau's law of impact, u_n' >= -e u_n for all that touch, also where they part: with one e for all it makes no energy, and
+/// with e = 1 it keeps it. Asking those that part for u_n' >= 0 would.
+void set_impact_targets(Problem& problem, const Island& island, std::span<const Vec3> before, double share)
 {
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         const Contact& c = island.contacts[i];
         Point& p = problem.points[i];
+        const double restitution = share * c.restitution;
         if (meets(c, island.h))
-            p.least = share * c.restitution * c.approach;
+            p.least = restitution * c.approach;
         else
-            p.least = c.depth >= -kTouching || c.impulse != Vec3{} ? 0.0 : kFar;
+            p.least = c.depth >= -kTouching || c.impulse != Vec3{} ? -restitution * std::max(0.0, before[i].z) : kFar;
     }
     for (Line& line : problem.lines)
     {
         const ConstraintRow& row = island.rows[line.row];
         const bool one_sided = row.kind == RowKind::OneSided;
-        line.target = row.rate + share * row.restitution * std::max(0.0, closing(problem, line, row));
+        const double speed = closing(problem, line, row, island.h);
+        line.target = row.rate + share * row.restitution * speed;
         line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
         // Motors have no impulse at an instant; a limit that is away has none either.
-        if (row.kind == RowKind::Rate || (one_sided && row.error > 0)) line.least = line.most = 0;
+        if (row.kind == RowKind::Rate || (one_sided && row.error > 0 && speed == 0)) line.least = line.most = 0;
     }
 }
 
-/// Energy that the impulses made, beyond rounding, J: the sum of j . (u + u') / 2.
-double energy_gained(const Problem& problem, std::span<const Vec3> before)
+/// What part of the impulses, at most 1, makes no kinetic energy: of j u + j K j / 2 with the speeds of separation u before.
+double share_without_gain(const Problem& problem, std::span<const Vec3> before)
 {
-    double gain = 0, size = 0;
+    double linear = 0, square = 0, size = 0;
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         const Point& p = problem.points[i];
-        gain += 0.5 * dot(p.impulse, before[i] + problem.slip(p));
+        linear += dot(p.impulse, before[i]), square += dot(p.impulse, problem.slip(p) - before[i]);
         size += length(p.impulse) * length(before[i]);
     }
-    return gain > 1e-11 * size ? gain : 0.0;
+    return linear + 0.5 * square > 1e-11 * size ? std::max(0.0, -2 * linear / square) : 1.0;
 }
 
 }  // namespace
@@ -86,28 +97,39 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     problem.read_speeds(bodies, shafts);
     problem.clear_impulses();
     problem.apply_impulses();
+    memory.passing.clear(), memory.impacts.clear();
     if (!any_impact(problem, island)) return out;
     auto& before = memory.separations;
     before.clear();
     for (const Point& p : problem.points) before.push_back(problem.slip(p));
-    // Newton's law with friction may give back more than there was; then less is given back, and nothing at last.
+    // Newton's law with friction may give back more than there was, and sweeps that did not get there too. A little more is
+    // taken off the impulses; where it is much, less is asked for, and nothing at last.
+    constexpr double kLittle = 0.9;
     double share = 1;
     for (int trial = 1;; ++trial)
     {
-        set_impact_targets(problem, island, share);
+        set_impact_targets(problem, island, before, share);
         out.join(method.find_impulses(problem));
-        if (share == 0 || energy_gained(problem, before) == 0) break;
+        const double fits = share_without_gain(problem, before);
+        if (fits >= kLittle || share == 0)
+        {
+            if (fits < 1) problem.scale_impulses(fits), problem.apply_impulses();
+            break;
+        }
         share = trial < kTrials ? 0.5 * share : 0.0;
         problem.clear_impulses();
         problem.apply_impulses();
     }
+    for (const Point& p : problem.points)
+        memory.passing.push_back(p.least > kFar ? std::min(0.0, p.least) : 0.0), memory.impacts.push_back(p.impulse);
     problem.write_speeds(bodies, shafts);
     return out;
 }
 
-void set_targets(Problem& problem, const Island& island, double h, double slop)
+void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing)
 {
     for (std::size_t i = 0; i < problem.points.size(); ++i) problem.points[i].least = std::min(0.0, island.contacts[i].depth + slop) / h;
+    for (std::size_t i = 0; i < passing.size(); ++i) problem.points[i].least = std::min(problem.points[i].least, passing[i]);
     for (Line& line : problem.lines)
     {
         const ConstraintRow& row = island.rows[line.row];
@@ -159,8 +181,9 @@ Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& met
     {
         const Contact& c = island.contacts[i];
         Point& p = problem.points[i];
-        // What parts by itself within the next step is left to its speed.
-        const bool leaves = c.depth <= 0 ? false : problem.slip(p).z * island.h > c.depth;
+        // What parts by itself soon, or meets in the next step, is left to its speed: being parted it would gain height.
+        const bool meets_next = i < memory.passing.size() && memory.passing[i] < -kSlow;
+        const bool leaves = c.depth > 0 && (meets_next || problem.slip(p).z * kSoon * island.h > c.depth);
         p.least = leaves ? kFar : (c.depth - choices.slop) * (c.depth > choices.slop ? choices.parted_share : 1.0);
         worst = std::max(worst, leaves || p.K(2, 2) == 0 ? 0.0 : p.least);
     }
@@ -211,7 +234,7 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     {
         island.motion->kick(island.h);
         problem.read_speeds(bodies, shafts);
-        set_targets(problem, island, island.h, choices.slop);
+        set_targets(problem, island, island.h, choices.slop, memory.passing);
         problem.apply_impulses();
         const Verdict found = method.find_impulses(problem);
         out.join(found);
@@ -219,6 +242,8 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
         move(island, found, island.h);
         store_impulses(problem, island);
     }
+    for (std::size_t i = 0; i < memory.impacts.size(); ++i)
+        if (island.contacts[i].approach > 0) island.contacts[i].impulse += to_world(problem.points[i], memory.impacts[i]);
     const Verdict moved = part_overlap(island, bodies, shafts, method, choices, memory);
     out.iterations += moved.iterations;
     out.fell_back = out.fell_back || moved.fell_back;

@@ -48,6 +48,8 @@ struct StepMemory
     std::vector<Vec3> impulses;  ///< N s, of parts of the step that are over
     std::vector<double> line_impulses;
     std::vector<Vec3> separations;  ///< of impacts
+    std::vector<Vec3> impacts;      ///< N s, by point; none if nothing met
+    std::vector<double> passing;    ///< m/s, <= 0: what an impact leaves closing, for the next step's to answer
     struct Speeds
     {
         Vec3 velocity, spin, momentum;
@@ -70,8 +72,8 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
 
 // The parts of it, for managers that step otherwise.
 Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory);
-/// What speeds may be at the end of h.
-void set_targets(Problem& problem, const Island& island, double h, double slop);
+/// What speeds may be at the end of h; `passing` as in StepMemory, or none.
+void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing = {});
 Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory);
 /// With the mean of old and new speeds; where impulses are not what they should be, with the new ones: those keep gaps from
 /// closing, means of them with speeds into an overlap would not.

@@ -8,6 +8,10 @@ namespace plab::response
 {
 namespace
 {
+/// Directions that are looked at.
+constexpr int kSamples = 128;
+constexpr double kStep = 6.283185307179586 / kSamples;
+
 /// A contact that slides along (c, s): j = j_n (-mu c, -mu s, 1) with j_n from u_n = b.
 class Sliding
 {
@@ -26,12 +30,17 @@ public:
 
     /// Repeats "slide along the slip that results" while that settles: at once where K does not couple directions.
     std::optional<Vec3> settle(double c, double s) const;
+    /// The one close to the direction that slid last.
+    std::optional<Vec3> find_near(double c, double s) const;
     /// Looks at all directions for the one that slides along itself.
     std::optional<Vec3> scan() const;
 
 private:
-    /// sin of the angle from (c, s) to the slip; NaN where there is no such sliding.
+    /// Slip across the direction, m/s; NaN where there is no such sliding.
     double miss(double angle) const;
+    std::optional<Vec3> along(double angle) const;
+    /// Rounding of a slip that is the difference of r and K j, m/s.
+    double rounding(const Vec3& j) const { return 4e-16 * (length(r_) + length(K_ * j)); }
 
     const Mat3& K_;
     const Vec3& r_;
@@ -50,7 +59,7 @@ std::optional<Vec3> Sliding::settle(double c, double s) const
         const double speed = std::hypot(u.x, u.y);
         if (!(speed > 0)) return {};
         const double turn = (c * u.y - s * u.x) / speed;
-        if (c * u.x + s * u.y > 0 && std::fabs(turn) <= kSettled) return j;
+        if (c * u.x + s * u.y > 0 && std::fabs(turn) <= std::max(kSettled, rounding(*j) / speed)) return j;
         c = u.x / speed, s = u.y / speed;
     }
     return {};
@@ -65,10 +74,39 @@ double Sliding::miss(double angle) const
     return c * u.y - s * u.x;
 }
 
+std::optional<Vec3> Sliding::along(double angle) const
+{
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto j = impulse(c, s);
+    if (!j) return {};
+    const Vec3 u = slip(*j);
+    return c * u.x + s * u.y > 0 ? j : std::nullopt;
+}
+
+/// Illinois' rule between two neighbours of the last direction.
+std::optional<Vec3> Sliding::find_near(double c, double s) const
+{
+    constexpr int kTrials = 40;
+    const double angle = std::atan2(s, c);
+    double lo = angle - kStep, hi = angle + kStep, f_lo = miss(lo), f_hi = miss(hi);
+    if (std::isnan(f_lo) || std::isnan(f_hi) || (f_lo < 0) == (f_hi < 0)) return {};
+    for (int i = 0; i < kTrials; ++i)
+    {
+        const double next = lo - f_lo * ((hi - lo) / (f_hi - f_lo)), f = miss(next);
+        if (std::isnan(f)) return {};
+        const auto j = along(next);
+        if (f == 0 || (j && std::fabs(f) <= rounding(*j))) return j;
+        if ((f < 0) == (f_hi < 0))
+            f_lo *= 0.5;
+        else
+            lo = hi, f_lo = f_hi;
+        hi = next, f_hi = f;
+    }
+    return {};
+}
+
 std::optional<Vec3> Sliding::scan() const
 {
-    constexpr int kSamples = 128;
-    constexpr double kStep = 6.283185307179586 / kSamples;
     for (int i = 0; i < kSamples; ++i)
     {
         double lo = i * kStep, hi = (i + 1) * kStep;
@@ -79,17 +117,13 @@ std::optional<Vec3> Sliding::scan() const
             const double middle = 0.5 * (lo + hi);
             ((miss(middle) < 0) == (f_lo < 0) ? lo : hi) = middle;
         }
-        const double c = std::cos(lo), s = std::sin(lo);
-        const auto j = impulse(c, s);
-        if (!j) continue;
-        const Vec3 u = slip(*j);
-        if (c * u.x + s * u.y > 0) return j;
+        if (const auto j = along(lo)) return j;
     }
     return {};
 }
 }  // namespace
 
-Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction)
+Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, const Vec3& last)
 {
     if (r.z >= least) return {};
     if (friction == 0) return {0, 0, (least - r.z) / K(2, 2)};
@@ -99,6 +133,9 @@ Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction)
     const Sliding sliding(K, r, least, friction);
     if (const double slip = std::hypot(r.x, r.y); slip > 0)
         if (const auto j = sliding.settle(r.x / slip, r.y / slip)) return *j;
+    // Friction acts against the slip.
+    if (last.x != 0 || last.y != 0)
+        if (const auto j = sliding.find_near(-last.x, -last.y)) return *j;
     if (const auto j = sliding.scan()) return *j;
     // No sliding fits: the sticking impulse brought back to the cone keeps the contact from closing.
     const double normal = std::max(stick.z, (least - r.z) / K(2, 2));
@@ -117,7 +154,7 @@ ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double t
         {
             const Vec3 before = c.impulse;
             const Vec3 r = c.point->velocity(bodies) - c.point->K() * before;
-            c.impulse = solve_cone(c.point->K(), r, c.least, c.friction);
+            c.impulse = solve_cone(c.point->K(), r, c.least, c.friction, before);
             const Vec3 change = c.impulse - before;
             if (change == Vec3{}) continue;
             const Vec3 kick = c.point->K() * change;

@@ -29,8 +29,9 @@ struct ConeResult
     double residual = 0;  ///< m/s, largest b - u_n left
 };
 
-/// The impulse of one contact whose velocity without it is r (m/s).
-Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction);
+/// The impulse of one contact whose velocity without it is r (m/s). `last`: its impulse in the last sweep, near which it is
+/// looked for where repeating does not settle.
+Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, const Vec3& last = {});
 
 /// Changes the velocities in `bodies`. Ends when no impulse changes its contact's velocity by more than `tolerance`
 /// (m/s).

@@ -11,6 +11,8 @@ namespace
 {
 /// Patches whose closing speeds differ by less than this share close at one speed.
 constexpr double kSameSpeed = 1e-9;
+/// Share of the fastest approach that is left where bodies are caught between others.
+constexpr double kStill = 1e-6;
 
 /// Patch by patch, the one that closes fastest first, until none closes: how Mirtich's bodies meet.
 class ImpactSequence
@@ -34,6 +36,7 @@ private:
     double restitution_of(const Patch& patch, bool plastic) const;
     void hit_point(std::uint32_t contact, double restitution);
     void hit_at_once();
+    void choose_all();
     void save_bodies();
     double try_at_once(double share);
 
@@ -41,7 +44,8 @@ private:
     Workspace& work_;
     Bodies& bodies_;
     std::span<Contact> contacts_;
-    double threshold_ = 0;  // m/s, closing speed that is none
+    double threshold_ = 0;    // m/s, closing speed that is none
+    std::int64_t spent_ = 0;  // impacts of single points and sweeps of the others
 };
 
 void ImpactSequence::prepare()
@@ -117,6 +121,12 @@ void ImpactSequence::choose(std::uint32_t fastest, double speed)
     std::sort(chosen.begin(), chosen.end());
 }
 
+void ImpactSequence::choose_all()
+{
+    work_.together.clear();
+    for (std::uint32_t p = 0; p < work_.patches.size(); ++p) work_.together.push_back(p);
+}
+
 double ImpactSequence::restitution_of(const Patch& patch, bool plastic) const
 {
     const double closing = closing_speed(patch);
@@ -151,6 +161,7 @@ void ImpactSequence::hit_point(std::uint32_t contact, double restitution)
     const ImpactResult r = solve_impact(point.K(), point.velocity(bodies_), contacts_[contact].friction, restitution);
     point.apply(bodies_, r.impulse, r.velocity.z);
     contacts_[contact].impulse += point.to_world(r.impulse);
+    ++spent_;
 }
 
 void ImpactSequence::save_bodies()
@@ -197,7 +208,7 @@ double ImpactSequence::try_at_once(double share)
         work_.before.push_back(u);
         work_.cones.push_back({&work_.points[h.contact], contacts_[h.contact].friction, u.z < 0 ? -share * h.restitution * u.z : 0.0, {}});
     }
-    solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations);
+    spent_ += solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations).sweeps;
     double gain = 0, size = 0;
     for (std::size_t k = 0; k < work_.cones.size(); ++k)
     {
@@ -213,25 +224,33 @@ void ImpactSequence::run(Impact& impact)
 {
     prepare();
     group();
-    const int budget = settings_.max_iterations * static_cast<int>(std::max<std::size_t>(1, work_.patches.size()));
-    double fastest = 0;
-    for (impact.iterations = 0; impact.iterations < budget; ++impact.iterations)
+    const std::int64_t budget = settings_.max_iterations * static_cast<std::int64_t>(std::max<std::size_t>(1, work_.patches.size()));
+    bool plastic = false;
+    double hardest = 0;  // m/s
+    for (impact.iterations = 0; spent_ < budget; ++impact.iterations)
     {
         std::uint32_t next = kNoIndex;
-        fastest = threshold_;
+        double fastest = threshold_;
         for (std::uint32_t p = 0; p < work_.patches.size(); ++p)
             if (const double v = closing_speed(work_.patches[p]); v > fastest) fastest = v, next = p;
         if (next == kNoIndex) break;
-        choose(next, fastest);
-        // Bodies caught between others may bounce for ever; what is left by then is taken out without bounce.
-        hit(impact.iterations > budget / 2);
+        // Bodies caught between others may bounce for ever; what is left by then is taken out without bounce, at once.
+        hardest = std::max(hardest, fastest);
+        plastic = spent_ > budget / 2;
+        if (plastic)
+            choose_all();
+        else
+            choose(next, fastest);
+        hit(plastic);
     }
     impact.residual = 0;
+    // What was taken out without bounce stays, though sweeps may have left a little of its speed: else it would come again.
+    const double still = plastic ? std::max(threshold_, kStill * hardest) : threshold_;
     for (const std::uint32_t i : work_.order)
     {
         const double closing = closing_speed(i);
         impact.residual = std::max(impact.residual, closing);
-        contacts_[i].resting = closing <= threshold_ && rests(contacts_[i], std::max(0.0, -closing));
+        contacts_[i].resting = closing <= still && (rests(contacts_[i], std::max(0.0, -closing)) || (plastic && -closing <= still));
     }
     impact.converged = impact.residual <= threshold_;
 }

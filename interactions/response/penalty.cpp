@@ -143,15 +143,17 @@ void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& 
                          Impact& impact)
 {
     const double k = rows.stiffness[row], exponent = rows.exponent[row];
-    const auto law = [&](const Contact& c, double, double parting)
+    const auto law = [&](const Contact& c, double mobility, double parting)
     {
         NormalForce n;
         const double before = c.preload > 0 ? std::pow(c.preload / k, 1 / exponent) : 0.0;
         const double x = c.depth - c.rest_depth + before;
         if (x <= 0) return n;
         const double loss = remembered(rows.loss_of_restitution[row], c.restitution, loss_for_restitution);
-        const double dissipation = rows.dissipation[row] + loss / std::max(c.approach, rows.least_speed[row]);
         const double spring = k * std::pow(x, exponent);
+        // What a load presses deeper than the approach could is damped as if it had come with the speed that gets that deep.
+        const double speed = std::sqrt(2 * spring * x / (exponent + 1) * mobility);
+        const double dissipation = rows.dissipation[row] + loss / std::max({c.approach, rows.least_speed[row], speed});
         n.force = std::max(spring * (1 - dissipation * parting), 0.0);
         n.stiffness = exponent * spring / x;
         n.stored = spring * x / (exponent + 1);

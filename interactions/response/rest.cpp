@@ -4,18 +4,56 @@
 
 namespace plab::response
 {
+namespace
+{
+
+/// J, beyond rounding: what the impulses made of the energy there was, the sum of j . (u + u') / 2.
+double energy_gained(std::span<const ConeContact> cones, std::span<const Vec3> before, const Bodies& bodies)
+{
+    double gain = 0, size = 0;
+    for (std::size_t k = 0; k < cones.size(); ++k)
+    {
+        gain += 0.5 * dot(cones[k].impulse, before[k] + cones[k].point->velocity(bodies));
+        size += length(cones[k].impulse) * length(before[k]);
+    }
+    return gain > 1e-12 * size ? gain : 0.0;
+}
+
+void take_back(std::span<ConeContact> cones, Bodies& bodies)
+{
+    for (ConeContact& c : cones)
+    {
+        if (c.impulse == Vec3{}) continue;
+        c.point->apply(bodies, -c.impulse, (c.point->velocity(bodies) - c.point->K() * c.impulse).z);
+        c.impulse = {};
+    }
+}
+
+/// Sweeps from the last step's impulses, which may be more than there is to do; where they did not come down in time and
+/// left energy behind, from nothing: then each sweep only takes energy away.
+ConeResult solve_without_gain(const ImpactSettings& settings, Workspace& work, Bodies& bodies)
+{
+    const ConeResult warm = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations);
+    if (warm.converged || energy_gained(work.cones, work.before, bodies) == 0) return warm;
+    take_back(work.cones, bodies);
+    ConeResult cold = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations);
+    cold.sweeps += warm.sweeps;
+    return cold;
+}
+
+}  // namespace
 
 void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact)
 {
     const auto contacts = impact.contacts;
-    work.points.clear(), work.cones.clear(), work.order.clear();
-    double speed = 0;
+    work.points.clear(), work.cones.clear(), work.order.clear(), work.before.clear();
     for (std::uint32_t i = 0; i < contacts.size(); ++i)
     {
         work.points.emplace_back(contacts[i], bodies);
         if (work.points.back().moves()) work.order.push_back(i);
     }
     std::sort(work.order.begin(), work.order.end(), [&](auto i, auto j) { return contacts[i].id < contacts[j].id; });
+    for (const std::uint32_t i : work.order) work.before.push_back(work.points[i].velocity(bodies));
     for (const std::uint32_t i : work.order)
     {
         const Contact& c = contacts[i];
@@ -26,7 +64,7 @@ void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodie
         if (guess != Vec3{}) point.apply(bodies, guess, point.velocity(bodies).z + (point.K() * guess).z);
         work.cones.push_back({&point, c.friction, least, guess});
     }
-    const ConeResult result = solve_cones(work.cones, bodies, std::max(settings.tolerance, 0x1p-46 * speed), settings.max_iterations);
+    const ConeResult result = solve_without_gain(settings, work, bodies);
     for (std::size_t k = 0; k < work.order.size(); ++k)
         contacts[work.order[k]].impulse = work.cones[k].point->to_world(work.cones[k].impulse);
     impact.iterations = result.sweeps, impact.residual = result.residual, impact.converged = result.converged;

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "publish/figures.h"
+#include "simulation/contact_rules.h"
 #include "simulation/step_tree.h"
 
 namespace plab::daemon
@@ -74,6 +75,7 @@ std::string collision_text(const simulation::Simulation& s)
     std::string out;
     for (const simulation::Detector& d : s.stepper().detectors())
         out += "collision " + s.world().id_of(d.component) + ": " + publish::answer_of(s, d) + "\n";
+    for (const std::string& sentence : simulation::unused_in_contacts(s.world(), s.stepper().detectors())) out += "  " + sentence + "\n";
     if (out.empty()) out = "collision: none, so no memento is kept and no contact is looked for\n";
     return out;
 }
@@ -92,6 +94,16 @@ std::string explain(const simulation::Simulation& s, const plugins::PluginLibrar
         "objects: " + std::to_string(bodies) + " bodies in space, " + std::to_string(shafts) + " shafts with one degree of freedom\n";
     if (bodies == 0) out += "no 3-D state: no body is in the scene\n";
     return out + plugins_text(library) + step_text(s.stepper()) + groups_text(s) + collision_text(s);
+}
+
+std::string explain_choices(const simulation::Simulation& s)
+{
+    std::string out;
+    const std::vector<std::string> resolved = publish::resolved_algorithms(s);
+    for (const std::uint32_t i : s.world().in_id_order())
+        if (const model::ComponentType* type = s.world().type_of(i); type && type->schema.find_field("reason"))
+            out += "  " + s.world().id_of(i) + " (" + type->info.name + "): " + resolved[i] + "\n";
+    return out.empty() ? out : "chosen in a first step\n" + out;
 }
 
 }  // namespace plab::daemon

@@ -83,6 +83,8 @@ int carry_out(const plab::daemon::Options& options)
             return 0;
         case plab::daemon::Task::Explain:
             std::fputs(plab::daemon::explain(simulation, library).c_str(), stdout);
+            simulation.step();  // choices by the state exist only then
+            std::fputs(plab::daemon::explain_choices(simulation).c_str(), stdout);
             return 0;
         default:
             return run_scene(simulation, library, options, start);

@@ -86,19 +86,23 @@ std::string interaction_json(const simulation::Simulation& s, std::uint32_t i, d
     return out + (world.component(i).quarantined ? ", \"quarantined\": true}" : "}");
 }
 
-/// Pairs that touch: who, since which step, under which contact ids.
+/// A pair that touches: who, since which step, under which contact ids.
+template <class Pair>
+void append_pair(std::string& out, const simulation::Simulation& s, const Pair& pair, bool resting)
+{
+    std::string ids;
+    for (std::uint32_t i = 0; i < pair.count; ++i) ids += (i == 0 ? "" : ", ") + std::to_string(pair.contacts[i].id);
+    out += (out.empty() ? "" : ",") + std::string("\n    {\"detector\": ") + quoted(s.world().id_of(pair.detector)) +
+           ", \"a\": " + quoted(s.world().id_of(pair.a)) + ", \"b\": " + quoted(s.world().id_of(pair.b)) +
+           ", \"since\": " + std::to_string(pair.since) + ", \"resting\": " + (resting ? "true" : "false") + ", \"ids\": [" + ids + "]}";
+}
+
+/// Hard pairs, then those that are forces; the latter never rest.
 std::string contacts_json(const simulation::Simulation& s)
 {
     std::string out;
-    for (const simulation::PairState& pair : s.stepper().contacts().pairs())
-    {
-        std::string ids;
-        for (std::uint32_t i = 0; i < pair.count; ++i) ids += (i == 0 ? "" : ", ") + std::to_string(pair.contacts[i].id);
-        out += (out.empty() ? "" : ",") + std::string("\n    {\"detector\": ") + quoted(s.world().id_of(pair.detector)) +
-               ", \"a\": " + quoted(s.world().id_of(pair.a)) + ", \"b\": " + quoted(s.world().id_of(pair.b)) +
-               ", \"since\": " + std::to_string(pair.since) + ", \"resting\": " + (pair.resting ? "true" : "false") + ", \"ids\": [" + ids +
-               "]}";
-    }
+    for (const simulation::PairState& pair : s.stepper().contacts().pairs()) append_pair(out, s, pair, pair.resting);
+    for (const simulation::ForcePair& pair : s.stepper().contacts().force_pairs()) append_pair(out, s, pair, false);
     return out;
 }
 

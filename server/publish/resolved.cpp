@@ -61,10 +61,27 @@ std::map<std::uint32_t, Use> uses_of_solvers(const simulation::Simulation& s)
     return out;
 }
 
+/// What a text output of a component says now; empty if it has none of that name.
+std::string text_of(const world::World& world, std::uint32_t component, const std::string& output)
+{
+    if (!world.table_of(component).schema().find_field(output)) return {};
+    const Value value = world.get(component, output);
+    const auto* text = std::get_if<std::string>(&value);
+    return text ? *text : std::string();
+}
+
+/// What a solver that chooses or falls back says that it uses, and why; empty if that is what its name says.
+std::string choice_of(const world::World& world, std::uint32_t solver)
+{
+    const std::string method = text_of(world, solver, "resolved"), why = text_of(world, solver, "reason");
+    if (method.empty() || world.type_of(solver)->info.name.ends_with("/" + method)) return {};
+    return ", by " + method + (why.empty() ? "" : " (last choice: " + why + ")");
+}
+
 std::string words_for_solver(const world::World& world, std::uint32_t solver, const Use& use)
 {
     std::string out = use.groups == 0 ? "nothing" : world.type_of(solver)->info.name;
-    if (use.groups > 0) out += ": " + counted(use.groups, "group") + ", " + counted(use.objects, "object");
+    if (use.groups > 0) out += ": " + counted(use.groups, "group") + ", " + counted(use.objects, "object") + choice_of(world, solver);
     if (use.groups == 0 && use.others.empty()) out += ": nobody that moves names it";
     if (use.mixed > 0) out += "; in " + counted(use.mixed, "group") + " some members name another solver";
     for (const auto& [other, objects] : use.others)

@@ -63,7 +63,8 @@ Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
     out.step_ns = step_ns_, out.real_time_factor = real_time_factor_;
     fill_ledger(s, out);
     out.residual = s.stepper().report().worst_residual, out.deepest = s.stepper().report().deepest;
-    out.contacts = static_cast<std::uint32_t>(s.stepper().contacts().pairs().size());
+    const simulation::ContactCache& contacts = s.stepper().contacts();
+    out.contacts = static_cast<std::uint32_t>(contacts.pairs().size() + contacts.force_pairs().size());
     std::vector<std::string> resolved = resolved_algorithms(s);
     for (const std::uint32_t i : s.world().in_id_order())
     {

@@ -33,18 +33,26 @@ bool Stepper::run_solver(GroupSystem& system, std::uint32_t solver, double from,
     system.begin(from, to, book, events);
     if (system.needs_solver() && solver != kNoIndex)
     {
-        const world::Component& c = world_.component(solver);
-        world::Table& table = *world_.tables()[c.table];
-        StepContext context = system.context();  // the solver's own rows: evaluations set it to those of forces
-        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-        PhaseCall call;
-        call.context = &context;
-        call.rows = Rows(&c.row, 1);
-        call.system = &system;
-        for (const CommandInfo& command : table.type().info.commands)
-            if (command.phase == Phase::Advance && command.run) (void)command.run(call, table.rows());
+        // Of the two that a solver may have, the last one is for any system.
+        const auto& commands = world_.type_of(solver)->info.commands;
+        const auto command =
+            std::find_if(commands.rbegin(), commands.rend(), [](const CommandInfo& c) { return c.phase == Phase::Advance && c.run; });
+        if (command != commands.rend()) (void)call_solver(system, solver, *command);
     }
     return system.finish();
+}
+
+bool Stepper::call_solver(GroupSystem& system, std::uint32_t solver, const CommandInfo& command)
+{
+    const world::Component& c = world_.component(solver);
+    world::Table& table = *world_.tables()[c.table];
+    StepContext context = system.context();  // the solver's own rows: evaluations set it to those of forces
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    PhaseCall call;
+    call.context = &context;
+    call.rows = Rows(&c.row, 1);
+    call.system = &system;
+    return static_cast<bool>(command.run(call, table.rows()));
 }
 
 void Stepper::split_by_contact(std::span<const std::uint32_t> groups)
@@ -106,7 +114,15 @@ void Stepper::advance(std::span<const std::uint32_t> groups, double from, double
 
 bool Stepper::goes_alone(const Group& group) const
 {
-    return !group.rows.empty() || (group.solver != kNoIndex && !world_.type_of(group.solver)->info.elementwise);
+    if (!group.rows.empty()) return true;
+    if (group.solver == kNoIndex) return false;
+    const TypeInfo& solver = world_.type_of(group.solver)->info;
+    if (solver.elementwise) return false;
+    // Some solvers treat each body by itself where no force depends on time or state.
+    const auto& forces = schedule_.of(Phase::Force);
+    const auto is_uniform = [&](const BlockRow& force) { return world_.tables()[forces[force.block].table]->type().info.uniform; };
+    const bool free = group.couplings.empty() && !extra_ && std::all_of(group.forces.begin(), group.forces.end(), is_uniform);
+    return !(solver.uniform && free);
 }
 
 /// Groups that are advanced in one system without changing a bit: those of one elementwise solver; the members of one

@@ -15,7 +15,7 @@ void ContactForces::report(std::vector<FoundContact>& found)
     for (FoundContact& f : found)
     {
         if (!by_force_[f.detector]) continue;
-        const ForceContact* known = find_pushing(f);
+        const ForceContact* known = find_known(f);
         if (!known) continue;
         f.contact.id = known->id, f.contact.impulse = known->force * s_->frame_.step;
         f.contact.stretch = known->stretch;

@@ -44,6 +44,8 @@ struct ForceContact
     Tick asked = -1;         ///< step in which `peak` was estimated last
     bool slack = false;      ///< overlaps, and the law gives no force: a damper that would have to pull
     bool told = false;       ///< its impact is an event already
+    /// Has let go where a swap had let an overlap be: no force until the bodies have parted, or close again.
+    bool dormant = false;
 };
 
 /// A pair of bodies with contact points that push.
@@ -54,6 +56,8 @@ struct ForcePair
     std::uint32_t detector = kNoIndex;  ///< component
     Ref a, b;
     Tick since = 0;
+    std::uint64_t law_type = 0;  ///< which law made it what it is: the type
+    std::uint64_t law = 0;       ///< type and parameters
     Vec3 normal;
     std::uint32_t count = 0;
     std::array<ForceContact, kMostContacts> contacts;

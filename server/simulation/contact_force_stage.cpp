@@ -41,8 +41,18 @@ std::vector<ForcePair>::iterator ContactForces::place_of(std::uint32_t detector,
 
 ForcePair* ContactForces::find_pair(std::uint32_t detector, Ref a, Ref b)
 {
-    const auto at = place_of(detector, a, b);
-    return at != live_.pairs.end() && at->detector == detector && at->a == a && at->b == b ? &*at : nullptr;
+    const auto is_it = [&](std::size_t i)
+    {
+        if (i >= live_.pairs.size()) return false;
+        const ForcePair& p = live_.pairs[i];
+        return p.detector == detector && p.a == a && p.b == b;
+    };
+    if (is_it(last_pair_)) return &live_.pairs[last_pair_];
+    if (is_it(last_pair_ + 1)) return &live_.pairs[++last_pair_];
+    const auto at = static_cast<std::size_t>(place_of(detector, a, b) - live_.pairs.begin());
+    if (!is_it(at)) return nullptr;
+    last_pair_ = at;
+    return &live_.pairs[at];
 }
 
 void ContactForces::list_pushing()
@@ -53,14 +63,21 @@ void ContactForces::list_pushing()
         const ForcePair* pair = find_pair(s_->detectors_[n.detector].component, n.a, n.b);
         if (!pair) continue;
         const auto i = static_cast<std::uint32_t>(pair - live_.pairs.data());
-        for (std::uint32_t k = 0; k < pair->count; ++k) pushing_.push_back({i, k});
+        for (std::uint32_t k = 0; k < pair->count; ++k)
+            if (!pair->contacts[k].dormant) pushing_.push_back({i, k});
     }
+}
+
+ForceContact* ContactForces::find_known(const FoundContact& f)
+{
+    ForcePair* pair = find_pair(s_->detectors_[f.detector].component, f.contact.a, f.contact.b);
+    return pair ? pair->find(f.contact.feature) : nullptr;
 }
 
 ForceContact* ContactForces::find_pushing(const FoundContact& f)
 {
-    ForcePair* pair = find_pair(s_->detectors_[f.detector].component, f.contact.a, f.contact.b);
-    return pair ? pair->find(f.contact.feature) : nullptr;
+    ForceContact* known = find_known(f);
+    return known && !known->dormant ? known : nullptr;
 }
 
 void ContactForces::anchor()
@@ -85,6 +102,15 @@ void ContactForces::detect(std::uint32_t index, std::span<const StandingPair> pa
     (void)detector.command->run(call, table.rows());  // what fails fails in the look at the end of the step, which tells it
 }
 
+void ContactForces::fill_surface(FoundContact& f) const
+{
+    const world::HostTables& host = s_->world_.host();
+    const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
+    const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
+    const SurfaceLaw& law = own ? *own : surfaces_[f.detector];
+    f.contact.friction = law.friction, f.contact.restitution = law.restitution;
+}
+
 void ContactForces::inspect(double margin, std::vector<Seen>& out)
 {
     found_.clear();
@@ -99,7 +125,7 @@ void ContactForces::inspect(double margin, std::vector<Seen>& out)
     out.clear();
     for (FoundContact& f : found_)
     {
-        s_->fill_material(f);
+        fill_surface(f);
         out.push_back({f, s_->normal_velocity(f.contact)});
     }
 }
@@ -130,7 +156,8 @@ void ContactForces::gather(bool lead)
         while (s_->detectors_[d].component != component) ++d;
         standing_.clear();
         for (; i < pushing_.size() && live_.pairs[pushing_[i].pair].detector == component; ++i)
-            if (pushing_[i].contact == 0) standing_.push_back({live_.pairs[pushing_[i].pair].a, live_.pairs[pushing_[i].pair].b, {}});
+            if (i == 0 || pushing_[i].pair != pushing_[i - 1].pair)
+                standing_.push_back({live_.pairs[pushing_[i].pair].a, live_.pairs[pushing_[i].pair].b, {}});
         detect(d, standing_, margin_, found_);
     }
     sort_contacts(found_, s_->world_);
@@ -140,7 +167,7 @@ void ContactForces::gather(bool lead)
         ForceContact* known = find_pushing(f);
         if (!known) continue;
         Contact& c = f.contact;
-        s_->fill_material(f);
+        fill_surface(f);
         c.id = known->id, c.approach = known->approach, c.rest_depth = known->rest_depth, c.preload = known->preload;
         Vec3 stretch = known->stretch + moved_along(f);
         if (lead)

@@ -45,9 +45,26 @@ std::size_t ContactForces::converted(std::uint32_t component) const
     return n;
 }
 
+/// The laws of all detectors, as they are now.
+void ContactForces::read_laws()
+{
+    laws_.assign(s_->detectors_.size(), {});
+    for (std::size_t d = 0; d < laws_.size(); ++d)
+    {
+        const std::uint32_t response = s_->detectors_[d].response;
+        if (response == kNoIndex) continue;
+        ByteWriter bytes;
+        write(bytes, s_->world_.type_of(response)->info.name);
+        laws_[d].type = world::hash_bytes(0, bytes.bytes());
+        s_->world_.table_of(response).save(s_->world_.component(response).row, world::kind_bit(FieldKind::Param), bytes);
+        laws_[d].values = world::hash_bytes(0, bytes.bytes());
+    }
+}
+
 void ContactForces::convert_contacts()
 {
     ContactCache& cache = s_->cache_;
+    read_laws();
     converted_.assign(s_->detectors_.size(), 0);
     const auto index_of = [&](std::uint32_t component)
     {
@@ -61,31 +78,73 @@ void ContactForces::convert_contacts()
     // From copies: what goes over must not be met again.
     const auto soft = cache.force_pairs();
     const auto hard = cache.pairs();
+    live_.pairs = soft;
     for (const ForcePair& p : soft)
     {
         const std::uint32_t d = index_of(p.detector);
-        if (by_force_[d]) continue;
-        PairState to;
-        if (!take_parked(cache.parked_pairs(), p.detector, p.a, p.b, to)) to = harden(p, s_->detectors_[d]);
-        bool added = false;
-        cache.get_or_add(p.detector, p.a, p.b, s_->world_, p.since, added) = to;
-        cache.parked_force_pairs().push_back(p);
-        cache.force_pairs().erase(find_same(cache.force_pairs(), p.detector, p.a, p.b));
-        converted_[d] += p.count;
+        if (!by_force_[d])
+            soft_to_hard(p, d);
+        else if (p.law_type != laws_[d].type)
+            soft_to_soft(p, d);
+        else
+            find_same(live_.pairs, p.detector, p.a, p.b)->law = laws_[d].values;
     }
-    live_.pairs = cache.force_pairs();
     for (const PairState& p : hard)
-    {
-        const std::uint32_t d = index_of(p.detector);
-        if (d == s_->detectors_.size() || !by_force_[d]) continue;
-        ForcePair to;
-        if (!take_parked(cache.parked_force_pairs(), p.detector, p.a, p.b, to)) to = soften(p, d);
-        if (to.count > 0) live_.pairs.insert(place_of(p.detector, p.a, p.b), to);
-        cache.parked_pairs().push_back(p);
-        cache.pairs().erase(find_same(cache.pairs(), p.detector, p.a, p.b));
-        converted_[d] += to.count;
-    }
+        if (const std::uint32_t d = index_of(p.detector); d < s_->detectors_.size() && by_force_[d]) hard_to_soft(p, d);
     cache.force_pairs() = live_.pairs;
+}
+
+void ContactForces::soft_to_hard(const ForcePair& pair, std::uint32_t d)
+{
+    ContactCache& cache = s_->cache_;
+    PairState to;
+    if (!take_parked(cache.parked_pairs(), pair.detector, pair.a, pair.b, to)) to = harden(pair, s_->detectors_[d]);
+    bool added = false;
+    cache.get_or_add(pair.detector, pair.a, pair.b, s_->world_, pair.since, added) = to;
+    cache.parked_force_pairs().push_back(pair);
+    live_.pairs.erase(find_same(live_.pairs, pair.detector, pair.a, pair.b));
+    // A sensor holds nobody: what they held is lost.
+    if (s_->detectors_[d].responds || s_->detectors_[d].by_rows) converted_[d] += pair.count;
+}
+
+/// Another law takes over with the force that there is.
+void ContactForces::soft_to_soft(const ForcePair& pair, std::uint32_t d)
+{
+    PairState as_hard;
+    as_hard.detector = pair.detector, as_hard.a = pair.a, as_hard.b = pair.b, as_hard.since = pair.since, as_hard.normal = pair.normal;
+    for (const ForceContact& c : pair.all())
+    {
+        KnownContact& k = as_hard.contacts[as_hard.count++];
+        k.feature = c.feature, k.id = c.id, k.impulse = c.force * s_->frame_.step;
+    }
+    const ForcePair to = remember_or_soften(as_hard, d);
+    live_.pairs.erase(find_same(live_.pairs, pair.detector, pair.a, pair.b));
+    if (to.count > 0) live_.pairs.insert(place_of(pair.detector, pair.a, pair.b), to);
+    s_->cache_.parked_force_pairs().push_back(pair);
+    converted_[d] += to.count;
+}
+
+void ContactForces::hard_to_soft(const PairState& pair, std::uint32_t d)
+{
+    ContactCache& cache = s_->cache_;
+    const ForcePair to = remember_or_soften(pair, d);
+    if (to.count > 0) live_.pairs.insert(place_of(pair.detector, pair.a, pair.b), to);
+    cache.parked_pairs().push_back(pair);
+    cache.pairs().erase(find_same(cache.pairs(), pair.detector, pair.a, pair.b));
+    converted_[d] += to.count;
+}
+
+/// As the same law had it at this boundary, else as what held the contact says.
+ForcePair ContactForces::remember_or_soften(const PairState& pair, std::uint32_t d)
+{
+    std::vector<ForcePair>& parked = s_->cache_.parked_force_pairs();
+    const auto is_it = [&](const ForcePair& p)
+    { return p.detector == pair.detector && p.a == pair.a && p.b == pair.b && p.law == laws_[d].values; };
+    const auto at = std::find_if(parked.begin(), parked.end(), is_it);
+    if (at == parked.end()) return soften(pair, d);
+    const ForcePair out = *at;
+    parked.erase(at);
+    return out;
 }
 
 PairState ContactForces::harden(const ForcePair& pair, const Detector& detector)
@@ -143,6 +202,7 @@ ForcePair ContactForces::soften(const PairState& pair, std::uint32_t detector)
 {
     ForcePair out;
     out.detector = pair.detector, out.a = pair.a, out.b = pair.b, out.since = pair.since, out.normal = pair.normal;
+    out.law_type = laws_[detector].type, out.law = laws_[detector].values;
     const StandingPair standing{pair.a, pair.b, {}};
     found_.clear();
     detect(detector, std::span(&standing, 1), s_->standing_margin(pair), found_);

@@ -110,15 +110,60 @@ void ContactForces::begin_contact(const Seen& seen, double time)
         p.detector = detector, p.a = c.a, p.b = c.b, p.since = s_->frame_.tick;
         pair = &*live_.pairs.insert(place_of(detector, c.a, c.b), p);
     }
-    if (pair->count == ForcePair::kMostContacts) return;
+    if (fresh) pair->law_type = laws_[seen.found.detector].type, pair->law = laws_[seen.found.detector].values;
+    ForceContact* old = pair->find(c.feature);
+    if (!old && pair->count == ForcePair::kMostContacts) return;
+    // Where a swap has let an overlap be, a corner that comes to it begins without force as well.
+    const auto eases = [](const ForceContact& other) { return other.rest_depth > 0; };
+    const bool overlap_is_old = std::any_of(pair->all().begin(), pair->all().end(), eases);
     pair->normal = c.normal;
-    ForceContact& known = pair->contacts[pair->count++] = {};
+    ForceContact known;
     known.asked = s_->frame_.tick;
-    known.feature = c.feature, known.id = s_->cache_.new_id();
+    known.feature = c.feature, known.id = old ? old->id : s_->cache_.new_id();
     known.begin = time, known.depth = c.depth, known.approach = std::max(0.0, -seen.parting);
     known.lively = known.liveliest = known.approach;
+    if (overlap_is_old && c.depth > 0) known.rest_depth = known.open_depth = c.depth;
     expect(known, seen.found, known.approach);
+    (old ? *old : pair->contacts[pair->count++]) = known;
     if (fresh) tell(ForceHappening::Kind::Begin, *pair, c, {}, time);
+}
+
+/// A point whose force is over. One that still overlaps, as a swap had left it, waits.
+void ContactForces::let_go(const Seen& seen, ForcePair& pair, double time)
+{
+    const Contact& c = seen.found.contact;
+    ForceContact& known = *pair.find(c.feature);
+    if (!(known.rest_depth > 0) || c.depth <= 1e3 * rounding(c)) return end_contact(pair, c, time);
+    tell_impact_once(pair, known, c, time);
+    known.dormant = true, known.depth = c.depth;
+    known.force = known.stretch = {};
+}
+
+void ContactForces::follow_dormant(const Seen& seen, ForceContact& known, double time)
+{
+    known.depth = seen.found.contact.depth;
+    if (known.depth > 0 && seen.parting < 0) begin_contact(seen, time);
+}
+
+/// Points that had let go and do not overlap any more, or are not there any more.
+void ContactForces::drop_dormant(const std::vector<Seen>& seen)
+{
+    const auto overlaps = [&](const ForcePair& pair, const ForceContact& known)
+    {
+        const auto is_it = [&](const Seen& s)
+        {
+            return s_->detectors_[s.found.detector].component == pair.detector && s.found.contact.a == pair.a &&
+                   s.found.contact.b == pair.b && s.found.contact.feature == known.feature;
+        };
+        const auto at = std::find_if(seen.begin(), seen.end(), is_it);
+        return at != seen.end() && at->found.contact.depth > 0;
+    };
+    for (const NearPair& near : pairs_)
+    {
+        ForcePair* pair = find_pair(s_->detectors_[near.detector].component, near.a, near.b);
+        for (std::uint32_t k = pair ? pair->count : 0; k-- > 0;)
+            if (pair->contacts[k].dormant && !overlaps(*pair, pair->contacts[k])) pair->contacts[k] = pair->contacts[--pair->count];
+    }
 }
 
 void ContactForces::end_contact(ForcePair& pair, const Contact& at, double time)
@@ -155,10 +200,13 @@ void ContactForces::drop_ended(double time)
 /// Corners that are not there any more, though their gap is not wide: they have become others.
 void ContactForces::list_gone(const std::vector<Seen>& seen)
 {
-    gone_.clear();
-    for (const Pushing& p : pushing_) gone_.push_back(live_.pairs[p.pair].contacts[p.contact].id);
+    there_.clear(), gone_.clear();
     for (const Seen& s : seen)
-        if (const ForceContact* known = find_pushing(s.found)) std::erase(gone_, known->id);
+        if (const ForceContact* known = find_pushing(s.found)) there_.push_back(known->id);
+    std::sort(there_.begin(), there_.end());
+    for (const Pushing& p : pushing_)
+        if (const std::uint64_t id = live_.pairs[p.pair].contacts[p.contact].id; !std::binary_search(there_.begin(), there_.end(), id))
+            gone_.push_back(id);
 }
 
 /// At the end of a piece: who pushes in the next one.
@@ -171,13 +219,23 @@ void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t)
     for (const Seen& s : seen)
     {
         const Contact& c = s.found.contact;
-        const ForceContact* known = find_pushing(s.found);
+        ForceContact* known = find_known(s.found);
         const double soon = std::fabs(s.parting) * instant + rounding(c);
-        if (known && s.parting > 0 && c.depth <= known->open_depth + soon)
-            end_contact(*find_pair(s_->detectors_[s.found.detector].component, c.a, c.b), c, time);
+        if (known && known->dormant)
+            follow_dormant(s, *known, time);
+        else if (known && s.parting > 0 && c.depth <= known->open_depth + soon)
+            let_go(s, *find_pair(s_->detectors_[s.found.detector].component, c.a, c.b), time);
         else if (!known && (s.parting < 0 ? c.depth >= -soon : c.depth > 1e3 * rounding(c)))
             begin_contact(s, time);
     }
+    if (!gone_.empty()) end_gone(time);
+    drop_dormant(seen);
+    drop_ended(time);
+    list_pushing();
+}
+
+void ContactForces::end_gone(double time)
+{
     for (ForcePair& pair : live_.pairs)
         for (std::uint32_t k = pair.count; k-- > 0;)
         {
@@ -186,8 +244,6 @@ void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t)
             at.feature = pair.contacts[k].feature, at.normal = pair.normal;
             end_contact(pair, at, time);
         }
-    drop_ended(time);
-    list_pushing();
 }
 
 }  // namespace plab::simulation

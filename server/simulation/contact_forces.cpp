@@ -63,6 +63,8 @@ void ContactForces::begin_step()
     live_.happenings.clear();
     near_.clear();
     pieces_needed_ = 0, stiff_ = kNoIndex;
+    surfaces_.clear();
+    for (std::uint32_t d = 0; d < by_force_.size(); ++d) surfaces_.push_back(by_force_[d] ? s_->response_law(d) : SurfaceLaw{});
     reach_.assign(s_->world_.host().bodies.size(), 0.0);
     fill_reach(s_->frame_.step);
     look_near(s_->frame_.step);

@@ -118,6 +118,11 @@ private:
 
     // contact_force_swap.cpp
     void convert_contacts();
+    void read_laws();
+    void soft_to_hard(const ForcePair& pair, std::uint32_t detector);
+    void soft_to_soft(const ForcePair& pair, std::uint32_t detector);
+    void hard_to_soft(const PairState& pair, std::uint32_t detector);
+    ForcePair remember_or_soften(const PairState& pair, std::uint32_t detector);
     PairState harden(const ForcePair& pair, const Detector& detector);
     ForcePair soften(const PairState& pair, std::uint32_t detector);
     bool soften_contact(const KnownContact& hard, const FoundContact& at, ForceContact& soft);
@@ -128,8 +133,10 @@ private:
     void anchor();
     void detect(std::uint32_t detector, std::span<const StandingPair> pairs, double margin, std::vector<FoundContact>& out);
     void inspect(double margin, std::vector<Seen>& out);
+    void fill_surface(FoundContact& found) const;
     void gather(bool lead);
     Vec3 moved_along(const FoundContact& f) const;
+    ForceContact* find_known(const FoundContact& f);
     ForceContact* find_pushing(const FoundContact& f);
     std::vector<ForcePair>::iterator place_of(std::uint32_t detector, Ref a, Ref b);
     ForcePair* find_pair(std::uint32_t detector, Ref a, Ref b);
@@ -150,10 +157,14 @@ private:
     bool is_there(const std::vector<Seen>& now, const std::vector<Seen>& beyond);
     void switch_contacts(const std::vector<Seen>& seen, double t);
     void begin_contact(const Seen& seen, double time);
+    void let_go(const Seen& seen, ForcePair& pair, double time);
+    void follow_dormant(const Seen& seen, ForceContact& known, double time);
+    void drop_dormant(const std::vector<Seen>& seen);
     void end_contact(ForcePair& pair, const Contact& at, double time);
     void drop_ended(double time);
     void expect(ForceContact& known, const FoundContact& at, double closing);
     void list_gone(const std::vector<Seen>& seen);
+    void end_gone(double time);
     void tell(ForceHappening::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time);
     void tell_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time);
 
@@ -208,7 +219,7 @@ private:
     std::vector<std::pair<std::size_t, ForceContact*>> matched_;  ///< found_ and what is known of it
     std::vector<Contact> law_contacts_;
     std::vector<Seen> at_start_, at_end_, at_trial_, at_low_, at_high_;
-    std::vector<std::uint64_t> gone_;  ///< ids of contacts
+    std::vector<std::uint64_t> gone_, there_;  ///< ids of contacts
     ForceState before_;
     world::MotionMemento memento_, shadow_memento_;
     Wrenches scratch_;
@@ -219,6 +230,13 @@ private:
     std::uint32_t stiff_ = kNoIndex;           ///< response that asked
     bool stiff_told_ = false;
     std::vector<std::size_t> converted_;  ///< contact points, by detector
+    struct Law
+    {
+        std::uint64_t type = 0, values = 0;
+    };
+    std::vector<Law> laws_;             ///< by detector; see ForcePair
+    std::vector<SurfaceLaw> surfaces_;  ///< by detector, in this step
+    std::size_t last_pair_ = 0;         ///< where find_pair found something last: lists stand in one order
 };
 
 }  // namespace plab::simulation

@@ -5,11 +5,19 @@
 #include "plab/rotation.h"
 #include "simulation/clock.h"
 #include "simulation/island_step.h"
+#include "simulation/paradox.h"
 #include "simulation/speculation.h"
 #include "simulation/stepper.h"
 
 namespace plab::simulation
 {
+namespace
+{
+
+/// Slower than this nothing meets, m/s.
+constexpr double kNoApproach = 1e-9;
+
+}  // namespace
 
 void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
                      std::vector<FoundContact>& out, double margin)
@@ -76,27 +84,57 @@ double Stepper::speculative_acceleration(const Detector& detector) const
     return column ? (*column)[world_.component(detector.resolution).row] : 0.0;
 }
 
-void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out)
+/// What is remembered of a contact of a known pair.
+KnownContact& Stepper::known_contact(const FoundContact& f)
+{
+    return cache_.contact_of(*cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_), f.contact.feature);
+}
+
+/// m: gaps of a standing pair up to this may close within h: corners that come round are held before they are through.
+double Stepper::gap_margin(const PairState& pair, double h) const
+{
+    const double margin = closing_margin(world_.host().bodies, radius_of_body_, pair.a, pair.b, pair.normal, h);
+    return margin > standing_margin(pair) ? margin : 0.0;
+}
+
+/// One look has one margin: drops what was seen beyond that of its own pair.
+void Stepper::drop_far(std::vector<FoundContact>& out, double h) const
+{
+    const Bodies& bodies = world_.host().bodies;
+    const auto far = [&](const FoundContact& f)
+    { return f.contact.depth <= -standing_margin(f.contact.a, f.contact.b) && !may_close(bodies, radius_of_body_, f.contact, 0, h); };
+    out.erase(std::remove_if(out.begin(), out.end(), far), out.end());
+}
+
+/// Of standing pairs with a member in `groups`, with the gaps that may close within `h` (s).
+void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h)
 {
     const auto member = [&](Ref r)
     {
         const std::uint32_t g = groups_.of(r);
         return g != kNoIndex && std::binary_search(groups.begin(), groups.end(), g);
     };
+    double widest = 0;
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         standing_.clear();
+        double margin = 0;
         for (const PairState& p : cache_.pairs())
-            if (p.resting && p.detector == detectors_[d].component && (member(p.a) || member(p.b)))
-                standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
-        if (!standing_.empty()) detect(detectors_[d], d, standing_, true, out);
+        {
+            if (!p.resting || p.detector != detectors_[d].component || !(member(p.a) || member(p.b))) continue;
+            standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
+            margin = std::max(margin, gap_margin(p, h));
+        }
+        if (!standing_.empty()) detect(detectors_[d], d, standing_, true, out, margin);
+        widest = std::max(widest, margin);
     }
+    if (widest > 0) drop_far(out, h);
     sort_contacts(out, world_);
     for (FoundContact& f : out)
     {
         f.contact.resting = true;
-        PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_);
-        const KnownContact& known = cache_.contact_of(*pair, f.contact.feature);
+        const PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_);
+        const KnownContact& known = known_contact(f);
         f.contact.id = known.id, f.contact.impulse = known.impulse;
         f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
         // Seen with b moved towards a: half of the way back is where the two surfaces meet.
@@ -217,6 +255,46 @@ void Stepper::advance_contacts(std::span<const std::uint32_t> groups, std::span<
     }
 }
 
+/// Corners of a standing pair that reach the other body within the step, faster than forces alone would take them there,
+/// meet it without bounce, ahead of the step: a mean of the speeds before and after would carry them through. Says whether
+/// there were any.
+bool Stepper::arrest(const GroupSystem& system, double h, WorkBook book)
+{
+    double given = 0;
+    for (std::size_t i = 0; i < system.bodies().size(); ++i) given = std::max(given, length(system.acceleration(i)) * h);
+    const auto meets = [&](const FoundContact& f)
+    {
+        const double closing = -normal_velocity(f.contact);
+        return closing > std::max(kNoApproach, 2 * given) && closing * h > -f.contact.depth;
+    };
+    if (std::none_of(touching_.begin(), touching_.end(), meets)) return false;
+    for (FoundContact& f : touching_) f.contact.impulse = {};
+    respond(touching_, ImpactMode::Rest, h, book);
+    // What a blow took does not tell how hard the contact will press; the last step's impulse does.
+    for (FoundContact& f : touching_) f.contact.impulse = known_contact(f).impulse;
+    return true;
+}
+
+/// Whether two bodies that touch slide so that pressing harder would close them faster.
+bool Stepper::is_paradox(const Contact& contact) const
+{
+    return contact.depth >= -kOverlapTolerance && pressing_share(world_.host().bodies, contact) <= 0;
+}
+
+/// Told where it begins: what follows is one of several answers, an impulse that ends the slip.
+void Stepper::tell_paradox(const Contact& contact, PairState& pair, double time)
+{
+    const bool goes_on = pair.paradox_tick >= frame_.tick - 1;
+    pair.paradox_tick = frame_.tick;
+    if (goes_on) return;
+    Event e = contact_event("contact.paradox", pair, time);
+    e.severity = Severity::Warning;
+    e.message = "Painleve's paradox: friction of " + std::to_string(contact.friction) +
+                " on this lever leaves sliding without an answer; an impulse ends the slip. Less friction, or a less slender body, has one";
+    e.values = {contact.point.x, contact.point.y, contact.point.z, contact.normal.x, contact.normal.y, contact.normal.z};
+    emit(std::move(e));
+}
+
 /// Time stepping with one-sided contacts: speeds first, impulses that keep contacts from closing, then positions with
 /// the mean of old and new speeds, so that a body that slides at constant deceleration is exact.
 void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
@@ -227,9 +305,15 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
     Shafts& shafts = world_.host().shafts;
     GroupSystem& system = system_for(island, shadows);
     touching_.clear();
-    touching_pairs_of(island, touching_);
+    touching_pairs_of(island, touching_, h);
     system.begin(from, to, book, trial ? nullptr : this);
     system.evaluate_here();
+    if (!trial)
+        for (const FoundContact& f : touching_)
+            if (is_paradox(f.contact))
+                tell_paradox(f.contact, *cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_),
+                             frame_.start_time + from);
+    if (arrest(system, h, book)) system.join();
 
     old_velocity_.clear(), old_spin_.clear();
     const auto members = system.bodies();
@@ -241,6 +325,7 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
     }
     respond(touching_, ImpactMode::Rest, h, book);
     if (!trial) keep_impulses(touching_);
+    system.join();  // an impulse knows nothing of joints
     for (std::size_t i = 0; i < members.size(); ++i)
     {
         const std::uint32_t b = members[i];
@@ -251,6 +336,7 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
     }
     system.move_shafts(h, shafts);
     system.move_prescribed();
+    system.project();
     finish_advance(system, system.all_finite(), to, trial);
 }
 

@@ -131,7 +131,7 @@ void ContactCache::save_force_pairs(const world::World& world, ByteWriter& out) 
             for (const Vec3& v : {c.stretch, c.impulse, c.force}) write(out, v);
             for (const double x : {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.lively, c.liveliest})
                 write(out, x);
-            write(out, c.told);
+            write(out, static_cast<std::uint8_t>((c.told ? 1 : 0) + (c.dormant ? 2 : 0)));
         }
     }
 }

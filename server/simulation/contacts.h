@@ -75,6 +75,7 @@ struct PairState
     BounceHistory bounces;
     std::uint32_t impacts = 0;  ///< in the step `impacts_tick`; not saved: a step begins with none
     Tick impacts_tick = -1;
+    Tick paradox_tick = -2;  ///< last step in which pressing harder would have closed it faster; not saved either
 };
 
 /// All known pairs, sorted by detector, a and b in id order.

@@ -13,6 +13,11 @@ namespace
 
 /// Impacts of one pair in one step before it stops bouncing, and says so.
 constexpr std::uint32_t kMostOfPair = 100000;
+/// And of one with somebody who stands or lies on others: what holds him may press him back as often as he bounces. Bounces of a
+/// hundredth of the step rise by g h^2 / 8e4 at most.
+constexpr std::uint32_t kMostOfHeldPair = 100;
+/// Slower than this nobody who stopped bouncing leaves, m/s.
+constexpr double kStays = 1e-9;
 
 /// What an event says of a contact: point, normal, impulse, depth (server/docs/step.md).
 std::vector<double> values_of(const Contact& c, const Vec3& impulse)
@@ -175,8 +180,9 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
     bool added = false;
     PairState& pair = s_->cache_.get_or_add(detector.component, candidate.a, candidate.b, s_->world_, s_->frame_.tick, added);
     pair.overlapping = !detector.responds || candidate.at_end;
-    for (const FoundContact& f : contacts)
+    for (std::size_t i = 0; i < contacts.size(); ++i)
     {
+        const FoundContact& f = contacts[i];
         if (f.detector != candidate.detector || f.contact.a != candidate.a || f.contact.b != candidate.b) continue;
         if (std::exchange(added, false))
         {
@@ -191,7 +197,20 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
         Event e = s_->contact_event("contact.impact", pair, time);
         e.values = values_of(f.contact, f.contact.impulse);
         s_->emit(std::move(e));
+        if (paradox_[i]) s_->tell_paradox(f.contact, pair, time);
         announce_rest(f, pair);
+    }
+}
+
+/// Bodies that touch, and close no faster than forces make them in a step, may be in Painleve's paradox; an impact that closes
+/// has an answer of its own, however it jams.
+void EventLocator::note_paradoxes()
+{
+    paradox_.clear();
+    for (const FoundContact& f : impact_)
+    {
+        const bool pressed = s_->normal_velocity(f.contact) >= 2 * f.contact.normal_acceleration * s_->frame_.step - 1e-9;
+        paradox_.push_back(pressed && s_->is_paradox(f.contact) ? 1 : 0);
     }
 }
 
@@ -216,22 +235,23 @@ void EventLocator::keep_if_it_cannot_leave(Contact& c) const
 bool EventLocator::stop_bouncing(const Candidate& candidate, double time, double& ends)
 {
     ends = time;
-    if (!candidate.certified) return exhausted_;
     const Detector& detector = s_->detectors_[candidate.detector];
     PairState* pair = s_->cache_.find(detector.component, candidate.a, candidate.b, s_->world_);
     if (!pair) return exhausted_;
     if (pair->impacts_tick != s_->frame_.tick) pair->impacts = 0, pair->impacts_tick = s_->frame_.tick;
-    if (++pair->impacts > kMostOfPair || exhausted_)
+    const std::uint32_t most = stands_ ? kMostOfHeldPair : kMostOfPair;
+    if (++pair->impacts > most || exhausted_)
     {
-        if (pair->impacts == kMostOfPair + 1)
+        if (pair->impacts == most + 1)
         {
             Event e = s_->contact_event("contact.too_many", *pair, time);
-            e.severity = Severity::Warning;
-            e.message = "more than " + std::to_string(kMostOfPair) + " impacts of one pair in one step; it stops bouncing";
+            e.severity = stands_ ? Severity::Info : Severity::Warning;
+            e.message = "more than " + std::to_string(most) + " impacts of one pair in one step; it stops bouncing";
             s_->emit(std::move(e));
         }
         return true;
     }
+    if (!candidate.certified) return false;
     note_impact(pair->bounces, time);
     double next = 0, ratio = 0;
     for (const FoundContact& f : impact_)
@@ -266,8 +286,8 @@ void EventLocator::answer()
     }
     const std::size_t own = impact_.size();
     seen_.clear();
-    const bool stands = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
-    if (stands) s_->touching_pairs_of(scope_, seen_);
+    stands_ = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
+    if (stands_) s_->touching_pairs_of(scope_, seen_);
     const auto is_chosen = [&](const FoundContact& f)
     {
         return std::any_of(chosen_.begin(), chosen_.end(),
@@ -288,7 +308,8 @@ void EventLocator::answer()
             if (impact_[i].contact.a == candidates_[slot].a && impact_[i].contact.b == candidates_[slot].b)
                 impact_[i].contact.restitution = 0;
     }
-    s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
+    note_paradoxes();
+    respond(first.time);
     if (first.stuck)
         for (std::size_t i = 0; i < own; ++i) keep_if_it_cannot_leave(impact_[i].contact);
     for (const std::uint32_t slot : chosen_) record_answered(candidates_[slot], time);
@@ -303,7 +324,7 @@ void EventLocator::record_answered(Candidate& candidate, double time)
     {
         if (stopped.slot != slot) continue;
         for (FoundContact& f : impact_)
-            if (f.contact.a == candidate.a && f.contact.b == candidate.b && s_->normal_velocity(f.contact) <= 1e-12)
+            if (f.contact.a == candidate.a && f.contact.b == candidate.b && s_->normal_velocity(f.contact) <= kStays)
                 f.contact.resting = true;
         rest_time_ = stopped.ends;
         record(candidate, impact_, time);

@@ -116,6 +116,18 @@ private:
     void record_answered(Candidate& candidate, double time);
     void record(Candidate& candidate, const std::vector<FoundContact>& contacts, double time);
     void announce_rest(const FoundContact& f, PairState& pair);
+    void note_paradoxes();
+
+    // event_joints.cpp: impacts of who is held by joints.
+    bool find_jointed();
+    void respond(double time);
+    void note_who_rests();
+    void join(double time);
+    double closing() const;
+    void compress(double time);
+    void compress_once(double time);
+    void add_impulses(double share, bool of_all);
+    void give_back(double time);
 
     Stepper* s_;
     std::vector<Candidate> candidates_;  ///< slots
@@ -127,10 +139,21 @@ private:
     std::vector<std::uint32_t> scope_;              ///< groups that go back, ascending
     std::vector<std::uint8_t> in_scope_, touched_;  ///< by group; touched: reached by the last answer's impulses
     std::vector<std::uint8_t> rests_;               ///< by group: something stands on it or it on something that moves
+    bool stands_ = false;                           ///< somebody in the scope of the present answer rests on something
     bool rewound_ = false;                          ///< the last answer moved somebody
     bool exhausted_ = false;                        ///< too many events: no more bouncing in this step
     bool any_certifies_ = false, all_certify_ = false;
 
+    struct Jointed
+    {
+        std::vector<std::uint32_t> groups, bodies, shafts;
+        std::vector<Vec3> velocity, spin, momentum;  ///< beside bodies
+        std::vector<double> speed;                   ///< beside shafts
+        std::vector<double> restitution;             ///< beside the contacts
+        std::vector<std::uint8_t> rests;
+        std::vector<Vec3> impulse, last;  ///< N s: so far; by the last answer
+    };
+    Jointed jointed_;
     std::vector<Course> courses_;       ///< by body
     std::vector<BodyExtent> extents_;   ///< by body
     std::vector<double> reach_;         ///< m, by body
@@ -147,8 +170,9 @@ private:
         std::uint32_t slot;
         double ends;
     };
-    std::vector<Stopped> stopped_;  ///< of the chosen ones: those that have bounced for the last time
-    double rest_time_ = 0;          ///< s, when the pair being recorded comes to rest
+    std::vector<Stopped> stopped_;       ///< of the chosen ones: those that have bounced for the last time
+    double rest_time_ = 0;               ///< s, when the pair being recorded comes to rest
+    std::vector<std::uint8_t> paradox_;  ///< beside impact_: no impact, but the answer to Painleve's paradox
     bool touches_by_force_ = false;
     std::vector<StandingPair> standing_;
     std::vector<FoundContact> seen_, impact_, at_end_;

@@ -289,7 +289,8 @@ bool EventLocator::meets(Candidate& candidate)
                 return true;
         }
         const double next = std::min(trial.next, look.time + clear);
-        if (!(next > look.time)) return true;  // closer than times can be told apart
+        // Closer than times can be told apart; what parts there goes into the next step.
+        if (!(next > look.time)) return !(look.rate > kStill * look.speed);
         const Look ahead = look_at(candidate, std::min(next, step));
         // The bound is as good as what is known of the forces.
         if (ahead.query.gap < -ahead.touch) return settle_in_bracket(candidate, look, ahead, false);

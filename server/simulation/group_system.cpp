@@ -8,6 +8,15 @@
 
 namespace plab::simulation
 {
+namespace
+{
+
+/// What has died away is 0: arithmetic with denormal numbers costs a hundredfold. Too small for products with steps and
+/// masses to be lost.
+double without_traces(double speed) { return std::fabs(speed) < 1e-280 ? 0.0 : speed; }
+Vec3 without_traces(const Vec3& v) { return {without_traces(v.x), without_traces(v.y), without_traces(v.z)}; }
+
+}  // namespace
 
 void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
 {
@@ -131,6 +140,7 @@ void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events
     context_.tick = frame_.tick, context_.seed = frame_.seed, context_.events = events;
     activate();
     context_.active_bodies = scratch_->active_bodies, context_.active_shafts = scratch_->active_shafts;
+    if (rows_ && !rows_held_) join();
 
     const world::HostTables& host = frame_.world->host();
     std::fill(coordinates_.begin(), coordinates_.end(), 0.0);
@@ -138,19 +148,19 @@ void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events
     {
         const std::uint32_t b = bodies_[i];
         start_position_[i] = host.bodies.position[b], start_orientation_[i] = host.bodies.orientation[b];
-        put(speeds_, 6 * i, host.bodies.velocity[b]);
+        put(speeds_, 6 * i, without_traces(host.bodies.velocity[b]));
         put(speeds_, 6 * i + 3,
-            host.bodies.needle[b] != 0 ? rotate_back(host.bodies.orientation[b], host.bodies.angular_velocity[b])
-                                       : host.bodies.angular_momentum[b]);
+            without_traces(host.bodies.needle[b] != 0 ? rotate_back(host.bodies.orientation[b], host.bodies.angular_velocity[b])
+                                                      : host.bodies.angular_momentum[b]));
     }
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {
         start_angle_[i] = host.shafts.angle[roots_[i]];
-        speeds_[6 * bodies_.size() + i] = host.shafts.speed[roots_[i]];
+        speeds_[6 * bodies_.size() + i] = without_traces(host.shafts.speed[roots_[i]]);
     }
     std::size_t next = 6 * bodies_.size() + roots_.size();
     for (const std::uint32_t q : quantities_)
-        for (const double value : host.quantities.value[q]) speeds_[next++] = value;
+        for (const double value : host.quantities.value[q]) speeds_[next++] = without_traces(value);
 }
 
 void GroupSystem::scatter_prescribed(double since_step_start)
@@ -308,8 +318,7 @@ void GroupSystem::evaluate(double t, double weight)
     if (rows_ && !rows_held_)
     {
         (void)rows_->react(context_, scratch_->wrenches);  // what is not finite is seen when the advance is over
-        if (book_.work && weight != 0)
-            rows_->account(*book_.work, book_.sign * weight * context_.dt, scratch_->accounted_bodies, scratch_->accounted_shafts);
+        if (book_.work && weight != 0) rows_->account(row_book(), weight * context_.dt);
     }
     rates_of_bodies();
     const Bodies& bodies = frame_.world->host().bodies;
@@ -375,7 +384,7 @@ bool GroupSystem::finish()
     Bodies& bodies = frame_.world->host().bodies;
     for (const std::uint32_t b : bodies_) bodies.orientation[b] = normalized(bodies.orientation[b]);
     const bool finite = all_finite();
-    if (rows_ && finite) project();
+    if (finite) project();
     return finite;
 }
 

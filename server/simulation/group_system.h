@@ -93,8 +93,12 @@ public:
     void kick(std::size_t member, double h);
     /// The joints of the members; null where there are none.
     RowSystem* rows() { return rows_.get(); }
-    /// Joints are held by a manager: evaluations leave them out.
+    RowBook row_book() const { return {book_.work, book_.sign, scratch_->accounted_bodies, scratch_->accounted_shafts}; }
+    /// From before begin() on: joints are held by a manager, evaluations leave them out.
     void hold_rows(bool held) { rows_held_ = held; }
+    /// Joints, after somebody else than the solver has moved the members: speeds that fit them; then poses, too.
+    void join();
+    void project();
     /// When a manager has advanced the bodies: whatever else is a member comes to the end.
     void finish_held();
     /// What joints did, after finish().
@@ -129,7 +133,6 @@ private:
     void filter_forces();
     void make_shortlists(Selected& selected);
     void configure_rows();
-    void project();
     void announce_contradictions(const ProjectionReport& report);
     void scatter(double t);
     void scatter_prescribed(double since_step_start);

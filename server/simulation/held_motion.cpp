@@ -31,6 +31,15 @@ double HeldMotion::kinetic_energy() const
     return sum;
 }
 
+/// Rotation vector of a turn over h, W, from the present attitude, with a momentum that stays: explicit midpoint, so that the
+/// spin follows the attitude on the way. With the spin of the start alone a tumbling body would gain energy.
+Vec3 HeldMotion::turn_over(std::uint32_t body, const Vec3& spin, const Vec3& momentum, double h) const
+{
+    if (bodies_->needle[body] != 0 || spin == Vec3{}) return spin * h;
+    const Quat half = normalized(exp_rotation(spin * (0.5 * h)) * bodies_->orientation[body]);
+    return rotate(half, bodies_->inverse_inertia_B[body] * rotate_back(half, momentum)) * h;
+}
+
 void HeldMotion::kick(double h)
 {
     pending_ = 0;
@@ -77,7 +86,8 @@ void HeldMotion::move(double h)
     {
         const std::uint32_t b = system_->bodies()[i];
         bodies_->position[b] += bodies_->velocity[b] * h;
-        bodies_->orientation[b] = normalized(exp_rotation(bodies_->angular_velocity[b] * h) * bodies_->orientation[b]);
+        const Vec3 turn_W = turn_over(b, bodies_->angular_velocity[b], bodies_->angular_momentum[b], h);
+        bodies_->orientation[b] = normalized(exp_rotation(turn_W) * bodies_->orientation[b]);
         bodies_->refresh_spin(b);
     }
     for (const std::uint32_t r : roots_) shafts_->angle[system_->roots()[r]] += shafts_->speed[system_->roots()[r]] * h;
@@ -90,7 +100,8 @@ void HeldMotion::move_mean(double h)
     {
         const std::uint32_t b = system_->bodies()[members_[k]];
         bodies_->position[b] += (before_[k].velocity + bodies_->velocity[b]) * (0.5 * h);
-        const Vec3 turn_W = (before_[k].spin + bodies_->angular_velocity[b]) * (0.5 * h);
+        const Vec3 turn_W = turn_over(b, (before_[k].spin + bodies_->angular_velocity[b]) * 0.5,
+                                      (before_[k].momentum + bodies_->angular_momentum[b]) * 0.5, h);
         if (turn_W == Vec3{}) continue;
         bodies_->orientation[b] = normalized(exp_rotation(turn_W) * bodies_->orientation[b]);
         bodies_->refresh_spin(b);

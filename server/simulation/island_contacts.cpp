@@ -36,6 +36,7 @@ bool HeldIslands::is_current() const
 
 void HeldIslands::begin_step()
 {
+    look_for_yielding_rows();
     const bool stands =
         std::any_of(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.by_rows && d.persists(); });
     if (!stands || is_current()) return;
@@ -100,23 +101,33 @@ void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law)
     const KnownContact& known = s_->cache_.contact_of(pair, f.contact.feature);
     f.contact.id = known.id, f.contact.impulse = known.impulse;
     f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
-    // Where impacts are located, standing pairs are seen with b moved towards a: half of the way back is where they meet.
-    if (!s_->detectors_[f.detector].persists()) f.contact.point += pair.normal * (0.5 * s_->standing_margin(pair));
     f.contact.resting = true;
 }
 
-/// Contacts of the held groups at the present state: those that are known if nothing moved since, else looked for.
-void HeldIslands::collect_contacts(double from)
+/// Contacts of the held groups at the present state. Those of persisting pairs are known if nothing moved since; the others
+/// depend on who stands since when, so they are looked for anew: a function of the state, whatever happened before it.
+void HeldIslands::collect_contacts(double from, double h)
 {
     touching_.clear(), pair_of_contact_.clear();
-    if (from > 0 || !is_current())
+    const auto& detectors = s_->detectors_;
+    const bool known = from == 0 && is_current();
+    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); });
+    if (!known || locates) s_->touching_pairs_of(held_, touching_, h);
+    if (!known || !std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
     {
-        s_->touching_pairs_of(held_, touching_);
         for (const FoundContact& f : touching_)
-            pair_of_contact_.push_back(s_->cache_.find(s_->detectors_[f.detector].component, f.contact.a, f.contact.b, s_->world_));
+            pair_of_contact_.push_back(s_->cache_.find(detectors[f.detector].component, f.contact.a, f.contact.b, s_->world_));
         return;
     }
-    // Both lists stand in the order of detector, a, b.
+    std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
+    for (const FoundContact& f : touching_)
+        pair_of_contact_.push_back(s_->cache_.find(detectors[f.detector].component, f.contact.a, f.contact.b, s_->world_));
+    add_known_contacts();
+}
+
+/// What the last look found of persisting pairs. Both lists stand in the order of detector, a, b.
+void HeldIslands::add_known_contacts()
+{
     std::size_t at = 0;
     std::uint32_t law_detector = kNoIndex;
     SurfaceLaw law;
@@ -125,7 +136,7 @@ void HeldIslands::collect_contacts(double from)
         at = s_->first_of_pair(pair, at);
         for (; at < s_->found_.size() && s_->is_of_pair(s_->found_[at], pair); ++at)
         {
-            if (!pair.resting) continue;
+            if (!pair.resting || !s_->detectors_[s_->found_[at].detector].persists()) continue;
             FoundContact& f = touching_.emplace_back(s_->found_[at]);
             if (f.detector != law_detector) law = s_->response_law(f.detector), law_detector = f.detector;
             fill(f, pair, law);

@@ -26,6 +26,8 @@ void HeldIslands::rebuild()
     manager_of_group_.assign(s_->groups_.all.size(), kNoIndex);
     any_ = std::any_of(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.by_rows; });
     holds_joints_ = false;
+    yields_.assign(s_->groups_.all.size(), 0);
+    yielding_groups_.clear();
     const auto& blocks = s_->schedule_.of(Phase::Constrain);
     for (std::uint32_t g = 0; g < manager_of_group_.size(); ++g)
         for (const BlockRow& row : s_->groups_.all[g].rows)
@@ -34,8 +36,25 @@ void HeldIslands::rebuild()
             const std::uint32_t manager = manager_role(s_->world_, component);
             if (manager == kNoIndex || manager_of_group_[g] != kNoIndex) continue;
             manager_of_group_[g] = manager;
-            any_ = holds_joints_ = true;
+            yielding_groups_.push_back(g);
+            any_ = true;
         }
+}
+
+/// Limits that are near, motors at a loss: who has such rows now. Others advance by their solver.
+void HeldIslands::look_for_yielding_rows()
+{
+    holds_joints_ = false;
+    for (const std::uint32_t g : yielding_groups_)
+    {
+        RowSystem* rows = s_->system_for(std::span(&g, 1), {}).rows();
+        StepContext context;
+        context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+        context.seed = s_->frame_.seed;
+        rows->collect(context);
+        yields_[g] = rows->may_yield() ? 1 : 0;
+        holds_joints_ = holds_joints_ || rows->may_yield();
+    }
 }
 
 std::uint32_t HeldIslands::manager_of(const PairState& pair) const
@@ -66,7 +85,8 @@ void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands
         for (const Ref r : {p.a, p.b})
             if (s_->world_.host().bodies.dynamic(r.index)) name(s_->groups_.of(r), manager);
     }
-    for (std::uint32_t g = 0; g < manager_of_group_.size(); ++g) name(g, manager_of_group_[g]);
+    for (const std::uint32_t g : yielding_groups_)
+        if (yields_[g]) name(g, manager_of_group_[g]);
     std::size_t kept = 0;
     for (const std::uint32_t g : groups)
         if (manager_of_island_[islands.find(g)] != kNoIndex)
@@ -104,8 +124,10 @@ void HeldIslands::make_isles(DisjointSets& islands)
 
 void HeldIslands::advance(std::span<const std::uint32_t> shadows, DisjointSets& islands, double from, double to, WorkBook book, bool trial)
 {
+    // A look at where a piece begins: no time, no impulses.
+    if (!(to > from)) return;
     make_isles(islands);
-    collect_contacts(from);
+    collect_contacts(from, to - from);
     share_contacts();
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
     for (std::size_t i = 0; i < isle_count_; ++i)
@@ -124,8 +146,8 @@ void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> gro
                       double to, WorkBook book, bool trial)
 {
     GroupSystem& system = s_->system_for(groups, shadows);
-    system.begin(from, to, book, trial ? nullptr : s_);
     system.hold_rows(true);
+    system.begin(from, to, book, trial ? nullptr : s_);
     system.evaluate(0, 0);
     for (Isle* isle : isles) isle->members.clear(), isle->roots.clear(), isle->bodies.clear(), isle->shafts.clear();
     for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
@@ -143,6 +165,7 @@ void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> gro
     for (Isle* isle : isles) solve(*isle, system, from, to, book, trial);
     if (book.work) book_forces(system, isles, to - from);
     system.finish_held();
+    for (const Isle* isle : isles) report_rows(*isle, system, to - from, book);
     system.hold_rows(false);
     s_->finish_advance(system, system.all_finite(), to, trial);
 }
@@ -154,11 +177,15 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     isle.rows.clear();
     if (isle.has_rows && system.rows())
     {
-        system.rows()->collect(system.context());
+        system.rows()->begin_hold(system.context());
         isle.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
     }
     given_speed_.resize(host.bodies.size(), 0.0);
     set_approach(isle, system, to - from);
+    if (!trial)
+        for (std::size_t i = 0; i < isle.contacts.size(); ++i)
+            if (s_->is_paradox(isle.contacts[i])) s_->tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]],
+                                                               s_->frame_.start_time + from);
     isle.motion.begin(system, host.bodies, host.shafts, isle.members, isle.roots, isle.contacts, isle.rows, book.work != nullptr);
     Island island;
     island.h = to - from, island.time = s_->frame_.start_time + from;
@@ -186,23 +213,16 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     s_->report_.worst_residual = std::max(s_->report_.worst_residual, island.residual);
     keep(isle);
     tell_impacts(isle, island.time);
-    if (!isle.rows.empty()) report_rows(isle, *system.rows(), island.h);
 }
 
-/// What joints say of themselves: forces of this step.
-void HeldIslands::report_rows(const Isle& isle, RowSystem& rows, double h)
+/// What joints say of themselves, and their share in what the manager did.
+void HeldIslands::report_rows(const Isle& isle, GroupSystem& system, double h, WorkBook book)
 {
-    std::size_t at = 0;
-    for (ConstraintRow& row : rows.rows())
-    {
-        std::size_t found = at;
-        while (found < isle.rows.size() && !(isle.rows[found].component == row.component && isle.rows[found].feature == row.feature))
-            ++found;
-        if (found == isle.rows.size()) continue;
-        row.impulse = isle.rows[found].impulse;
-        at = found + 1;
-    }
-    rows.take_impulses(h);
+    if (isle.rows.empty()) return;
+    StepContext context = system.context();
+    context.time += h;
+    const double work = system.rows()->take_impulses(context, isle.rows, h, system.row_book());
+    if (book.work) (*book.work)[isle.manager] -= book.sign * work;
 }
 
 /// 1/(kg m^2) of the train that a shaft carries.

@@ -50,6 +50,7 @@ private:
         Vec3 velocity, spin, momentum;
     };
     void commit(double h);
+    Vec3 turn_over(std::uint32_t body, const Vec3& spin, const Vec3& momentum, double h) const;
     Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
 
     GroupSystem* system_ = nullptr;
@@ -82,9 +83,9 @@ public:
     void rebuild();
     /// Whether any contacts or joints are held by managers.
     bool any() const { return any_; }
-    /// Some joints may let go, so that only a manager can hold them.
+    /// Some rows may let go in this step, so that only a manager can hold them.
     bool holds_joints() const { return holds_joints_; }
-    bool holds_joints_of(std::uint32_t group) const { return holds_joints_ && manager_of_group_[group] != kNoIndex; }
+    bool holds_joints_of(std::uint32_t group) const { return holds_joints_ && yields_[group] != 0; }
     /// At the start of a step: contacts where the bodies are now, unless they are known from the end of the last step; pairs
     /// that stand from now on.
     void begin_step();
@@ -115,7 +116,8 @@ private:
     };
     std::uint32_t manager_of(const PairState& pair) const;
     bool is_current() const;
-    void collect_contacts(double from);
+    void collect_contacts(double from, double h);
+    void add_known_contacts();
     void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law);
     void make_isles(DisjointSets& islands);
     void share_contacts();
@@ -125,13 +127,16 @@ private:
     void solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial);
     void keep(const Isle& isle);
     void tell_impacts(const Isle& isle, double time);
-    void report_rows(const Isle& isle, RowSystem& rows, double h);
+    void look_for_yielding_rows();
+    static void report_rows(const Isle& isle, GroupSystem& system, double h, WorkBook book);
     double mobility_of(std::uint32_t root) const;
     void book_forces(GroupSystem& system, std::span<Isle*> isles, double h);
 
     Stepper* s_;
     bool any_ = false, holds_joints_ = false;
-    std::vector<std::uint32_t> manager_of_group_;   ///< joints that only a manager can hold; kNoIndex: none
+    std::vector<std::uint32_t> manager_of_group_;   ///< of joints that name one; kNoIndex: none
+    std::vector<std::uint32_t> yielding_groups_;    ///< those that have one
+    std::vector<std::uint8_t> yields_;              ///< by group: such a joint may let go in this step
     std::vector<std::uint32_t> manager_of_island_;  ///< by representative group
     std::vector<std::uint32_t> held_;
     std::vector<std::uint32_t> isle_of_group_;

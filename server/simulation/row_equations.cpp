@@ -35,7 +35,7 @@ void RowEquations::fill(Slot& slot, const ConstraintRow& row)
     std::uint32_t next = 0;
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
-        if (!pattern_[slot.row][k].mobile) continue;
+        if (!pattern_[slot.held].who[k].mobile) continue;
         // Blocks on the same member share an entry: two shafts of one train.
         std::uint32_t e = 0;
         while (e < next && members_[entries[e].member].who != row.blocks[k].who) ++e;
@@ -87,6 +87,7 @@ void RowEquations::fill_masses()
 
 void RowEquations::factor(double compliance)
 {
+    compliance_ = compliance;
     factors_.clear();
     fill_masses();
     const auto first_joint = static_cast<std::uint32_t>(members_.size());

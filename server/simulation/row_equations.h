@@ -53,6 +53,8 @@ public:
     /// Analyses anew if who takes part in what has changed.
     void set_rows(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces);
     void factor(double compliance = kCompliance);
+    /// Of the last factorisation.
+    double compliance() const { return compliance_; }
 
     void clear_right_hand_side();
     /// g of a member: force in W (N) and torque in B (N m), or the torque on a train (N m).
@@ -85,6 +87,7 @@ public:
     {
         std::uint32_t row = 0;                       ///< in the list that set_rows() saw
         std::uint32_t piece = 0;                     ///< whose it is
+        std::uint32_t held = 0;                      ///< its number among rows that do not yield
         std::uint32_t joint = 0, place = 0;          ///< node of the matrix beyond the members, and the row's number in it
         std::uint32_t first_entry = 0, entries = 0;  ///< one for each member
         double mobility = 0;                         ///< J M^-1 J^T of this row alone
@@ -118,6 +121,18 @@ private:
         friend bool operator==(const Participant&, const Participant&) = default;
     };
     using Participants = std::array<Participant, ConstraintRow::kMostBlocks>;
+    /// A row that does not yield.
+    struct Held
+    {
+        std::uint32_t row = 0, piece = 0;
+    };
+    /// What the analysis depends on: those that yield may come and go.
+    struct Pattern
+    {
+        std::uint32_t component = 0;
+        Participants who;
+        friend bool operator==(const Pattern&, const Pattern&) = default;
+    };
 
     class Analysis;
     bool is_mobile(Ref who) const
@@ -125,7 +140,8 @@ private:
         return who.facet == Facet::Body ? host_->bodies.dynamic(who.index) : who.facet == Facet::Shaft && host_->shafts.dynamic(who.index);
     }
     Participants participants_of(const ConstraintRow& row) const;
-    bool same_pattern(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces) const;
+    void list_held(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces);
+    bool same_pattern(std::span<const ConstraintRow> rows) const;
     void find_loops();
     void fill(Slot& slot, const ConstraintRow& row);
     void fill_masses();
@@ -147,9 +163,9 @@ private:
     const world::HostTables* host_ = nullptr;
     const ConstraintGraph* graph_ = nullptr;
 
+    std::vector<Held> held_;  ///< of the present rows
     // What the analysis was of, and found.
-    std::vector<RowPiece> pieces_;
-    std::vector<Participants> pattern_;
+    std::vector<Pattern> pattern_;
     std::vector<Member> members_;
     std::vector<Joint> joints_;
     std::vector<Slot> slots_;
@@ -157,6 +173,7 @@ private:
     bool any_compliant_ = false;
 
     SparseLdlt factors_;
+    double compliance_ = -1;  ///< -1: not factored yet
     bool any_small_ = false;
     std::vector<double> rhs_, x_, r_, before_, scale_;  // by unknown
     std::vector<double> joint_error_, joint_scale_;     // by joint

@@ -12,49 +12,38 @@ namespace plab::simulation
 class RowEquations::Analysis
 {
 public:
-    Analysis(RowEquations& out, std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces)
-        : out_(out), rows_(rows), pieces_(pieces)
-    {
-    }
+    Analysis(RowEquations& out, std::span<const ConstraintRow> rows) : out_(out), rows_(rows) {}
 
     void run()
     {
-        out_.pieces_.assign(pieces_.begin(), pieces_.end());
         out_.pattern_.clear();
-        for (const ConstraintRow& row : rows_) out_.pattern_.push_back(out_.participants_of(row));
+        for (const Held& h : out_.held_) out_.pattern_.push_back({rows_[h.row].component, out_.participants_of(rows_[h.row])});
         out_.members_.clear(), out_.joints_.clear(), out_.slots_.clear(), out_.entries_.clear();
-        for (std::uint32_t p = 0; p < pieces_.size(); ++p) take(p);
-        std::stable_sort(out_.slots_.begin(), out_.slots_.end(), [](const Slot& a, const Slot& b) { return a.row < b.row; });
+        for (std::uint32_t i = 0; i < out_.held_.size(); ++i) take(i);
         out_.find_loops();
         make_matrix();
     }
 
 private:
-    void take(std::uint32_t p)
+    void take(std::uint32_t held)
     {
-        const RowPiece& piece = pieces_[p];
-        for (std::uint32_t row = piece.first; row < piece.first + piece.count; ++row)
-        {
-            if (rows_[row].may_yield()) continue;
-            const auto members = members_of(row);
-            if (members.empty()) continue;  // nobody whom it could move
-            Slot slot;
-            slot.row = row, slot.piece = p;
-            slot.joint = joint_for(row, members, p);
-            slot.place = out_.joints_[slot.joint].rows++;
-            slot.first_entry = static_cast<std::uint32_t>(out_.entries_.size());
-            slot.entries = static_cast<std::uint32_t>(members.size());
-            for (const std::uint32_t m : members) out_.entries_.push_back({m, edge_of(slot.joint, m), {}});
-            out_.slots_.push_back(slot);
-        }
+        const auto members = members_of(held);
+        if (members.empty()) return;  // nobody whom it could move
+        Slot slot;
+        slot.held = held, slot.row = out_.held_[held].row, slot.piece = out_.held_[held].piece;
+        slot.joint = joint_for(held, members);
+        slot.place = out_.joints_[slot.joint].rows++;
+        slot.first_entry = static_cast<std::uint32_t>(out_.entries_.size());
+        slot.entries = static_cast<std::uint32_t>(members.size());
+        for (const std::uint32_t m : members) out_.entries_.push_back({m, edge_of(slot.joint, m), {}});
+        out_.slots_.push_back(slot);
     }
 
-    std::vector<std::uint32_t> members_of(std::uint32_t row)
+    std::vector<std::uint32_t> members_of(std::uint32_t held)
     {
         std::vector<std::uint32_t> members;
-        for (std::uint32_t k = 0; k < rows_[row].count; ++k)
+        for (const Participant& p : out_.pattern_[held].who)
         {
-            const Participant& p = out_.pattern_[row][k];
             if (!p.mobile) continue;
             const auto [at, fresh] = member_of_.emplace(p.who, static_cast<std::uint32_t>(out_.members_.size()));
             if (fresh) out_.members_.push_back({p.who, 0, 0});
@@ -63,19 +52,20 @@ private:
         return members;
     }
 
-    bool is_grounded(std::uint32_t row, std::size_t members) const
+    bool is_grounded(std::uint32_t held, std::size_t members) const
     {
         if (members < 2) return true;
-        for (std::uint32_t k = 0; k < rows_[row].count; ++k)
-            if (!out_.pattern_[row][k].mobile) return true;
+        for (std::uint32_t k = 0; k < rows_[out_.held_[held].row].count; ++k)
+            if (!out_.pattern_[held].who[k].mobile) return true;
         return false;
     }
 
     /// Rows between the same members are one joint, up to the size of a block.
-    std::uint32_t joint_for(std::uint32_t row, std::vector<std::uint32_t> members, std::uint32_t piece)
+    std::uint32_t joint_for(std::uint32_t held, std::vector<std::uint32_t> members)
     {
         std::sort(members.begin(), members.end());
-        const bool grounded = is_grounded(row, members.size());
+        const bool grounded = is_grounded(held, members.size());
+        const std::uint32_t piece = out_.held_[held].piece;
         const auto key = std::pair(members, grounded);
         const auto known = open_joint_.find(key);
         if (known != open_joint_.end() && out_.joints_[known->second].rows < SparseLdlt::kMostSize)
@@ -111,7 +101,6 @@ private:
 
     RowEquations& out_;
     std::span<const ConstraintRow> rows_;
-    std::span<const RowPiece> pieces_;
     std::map<Ref, std::uint32_t> member_of_;
     std::map<std::pair<std::vector<std::uint32_t>, bool>, std::uint32_t> open_joint_;
     std::vector<std::uint32_t> piece_of_joint_;
@@ -214,22 +203,40 @@ void RowEquations::find_loops()
 RowEquations::Participants RowEquations::participants_of(const ConstraintRow& row) const
 {
     Participants out;
-    if (row.may_yield()) return out;
     for (std::uint32_t k = 0; k < row.count; ++k) out[k] = {row.blocks[k].who, is_mobile(row.blocks[k].who)};
     return out;
 }
 
-bool RowEquations::same_pattern(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces) const
+void RowEquations::list_held(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces)
 {
-    if (rows.size() != pattern_.size() || !std::equal(pieces.begin(), pieces.end(), pieces_.begin(), pieces_.end())) return false;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        if (participants_of(rows[i]) != pattern_[i]) return false;
+    held_.clear();
+    for (std::uint32_t p = 0; p < pieces.size(); ++p)
+        for (std::uint32_t row = pieces[p].first; row < pieces[p].first + pieces[p].count; ++row)
+            if (!rows[row].may_yield()) held_.push_back({row, p});
+}
+
+bool RowEquations::same_pattern(std::span<const ConstraintRow> rows) const
+{
+    if (held_.size() != pattern_.size()) return false;
+    for (std::size_t i = 0; i < held_.size(); ++i)
+    {
+        const ConstraintRow& row = rows[held_[i].row];
+        const Pattern& known = pattern_[i];
+        if (row.component != known.component) return false;
+        for (std::uint32_t k = 0; k < row.count; ++k)
+            if (row.blocks[k].who != known.who[k].who || is_mobile(row.blocks[k].who) != known.who[k].mobile) return false;
+        if (row.count < known.who.size() && known.who[row.count].who.valid()) return false;
+    }
     return true;
 }
 
 void RowEquations::set_rows(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces)
 {
-    if (!same_pattern(rows, pieces)) Analysis(*this, rows, pieces).run();
+    list_held(rows, pieces);
+    if (!same_pattern(rows))
+        Analysis(*this, rows).run();
+    else
+        for (Slot& slot : slots_) slot.row = held_[slot.held].row, slot.piece = held_[slot.held].piece;
     for (Member& m : members_) weigh(m);
     for (Slot& slot : slots_) fill(slot, rows[slot.row]);
 }

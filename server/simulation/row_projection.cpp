@@ -21,6 +21,8 @@ constexpr double kShareOfPlace = 1e-3;
 /// What iteration cannot bring below this share is a contradiction.
 constexpr double kContradiction = 1e-8;
 constexpr double kSpeedContradiction = 1e-4;
+/// Speeds that miss their rows by less than this share are left to the projection at the end of the advance.
+constexpr double kMisfit = 1e-8;
 constexpr int kMostIterations = 40;
 constexpr int kMostSpeedCorrections = 8;
 /// What a factorisation of a state nearby may leave, and each correction after it.
@@ -198,14 +200,14 @@ void RowSystem::correct_speeds(const StepContext& context, bool least_squares)
     if (done) change_speeds(context);
 }
 
-void RowSystem::match_speeds(const StepContext& context, ProjectionReport& report, std::vector<double>* work)
+void RowSystem::match_speeds(const StepContext& context, ProjectionReport& report, const RowBook& book)
 {
     double left = measure_speeds(context.dt);
     bool soft = false;
     for (int i = 0; i < kMostSpeedCorrections && left > kRounding; ++i)
     {
         correct_speeds(context, soft);
-        if (work) book_speeds(*work);
+        if (book.work) book_speeds(book);
         const double before = left;
         left = measure_speeds(context.dt);
         if (left < 0.5 * before) continue;
@@ -217,20 +219,23 @@ void RowSystem::match_speeds(const StepContext& context, ProjectionReport& repor
 }
 
 /// J^T mu (v + v') / 2: what each row's impulse has done. Called when speeds have just been changed.
-void RowSystem::book_speeds(std::vector<double>& work)
+void RowSystem::book_speeds(const RowBook& book)
 {
     const auto slots = equations_.slots();
     for (std::size_t s = 0; s < slots.size(); ++s)
     {
         const ConstraintRow& row = rows_[slots[s].row];
+        if (!books(row, book)) continue;
         const double after = speed_of(row) - speed_of_others(row);
-        work[row.component] += equations_.multiplier(s) * (after - 0.5 * equations_.moved(s));
+        (*book.work)[row.component] += book.sign * equations_.multiplier(s) * (after - 0.5 * equations_.moved(s));
     }
 }
 
 void RowSystem::count_redundant(ProjectionReport& report)
 {
     redundant_.assign(pieces_.size(), 0);
+    // By the last factorisation: of a state close to the present one, but not by one that lets rows give way.
+    if (equations_.compliance() != RowEquations::kCompliance) return;
     const auto slots = equations_.slots();
     for (std::size_t s = 0; s < slots.size(); ++s)
         if (equations_.redundant(s)) ++redundant_[slots[s].piece], ++report.redundant;
@@ -258,8 +263,8 @@ ProjectionReport RowSystem::project(const StepContext& context)
     const double left = measure_positions();
     report.converged = left < kContradiction;
     if (!report.converged) name_contradictory(position_error_, report);
-    match_speeds(context, report, nullptr);
-    if (factored_) count_redundant(report);
+    match_speeds(context, report, {});
+    count_redundant(report);
     for (const double e : position_error_) report.position_error = std::fmax(report.position_error, std::fabs(e));
     for (const double e : speed_error_) report.speed_error = std::fmax(report.speed_error, std::fabs(e));
     std::sort(report.contradictory.begin(), report.contradictory.end());
@@ -267,18 +272,35 @@ ProjectionReport RowSystem::project(const StepContext& context)
     return report;
 }
 
-ProjectionReport RowSystem::project_speeds(const StepContext& context, std::vector<double>* work)
+ProjectionReport RowSystem::project_speeds(const StepContext& context, const RowBook& book)
 {
     ProjectionReport report;
     factored_ = false;
     collect(context);
     equations_.set_rows(rows_, pieces_);
     measure_positions();
-    match_speeds(context, report, work);
-    if (factored_) count_redundant(report);
+    match_speeds(context, report, book);
+    count_redundant(report);
     for (const double e : speed_error_) report.speed_error = std::fmax(report.speed_error, std::fabs(e));
     std::sort(report.contradictory.begin(), report.contradictory.end());
     return report;
+}
+
+bool RowSystem::misfits(double dt) const
+{
+    return std::any_of(rows_.begin(), rows_.end(),
+                       [&](const ConstraintRow& row)
+                       {
+                           if (row.may_yield() || !books(row, {})) return false;
+                           const double error = std::fabs(speed_of(row) - row.rate);
+                           return error > 0 && !(error <= kMisfit * speed_scale(row, dt));
+                       });
+}
+
+void RowSystem::join(const StepContext& context, const RowBook& book)
+{
+    collect(context);
+    if (misfits(context.dt)) (void)project_speeds(context, book);
 }
 
 }  // namespace plab::simulation

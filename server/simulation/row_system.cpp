@@ -156,26 +156,25 @@ bool RowSystem::is_mobile(Ref who) const
     return who.facet == Facet::Body ? host_->bodies.dynamic(who.index) : host_->shafts.dynamic(who.index);
 }
 
+double RowSystem::speed_of(const RowBlock& b) const
+{
+    if (b.who.facet == Facet::Shaft) return b.angular.x * host_->shafts.speed[b.who.index];
+    return dot(b.linear, host_->bodies.velocity[b.who.index]) + dot(b.angular, host_->bodies.angular_velocity[b.who.index]);
+}
+
 double RowSystem::speed_of(const ConstraintRow& row) const
 {
     double sum = 0;
-    for (std::uint32_t k = 0; k < row.count; ++k)
-    {
-        const RowBlock& b = row.blocks[k];
-        if (b.who.facet == Facet::Shaft)
-            sum += b.angular.x * host_->shafts.speed[b.who.index];
-        else
-            sum += dot(b.linear, host_->bodies.velocity[b.who.index]) + dot(b.angular, host_->bodies.angular_velocity[b.who.index]);
-    }
+    for (std::uint32_t k = 0; k < row.count; ++k) sum += speed_of(row.blocks[k]);
     return sum;
 }
 
 double RowSystem::speed_of_others(const ConstraintRow& row) const
 {
-    ConstraintRow others;
+    double sum = 0;
     for (std::uint32_t k = 0; k < row.count; ++k)
-        if (!is_mobile(row.blocks[k].who)) others.blocks[others.count++] = row.blocks[k];
-    return speed_of(others);
+        if (!is_mobile(row.blocks[k].who)) sum += speed_of(row.blocks[k]);
+    return sum;
 }
 
 void RowSystem::load_forces(const Wrenches& wrenches)
@@ -273,30 +272,59 @@ void RowSystem::add_reactions(Wrenches& wrenches) const
         }
 }
 
-void RowSystem::account(std::vector<double>& work, double share, std::span<const std::uint8_t> accounted_bodies,
-                        std::span<const std::uint8_t> accounted_shafts) const
+/// Whether a row's work counts: rows join members of one group, so that the first that moves tells.
+bool RowSystem::books(const ConstraintRow& row, const RowBook& book) const
 {
-    const auto accounted = [&](Ref who)
-    {
-        const auto& flags = who.facet == Facet::Body ? accounted_bodies : accounted_shafts;
-        return flags.empty() || flags[who.index] != 0;
-    };
-    for (std::uint32_t i = 0; i < rows_.size(); ++i)
+    const auto end = row.blocks.begin() + row.count;
+    const auto moved = std::find_if(row.blocks.begin(), end, [&](const RowBlock& b) { return is_mobile(b.who); });
+    if (moved == end) return false;
+    const auto& flags = moved->who.facet == Facet::Body ? book.bodies : book.shafts;
+    return flags.empty() || flags[moved->who.index] != 0;
+}
+
+void RowSystem::account(const RowBook& book, double share) const
+{
+    for (std::uint32_t i = 0; i < rows_.size() && i < lambda_.size(); ++i)
     {
         const ConstraintRow& row = rows_[i];
-        if (i >= lambda_.size() || lambda_[i] == 0) continue;
-        const auto end = row.blocks.begin() + row.count;
-        const auto moved = std::find_if(row.blocks.begin(), end, [&](const RowBlock& b) { return is_mobile(b.who); });
-        if (moved == end || !accounted(moved->who)) continue;
-        work[row.component] += share * lambda_[i] * (row.rate - speed_of_others(row));
+        if (lambda_[i] == 0 || !books(row, book)) continue;
+        (*book.work)[row.component] += book.sign * share * lambda_[i] * (row.rate - speed_of_others(row));
     }
 }
 
-void RowSystem::take_impulses(double h)
+void RowSystem::begin_hold(const StepContext& context)
 {
-    lambda_.resize(rows_.size());
-    for (std::size_t i = 0; i < rows_.size(); ++i) lambda_[i] = rows_[i].impulse / h;
+    collect(context);
+    held_speed_.clear();
+    for (const ConstraintRow& row : rows_) held_speed_.push_back(speed_of(row) - speed_of_others(row));
+}
+
+double RowSystem::take_impulses(const StepContext& context, std::span<const ConstraintRow> held, double h, const RowBook& book)
+{
+    collect(context);
+    lambda_.assign(rows_.size(), 0.0);
+    position_error_.assign(rows_.size(), 0.0), speed_error_.assign(rows_.size(), 0.0);
+    redundant_.assign(pieces_.size(), 0);
+    double sum = 0;
+    for (std::size_t i = 0, at = 0; i < rows_.size(); ++i)
+    {
+        const ConstraintRow& row = rows_[i];
+        if (row.kind == RowKind::Equality) position_error_[i] = row.error;
+        if (row.kind == RowKind::OneSided) position_error_[i] = std::fmin(0.0, row.error);
+        if (!row.may_yield()) speed_error_[i] = speed_of(row) - row.rate;
+        // A limit may have come near or gone since: both lists stand in one order.
+        std::size_t found = at;
+        while (found < held.size() && !(held[found].component == row.component && held[found].feature == row.feature)) ++found;
+        if (found == held.size()) continue;
+        at = found + 1;
+        lambda_[i] = held[found].impulse / h;
+        if (!book.work || !books(row, book)) continue;
+        const double work = 0.5 * held[found].impulse * (held_speed_[found] + speed_of(row) - speed_of_others(row));
+        (*book.work)[row.component] += book.sign * work;
+        sum += work;
+    }
     keep_reactions();
+    return sum;
 }
 
 void RowSystem::keep_reactions()

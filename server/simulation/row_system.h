@@ -40,6 +40,14 @@ public:
     virtual void constrain(const StepContext& context, RowSink& sink) = 0;
 };
 
+/// Where the work of rows goes, and whose counts. Empty spans: everybody's.
+struct RowBook
+{
+    std::vector<double>* work = nullptr;  ///< J by component; null: nobody books
+    double sign = 1;                      ///< -1 takes back what was booked before
+    std::span<const std::uint8_t> bodies, shafts;
+};
+
 /// What joints tell Phase::Finish, of all groups.
 class RowReportTable final : public RowReports
 {
@@ -80,19 +88,25 @@ public:
     /// collect(), then the multipliers that make J a = bias under the wrenches so far, added to the wrenches. Rows that
     /// may yield are left out. False if the result is not finite (the wrenches are then as before).
     bool react(const StepContext& context, Wrenches& wrenches);
-    /// Adds share (s) times the power of each component's rows of the last react() to `work` (J by component). Only what
-    /// moves by itself does work: rates, and kinematic participants. Empty spans: all are accounted.
-    void account(std::vector<double>& work, double share, std::span<const std::uint8_t> accounted_bodies = {},
-                 std::span<const std::uint8_t> accounted_shafts = {}) const;
+    /// Adds share (s) times the power of each component's rows of the last react() to the book. Only what moves by itself
+    /// does work: rates, and kinematic participants.
+    void account(const RowBook& book, double share) const;
 
     /// Puts the members onto their rows: poses first (error = 0), then speeds (J v = rate). At the end of an advance.
     ProjectionReport project(const StepContext& context);
-    /// Speeds only: after a joint came, or a speed was set. The change of kinetic energy is booked to the components in
-    /// `work` (J by component), if given.
-    ProjectionReport project_speeds(const StepContext& context, std::vector<double>* work = nullptr);
+    /// Speeds only. The change of kinetic energy is booked to the components.
+    ProjectionReport project_speeds(const StepContext& context, const RowBook& book = {});
+    /// At the start of an advance: the same where speeds do not fit the rows (a joint came, a request or an impact changed
+    /// a speed, a motor's speed jumped), by impulses. A function of the present state alone: speeds as a projection leaves
+    /// them keep every bit.
+    void join(const StepContext& context, const RowBook& book);
 
-    /// After a manager left impulses (N s over h) in rows(): what is reported of them.
-    void take_impulses(double h);
+    /// collect(), for a manager that will hold the rows.
+    void begin_hold(const StepContext& context);
+    /// After it did, over h: `held` are those rows with their impulses (N s), in the same order. What is reported of them,
+    /// and the errors that they leave at the tables' present state. Books their work, by the mean of the speeds before and
+    /// after, and returns its sum (J).
+    double take_impulses(const StepContext& context, std::span<const ConstraintRow> held, double h, const RowBook& book);
     /// Of the last react() or take_impulses(), and the last projection.
     void report_to(RowReportTable& table) const;
     /// Adds the time that rows took since the last call, ns by table.
@@ -123,13 +137,16 @@ private:
     void relax_positions(const StepContext& context, ProjectionReport& report);
     bool correct_positions(const StepContext& context, double compliance);
     void move_members(const StepContext& context);
-    void match_speeds(const StepContext& context, ProjectionReport& report, std::vector<double>* work);
+    void match_speeds(const StepContext& context, ProjectionReport& report, const RowBook& book);
     void correct_speeds(const StepContext& context, bool least_squares);
     void change_speeds(const StepContext& context);
-    void book_speeds(std::vector<double>& work);
+    void book_speeds(const RowBook& book);
+    bool books(const ConstraintRow& row, const RowBook& book) const;
+    bool misfits(double dt) const;
     double measure_positions();
     double measure_speeds(double dt);
     double position_scale(const ConstraintRow& row) const;
+    double speed_of(const RowBlock& block) const;
     double speed_of(const ConstraintRow& row) const;
     double speed_scale(const ConstraintRow& row, double dt) const;
     double speed_of_others(const ConstraintRow& row) const;
@@ -149,6 +166,7 @@ private:
     std::vector<double> lambda_;                        ///< by row, N or N m
     std::vector<double> position_error_, speed_error_;  ///< by row, after the last projection
     std::vector<std::uint32_t> redundant_;              ///< by piece
+    std::vector<double> held_speed_;                    ///< by row that a manager holds: of its mobile members at the start
     std::vector<Reaction> reactions_;
     bool may_yield_ = false;
     bool factored_ = false;  ///< the equations hold a factorisation of a state close to the present one

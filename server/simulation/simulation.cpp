@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/divergence_watch.h"
 #include "simulation/field_change.h"
 #include "simulation/transaction.h"
 
 namespace plab::simulation
 {
 
-Simulation::Simulation(model::TypeSource& types, int threads) : types_(&types), threads_(threads) {}
+Simulation::Simulation(model::TypeSource& types, int threads) : types_(&types), threads_(threads), watch_(std::make_unique<DivergenceWatch>())
+{
+}
 Simulation::~Simulation() = default;
 
 Result<Simulation::Live> Simulation::build(const model::SceneSpec& scene)
@@ -43,6 +46,7 @@ void Simulation::begin_run(Live live, const model::SceneSpec& scene)
     ++run_;
     changes_ = {};
     changes_.everything = true;
+    *watch_ = {};
     kinetic_at_start_ = totals().kinetic;
 }
 
@@ -84,7 +88,9 @@ Reply Simulation::carry_out(const Request& request)
         reply.errors = {reason("the scene is at revision " + std::to_string(revision_) + ", not " + std::to_string(*request.revision))};
         return reply;
     }
-    return Transaction(*this, request).run();
+    Reply done = Transaction(*this, request).run();
+    if (done.done) watch_->begin_anew();
+    return done;
 }
 
 Changes Simulation::take_changes()
@@ -138,9 +144,11 @@ void Simulation::run_step(bool trial)
     changed_by_scripts_.clear();
     const double start = time_at(tick_);
     stepper_->draw_for(trial ? nullptr : images_);
+    if (!trial) watch_->before_step(*this);
     stepper_->step(tick_, start, time_at(tick_ + 1) - start);
     if (trial) return;
     events_ = stepper_->events();
+    watch_->after_step(*this, events_);
     freeze_lost_objects();
     quarantine_failed();
 }
@@ -187,6 +195,7 @@ void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& 
         if (done)
         {
             s.changes_.by_scripts.insert(i);
+            s.watch_->begin_anew();
             structure = structure || s.world_->type_of(i)->takes_part(Phase::Connect) || s.world_->component(i).facet != Facet::Component;
             continue;
         }
@@ -223,6 +232,12 @@ Totals Simulation::totals() const
         // Whoever came within a transaction has no account before the stepper is rebuilt, and has done nothing.
         if (i < stepper_->work().size()) t.work += stepper_->work()[i];
     }
+    t.stored = stored_energy();
+    return t;
+}
+
+double Simulation::stored_energy() const
+{
     StoredEnergy stored;
     PhaseCall call;
     StepContext context;
@@ -236,8 +251,7 @@ Totals Simulation::totals() const
         call.rows = block.rows;
         (void)block.command->run(call, table.rows());
     }
-    t.stored = stored.joule;
-    return t;
+    return stored.joule;
 }
 
 double Simulation::error_of(std::uint32_t component) const

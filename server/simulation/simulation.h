@@ -22,6 +22,8 @@ struct Totals
     double shaft_momentum = 0;  ///< N m s, sum over shafts about their own axles
 };
 
+class DivergenceWatch;
+
 class Simulation
 {
 public:
@@ -68,6 +70,8 @@ public:
     /// Events of the last step and of the requests before it.
     const std::vector<Event>& events() const { return events_; }
     Totals totals() const;
+    /// J, of components that say so (Phase::Potential).
+    double stored_energy() const;
     double kinetic_at_start() const { return kinetic_at_start_; }
     /// The largest output of a component that is declared as its error; 0 if it has none.
     double error_of(std::uint32_t component) const;
@@ -117,6 +121,7 @@ private:
     ImageSink* images_ = nullptr;
     std::vector<Event> events_;
     std::set<std::uint32_t> changed_by_scripts_;
+    std::unique_ptr<DivergenceWatch> watch_;
 };
 
 }  // namespace plab::simulation

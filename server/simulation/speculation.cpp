@@ -11,11 +11,16 @@ namespace
 /// Speeds change while a manager works: neighbours push.
 constexpr double kReserve = 2;
 
+/// m/s: of the fastest point of a body about its centre.
+double turning(const Bodies& bodies, std::span<const double> radius, std::uint32_t b)
+{
+    return std::isfinite(radius[b]) ? length(bodies.angular_velocity[b]) * radius[b] : 0.0;
+}
+
 /// m/s: of the fastest point of a body.
 double fastest_point(const Bodies& bodies, std::span<const double> radius, std::uint32_t b)
 {
-    const double turning = std::isfinite(radius[b]) ? length(bodies.angular_velocity[b]) * radius[b] : 0;
-    return length(bodies.velocity[b]) + turning;
+    return length(bodies.velocity[b]) + turning(bodies, radius, b);
 }
 
 double step_of_acceleration(const Bodies& bodies, const Contact& c, double acceleration, double h)
@@ -38,13 +43,20 @@ double speculative_margin(const Bodies& bodies, std::span<const double> radius_o
     return kReserve * (first + second) * h + 2 * acceleration * h * h;
 }
 
+double closing_margin(const Bodies& bodies, std::span<const double> radius_of_body, Ref a, Ref b, const Vec3& normal, double h)
+{
+    const double closing = std::max(0.0, -dot(bodies.velocity[b.index] - bodies.velocity[a.index], normal)) +
+                           turning(bodies, radius_of_body, a.index) + turning(bodies, radius_of_body, b.index);
+    const double size = std::min(radius_of_body[a.index], radius_of_body[b.index]);
+    return std::min(kReserve * closing * h, 0.5 * size);
+}
+
 bool may_close(const Bodies& bodies, std::span<const double> radius_of_body, const Contact& contact, double acceleration, double h)
 {
     if (contact.depth >= 0) return true;
-    const auto turning = [&](std::uint32_t b)
-    { return std::isfinite(radius_of_body[b]) ? length(bodies.angular_velocity[b]) * radius_of_body[b] : 0.0; };
     const Vec3 apart = bodies.velocity[contact.b.index] - bodies.velocity[contact.a.index];
-    const double closing = std::max(0.0, -dot(apart, contact.normal)) + turning(contact.a.index) + turning(contact.b.index);
+    const double closing = std::max(0.0, -dot(apart, contact.normal)) + turning(bodies, radius_of_body, contact.a.index) +
+                           turning(bodies, radius_of_body, contact.b.index);
     return -contact.depth <= kReserve * closing * h + step_of_acceleration(bodies, contact, acceleration, h);
 }
 

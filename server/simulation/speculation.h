@@ -19,4 +19,8 @@ double speculative_margin(const Bodies& bodies, std::span<const double> radius_o
 /// Whether a found gap (depth < 0) may close within h. What overlaps or touches always counts.
 bool may_close(const Bodies& bodies, std::span<const double> radius_of_body, const Contact& contact, double acceleration, double h);
 
+/// m: no gap along `normal` (a to b) wider than this closes within h at the present speeds, turning included; and no more
+/// than half of the smaller body's radius, beyond which what was seen now says nothing of then.
+double closing_margin(const Bodies& bodies, std::span<const double> radius_of_body, Ref a, Ref b, const Vec3& normal, double h);
+
 }  // namespace plab::simulation

@@ -27,6 +27,7 @@ void Stepper::step(Tick tick, double start_time, double dt)
     events_.clear();
     report_ = {};
     reactions_.clear();
+    if (!schedule_.of(Phase::Constrain).empty()) row_reports_.clear(world_.components().size());
     frame_ = {&world_, &schedule_, &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed};
     for (const StepNode& node : kStepTree)
         if ((this->*node.needed)()) (this->*node.run)();
@@ -91,19 +92,6 @@ void Stepper::couple_speeds()
     e.message = "drives " + world_.id_of(Ref{Facet::Shaft, done.conflict->shaft}) + " against " + world_.id_of(done.conflict->first) +
                 ", which is obeyed";
     emit(std::move(e));
-}
-
-void Stepper::project_speeds()
-{
-    // Joints that came, or speeds that a request has set: what cannot move together gets common speeds by impulses.
-    joints_are_new_ = false;
-    for (std::uint32_t g = 0; g < groups_.all.size(); ++g)
-    {
-        if (groups_.all[g].rows.empty()) continue;
-        GroupSystem& system = system_for(std::span(&g, 1), {});
-        system.begin(0, frame_.step, {}, nullptr);
-        (void)system.rows()->project_speeds(system.context(), &work_);
-    }
 }
 
 void Stepper::draw()

@@ -120,7 +120,6 @@ public:
     void save_start();
     void drive();
     void couple_speeds();
-    void project_speeds();
     void advance_all();
     void locate_events();
     void finish_contacts();
@@ -129,7 +128,6 @@ public:
 
     bool anything_moves() const { return !groups_.all.empty(); }
     bool anything_drives() const { return !schedule_.of(Phase::Drive).empty(); }
-    bool joints_are_new() const { return joints_are_new_; }
     bool anything_couples() const { return !schedule_.of(Phase::Couple).empty() || !graph_.trees().empty(); }
     bool anything_collides() const { return !detectors_.empty(); }
     bool anything_finishes() const { return !schedule_.of(Phase::Finish).empty(); }
@@ -159,6 +157,9 @@ private:
     void advance_contacts(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
                           WorkBook book, bool trial);
     bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events);
+    bool run_solver(Batch::Part& part, std::vector<double>& work, EventSink& events);
+    /// False if the command refused.
+    bool call_solver(GroupSystem& system, std::uint32_t solver, const CommandInfo& command);
     bool goes_alone(const Group& group) const;
     void collect_units(std::span<const std::uint32_t> groups);
     EventSink* sink_for(bool trial) { return trial ? nullptr : this; }
@@ -178,7 +179,13 @@ private:
     double speculative_acceleration(const Detector& detector) const;
     void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
     void detect_all(std::vector<FoundContact>& out);
-    void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out);
+    void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0);
+    KnownContact& known_contact(const FoundContact& found);
+    double gap_margin(const PairState& pair, double h) const;
+    void drop_far(std::vector<FoundContact>& out, double h) const;
+    bool arrest(const GroupSystem& system, double h, WorkBook book);
+    bool is_paradox(const Contact& contact) const;
+    void tell_paradox(const Contact& contact, PairState& pair, double time);
     void fill_material(FoundContact& found) const;
     SurfaceLaw response_law(std::uint32_t detector) const;
     double standing_margin(Ref a, Ref b) const;
@@ -237,7 +244,6 @@ private:
 
     std::vector<Batch> batches_;
     bool batches_ready_ = false;
-    bool joints_are_new_ = false;  ///< the structure has changed, and there are joints
     SystemPool pool_;
 
     // Working lists, kept warm.

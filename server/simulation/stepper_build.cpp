@@ -109,7 +109,6 @@ Result<void> Stepper::rebuild()
     found_.clear();
     pool_.clear(world_);
     batches_ready_ = false;
-    joints_are_new_ = !schedule_.of(Phase::Constrain).empty();
     row_reports_.clear(world_.components().size());
     sight_.structure_changed();
     start_.save(world_.host()), segment_.save(world_.host()), end_.save(world_.host());

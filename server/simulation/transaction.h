@@ -57,8 +57,10 @@ private:
     /// One step with the new ones, withheld and taken back; an error if something fails that did not fail before.
     Result<void> try_new();
     StepOutcome try_step(std::string& failure);
-    /// Standing contacts that went over from hard to soft or back, in the reports of the swaps that did it.
-    void tell_converted_contacts();
+    /// Contact points that hold something and that the component has to do with: as detector, resolution, response, manager.
+    std::size_t held_points(std::uint32_t component) const;
+    /// What became of standing contacts, in the reports of the swaps that did it.
+    void tell_contacts();
     /// The cost of that step from `state` once more, warm.
     void measure_again(const State& state, StepOutcome& outcome);
 
@@ -69,6 +71,7 @@ private:
     bool old_fails_ = false;
     StepOutcome outcome_old_;
     std::vector<double> old_errors_;
+    std::vector<std::size_t> held_before_;  ///< contact points, by swap
     double energy_before_ = 0;
     bool structural_ = false;
     std::vector<std::string> touched_;  ///< ids that came, went or changed

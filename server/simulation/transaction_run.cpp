@@ -72,20 +72,47 @@ void Transaction::compare_with_old(const State& before)
     }();
 }
 
-void Transaction::tell_converted_contacts()
+std::size_t Transaction::held_points(std::uint32_t component) const
 {
-    for (SwapReport& report : reply_.swaps)
+    const Stepper& stepper = *s_->stepper_;
+    const auto concerned = [&](std::uint32_t detector)
     {
+        const auto is_it = [&](const Detector& d)
+        {
+            const bool part = d.component == component || d.resolution == component || d.response == component || d.manager == component;
+            return d.component == detector && part;
+        };
+        return std::any_of(stepper.detectors().begin(), stepper.detectors().end(), is_it);
+    };
+    std::size_t n = 0;
+    for (const PairState& p : stepper.contacts().pairs()) n += p.resting && concerned(p.detector) ? p.count : 0;
+    for (const ForcePair& p : stepper.contacts().force_pairs()) n += concerned(p.detector) ? p.count : 0;
+    return n;
+}
+
+void Transaction::tell_contacts()
+{
+    const auto tell = [](SwapReport& report, std::size_t n, Fate fate)
+    {
+        if (n > 0) report.fields.push_back({"contacts (" + std::to_string(n) + " points)", fate});
+    };
+    for (std::size_t k = 0; k < reply_.swaps.size(); ++k)
+    {
+        SwapReport& report = reply_.swaps[k];
         const std::uint32_t i = s_->world_->find(report.id);
-        const std::size_t n = i == kNoIndex ? 0 : s_->stepper_->forces().converted(i);
-        if (n > 0) report.fields.push_back({"contacts (" + std::to_string(n) + " points)", Fate::Converted});
+        if (i == kNoIndex) continue;
+        const std::size_t converted = s_->stepper_->forces().converted(i), held = held_points(i);
+        tell(report, converted, Fate::Converted);
+        if (converted > 0) continue;
+        tell(report, held, Fate::Kept);
+        if (k < held_before_.size() && held_before_[k] > held) tell(report, held_before_[k] - held, Fate::Lost);
     }
 }
 
 Result<void> Transaction::try_new()
 {
     if (auto built = s_->stepper_->rebuild(); !built) return built;
-    tell_converted_contacts();
+    tell_contacts();
     const State after = capture();
     std::string failure;
     StepOutcome outcome = try_step(failure);

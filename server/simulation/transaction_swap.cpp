@@ -70,7 +70,9 @@ Result<void> Transaction::make_missing(model::ComponentSpec& spec, const Schema&
     for (const Role& role : schema.roles())
     {
         const bool given = std::any_of(spec.roles.begin(), spec.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
-        if (given || role.min == 0 || role.default_type.empty()) continue;
+        if (given || role.min == 0) continue;
+        if (role.default_type.empty())
+            return reason(spec.type + " needs somebody in the role '" + role.name + "', which the old type does not have");
         model::ComponentSpec part;
         part.id = spec.id + "." + role.name, part.type = role.default_type, part.generated = true;
         if (s_->world_->find(part.id) == kNoIndex)
@@ -155,6 +157,7 @@ Result<void> Transaction::apply_one(const SwapOperation& op)
     report.id = s_->world_->id_of(*component), report.from = s_->world_->type_of(*component)->info.name, report.to = op.type;
     auto spec = spec_for_swap(*component, op, report);
     if (!spec) return spec.errors();
+    held_before_.push_back(held_points(*component));
     if (auto done = exchange(*component, *spec, report); !done) return done;
     touched_.push_back(report.id);
     reply_.swaps.push_back(std::move(report));

@@ -102,7 +102,7 @@ void tell_orders(const StudyResult& r, std::vector<std::string>& out)
         std::sort(points.begin(), points.end(), [](const Point* a, const Point* b) { return a->record.dt < b->record.dt; });
         if (points.size() < 2 || points[0]->record.dt == points[1]->record.dt) continue;
         const double order = std::log(points[1]->error() / points[0]->error()) / std::log(points[1]->record.dt / points[0]->record.dt);
-        line += (line.empty() ? "" : "; ") + rung + " " + one_decimal(order);
+        line += (line.empty() ? "" : "; ") + rung + " " + (order > 0.05 ? one_decimal(order) : "none");
     }
     if (!line.empty()) out.push_back("Observed order of convergence, from the two shortest steps above round-off: " + line + ".");
 }

@@ -40,7 +40,7 @@ void end_progress()
 int list_exact()
 {
     for (const study::ExactEntry& e : study::exact_registry())
-        std::printf("exact:%-12.*s %.*s\n%-18s needs: %.*s\n", static_cast<int>(e.name.size()), e.name.data(),
+        std::printf("exact:%-14.*s %.*s\n%-20s needs: %.*s\n", static_cast<int>(e.name.size()), e.name.data(),
                     static_cast<int>(e.what.size()), e.what.data(), "", static_cast<int>(e.needs.size()), e.needs.data());
     return 0;
 }

@@ -48,8 +48,35 @@ double unstored_work(const simulation::Simulation& s)
     return work;
 }
 
+bool energy_goes_unseen(const simulation::Simulation& s)
+{
+    const world::World& world = s.world();
+    const auto real = [&](std::uint32_t i, const char* name) { return number_of(world.get(i, name)); };
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        const model::ComponentType* type = world.type_of(i);
+        if (!type) continue;
+        // Impulses and rows take back within the step what forces gave: only the sum of their works means something.
+        const bool stores = type->takes_part(Phase::Potential);
+        if (type->info.name.starts_with("Response/") && (stores || type->info.name != "Response/None")) return true;
+        if (!stores) continue;
+        for (const char* name : {"damping", "damping_ratio", "dissipation"})
+            if (real(i, name).value_or(0) > 0) return true;
+    }
+    return false;
+}
+
+double unexplained_energy(const simulation::Simulation& s, const simulation::Totals& t, bool by_work)
+{
+    return by_work ? t.kinetic - t.work : t.kinetic + t.stored - unstored_work(s);
+}
+
 Observation::Observation(const simulation::Simulation& s, RunRecord& out)
-    : s_(&s), out_(&out), start_(s.totals()), work_at_start_(unstored_work(s))
+    : s_(&s),
+      out_(&out),
+      start_(s.totals()),
+      by_work_(energy_goes_unseen(s)),
+      unexplained_at_start_(unexplained_energy(s, start_, by_work_))
 {
     for (const std::uint32_t i : s.world().in_id_order())
     {
@@ -64,7 +91,8 @@ Observation::Observation(const simulation::Simulation& s, RunRecord& out)
 void Observation::note(const Event& e)
 {
     ++out_->events[e.kind];
-    if (e.severity != Severity::Info)
+    // A manager that does not converge says so each time, and goes on: to a study that is a finding.
+    if (e.severity != Severity::Info || e.kind.ends_with("not_converged"))
     {
         if (out_->warnings.empty()) out_->first_warning = e.kind + (e.message.empty() ? "" : ": " + e.message);
         ++out_->warnings[e.kind];
@@ -92,9 +120,8 @@ void Observation::step()
 void Observation::sample_energy(const simulation::Totals& t)
 {
     EnergySeries& e = out_->energy;
-    const double energy = t.kinetic + t.stored, before = start_.kinetic + start_.stored;
-    e.time.push_back(s_->time()), e.energy.push_back(energy);
-    e.drift.push_back(energy - before - (unstored_work(*s_) - work_at_start_));
+    e.time.push_back(s_->time()), e.energy.push_back(t.kinetic + t.stored);
+    e.drift.push_back(unexplained_energy(*s_, t, by_work_) - unexplained_at_start_);
     grow(e.scale, std::max(t.kinetic, std::fabs(t.stored - start_.stored)));
 }
 

@@ -27,10 +27,17 @@ private:
     const simulation::Simulation* s_;
     RunRecord* out_;
     simulation::Totals start_;
-    double work_at_start_ = 0;
+    bool by_work_ = false;
+    double unexplained_at_start_ = 0;
 };
 
 /// Work of interactions whose energy is not among the stored ones, and of requests; J since the run began.
 double unstored_work(const simulation::Simulation& simulation);
+/// Whether stored energies do not tell what was lost: a spring with a damper takes energy away that its work alone knows;
+/// contacts share theirs with the forces that they hold against.
+bool energy_goes_unseen(const simulation::Simulation& simulation);
+/// Kinetic and stored energy less the work of what stores none; `by_work`: kinetic energy less all work, as the live metrics
+/// have it ("unexplained"). J, up to a constant.
+double unexplained_energy(const simulation::Simulation& simulation, const simulation::Totals& totals, bool by_work);
 
 }  // namespace plab::study

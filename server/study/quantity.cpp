@@ -1,6 +1,7 @@
 #include "study/quantity.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -15,7 +16,7 @@ namespace
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Numbers of a value; none for texts and lists.
+/// Numbers of a value; none for texts.
 std::size_t width_of(const Value& v)
 {
     switch (type_of(v))
@@ -28,6 +29,8 @@ std::size_t width_of(const Value& v)
             return 3;
         case FieldType::Rotation:
             return 4;
+        case FieldType::RealList:
+            return std::get<Reals>(v).size();
         default:
             return 0;
     }
@@ -40,14 +43,22 @@ void append(const Value& v, std::vector<double>& out)
     if (const auto* d = std::get_if<double>(&v)) out.push_back(*d);
     if (const auto* x = std::get_if<Vec3>(&v)) out.insert(out.end(), {x->x, x->y, x->z});
     if (const auto* q = std::get_if<Quat>(&v)) out.insert(out.end(), {q->w, q->x, q->y, q->z});
+    if (const auto* list = std::get_if<Reals>(&v)) out.insert(out.end(), list->begin(), list->end());
 }
 
-/// "z" of "position.z": its place among the numbers of a vector or an attitude.
-std::optional<std::size_t> part_of(const std::string& letter, std::size_t width)
+/// What the numbers of a vector or an attitude are called; nothing for others.
+std::string letters_of(FieldType type) { return type == FieldType::Vector ? "xyz" : type == FieldType::Rotation ? "wxyz" : ""; }
+
+/// "z" of "position.z", "2" of "values.2": its place among the numbers of a vector, an attitude or a list.
+std::optional<std::size_t> part_of(const std::string& name, const Value& whole)
 {
-    const std::string letters = width == 4 ? "wxyz" : width == 3 ? "xyz" : "";
-    const std::size_t at = letter.size() == 1 ? letters.find(letter) : std::string::npos;
-    return at == std::string::npos ? std::nullopt : std::optional(at);
+    const std::string letters = letters_of(type_of(whole));
+    if (const std::size_t at = name.size() == 1 ? letters.find(name) : std::string::npos; at != std::string::npos) return at;
+    if (type_of(whole) != FieldType::RealList) return {};
+    std::size_t n = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), n);
+    if (error != std::errc() || end != name.data() + name.size() || n < 1 || n > width_of(whole)) return {};
+    return n - 1;
 }
 
 /// The longest beginning of `text` that is a component's id.
@@ -99,16 +110,24 @@ Result<Quantity> resolve_quantity(const world::World& world, const std::string& 
     {
         const std::size_t dot = q.field.rfind('.');
         const Value whole = dot == std::string::npos ? Value() : world.get(owner, q.field.substr(0, dot));
-        q.part = dot == std::string::npos ? std::nullopt : part_of(q.field.substr(dot + 1), width_of(whole));
+        q.part = dot == std::string::npos ? std::nullopt : part_of(q.field.substr(dot + 1), whole);
         if (!q.part) return unknown_field(world, owner, text);
         q.field.resize(dot), value = whole;
     }
     q.width = q.part ? 1 : width_of(value);
-    q.measure = q.width == 4 ? Measure::Geodesic : Measure::Mixed;
+    q.is_list = type_of(value) == FieldType::RealList;
+    q.measure = !q.part && type_of(value) == FieldType::Rotation ? Measure::Geodesic : Measure::Mixed;
     const model::ComponentType* type = world.type_of(owner);
     const Field* field = type ? type->schema.find_field(q.field) : nullptr;
     q.unit = q.measure == Measure::Geodesic ? "rad" : field ? std::string(field->unit.symbol) : "";
     return q;
+}
+
+std::string Quantity::column(std::size_t i) const
+{
+    if (width == 1) return name;
+    const std::string letters = measure == Measure::Geodesic ? "wxyz" : "xyz";
+    return name + "." + (is_list ? std::to_string(i + 1) : letters.substr(i, 1));
 }
 
 std::vector<std::string> default_quantities(const world::World& world, std::size_t most)
@@ -120,6 +139,7 @@ std::vector<std::string> default_quantities(const world::World& world, std::size
         if (out.size() >= most) break;
         if (c.facet == Facet::Body && world.host().bodies.dynamic(c.host_index)) out.push_back(c.id + ".position");
         if (c.facet == Facet::Shaft && world.host().shafts.dynamic(c.host_index)) out.push_back(c.id + ".angle");
+        if (c.facet == Facet::Quantities) out.push_back(c.id + ".values");
     }
     return out;
 }

@@ -18,15 +18,20 @@ enum class Measure : std::uint8_t
     Geodesic,  ///< angle of the rotation between two attitudes, rad
 };
 
-/// "ball.position", "fan.angle", "ball.position.z", "script.state.count": any field that World::get reads as numbers.
+/// "ball.position", "fan.angle", "ball.position.z", "reaction.values.2" (the second of a list), "script.state.count": any field
+/// that World::get reads as numbers.
 struct Quantity
 {
     std::string name;                 ///< as it was written
     std::string id, field;            ///< component and its field
     std::optional<std::size_t> part;  ///< one number of a vector
     std::size_t width = 1;            ///< numbers per sample
+    bool is_list = false;             ///< of numbers without letters
     Measure measure = Measure::Mixed;
     std::string unit;  ///< "m"; of the numbers themselves
+
+    /// What the i-th number is called in tables: "ball.position.x"; the name where there is one only.
+    std::string column(std::size_t i) const;
 };
 
 /// Finds out what `text` means in a world. The error names what there is.

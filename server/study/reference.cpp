@@ -103,12 +103,10 @@ bool read_line(std::FILE* f, std::string& line)
 /// The columns that hold a quantity's numbers.
 Result<std::vector<std::size_t>> columns_of(const Quantity& q, const std::vector<std::string>& header, const std::string& path)
 {
-    const std::string whole = q.id + "." + q.field;
-    const std::string letters = q.measure == Measure::Geodesic ? "wxyz" : "xyz";
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < q.width; ++i)
     {
-        const std::string name = q.part || q.width == 1 ? q.name : whole + "." + letters[i];
+        const std::string name = q.column(i);
         const auto found = std::find(header.begin(), header.end(), name);
         if (found == header.end()) return reason(path + " has no column '" + name + "' for the quantity " + q.name);
         out.push_back(static_cast<std::size_t>(found - header.begin()));

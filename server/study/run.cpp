@@ -72,6 +72,8 @@ public:
             while (s_.tick() < next && out_.ok()) step(begin);
             if (!out_.ok()) break;
             observe_.sample();
+            if (!std::isfinite(out_.energy.energy.back()))
+                fail(Outcome::NotFinite, "the energy of the scene was no number any more at t = " + model::format_real(s_.time()) + " s");
         }
         out_.steps = s_.tick(), out_.reached = s_.time(), out_.hash = s_.state_hash();
         observe_.finish();
@@ -96,9 +98,12 @@ private:
             return fail(Outcome::NotFinite, "the state of " + s_.world().id_of(s_.stepper().report().frozen.front()) +
                                                 " was not finite any more at t = " + model::format_real(s_.time()) + " s");
         for (const Event& e : s_.events())
+        {
+            if (e.kind == "motion.diverged") return fail(Outcome::BlewUp, e.message + "; t = " + model::format_real(s_.time()) + " s");
             if (e.severity == Severity::Failure)
                 return fail(Outcome::Quarantined,
                             (e.component == kNoIndex ? std::string() : s_.world().id_of(e.component) + ": ") + e.kind + ": " + e.message);
+        }
         if (!options_.floor) return;
         const Bodies& bodies = s_.world().host().bodies;
         for (const std::uint32_t i : s_.world().in_id_order())
@@ -129,7 +134,8 @@ double thread_cpu_seconds()
 
 std::string_view name_of(Outcome outcome)
 {
-    constexpr std::string_view names[] = {"completed", "refused", "not finite", "component failed", "fell through", "too slow", "frozen"};
+    constexpr std::string_view names[] = {"completed",        "refused",      "not finite", "blew up",
+                                          "component failed", "fell through", "too slow",   "frozen"};
     return names[static_cast<int>(outcome)];
 }
 

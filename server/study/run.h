@@ -41,7 +41,8 @@ enum class Outcome : std::uint8_t
 {
     Completed,
     Refused,      ///< the scene did not load, or a quantity does not exist
-    NotFinite,    ///< an object's state was not a number any more
+    NotFinite,    ///< an object's state, or the energy, was not a number any more
+    BlewUp,       ///< the event motion.diverged, or more than a thousand times the reference's way from it
     Quarantined,  ///< a component failed
     FellThrough,  ///< a body got below the floor
     TooSlow,      ///< cut when the budget was used up
@@ -54,7 +55,7 @@ struct EnergySeries
 {
     std::vector<double> time;    ///< s
     std::vector<double> energy;  ///< kinetic and stored, J
-    std::vector<double> drift;   ///< energy - energy at start - work of interactions that store none - work of requests, J
+    std::vector<double> drift;   ///< energy that nobody put in: unexplained_energy() since the start, J
     double scale = 0;            ///< largest kinetic or change of stored energy, J
 };
 

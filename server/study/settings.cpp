@@ -39,6 +39,28 @@ Error unknown_id(const model::SceneSpec& scene, const Setting& s, const std::str
     return wrong(s, "no component has the id '" + id + "'" + model::did_you_mean(id, ids));
 }
 
+/// Roles that the old type did not have, as the short form of a blueprint fills them: the scene's solver, or a part of the
+/// role's default type. May move the scene's components.
+void fill_roles(model::SceneSpec& scene, model::ComponentSpec& c, const Schema& schema)
+{
+    std::vector<model::ComponentSpec> parts;
+    for (const Role& role : schema.roles())
+    {
+        if (std::any_of(c.roles.begin(), c.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; })) continue;
+        if (role.family == "Solver/" && scene.find(scene.settings.solver))
+        {
+            c.roles.push_back({role.name, {scene.settings.solver}, false, {}});
+            continue;
+        }
+        if (role.min == 0 || role.default_type.empty()) continue;
+        model::ComponentSpec part;
+        part.id = c.id + "." + role.name, part.type = role.default_type, part.generated = true;
+        c.roles.push_back({role.name, {part.id}, false, {}});
+        if (!scene.find(part.id)) parts.push_back(std::move(part));
+    }
+    for (model::ComponentSpec& part : parts) scene.components.push_back(std::move(part));
+}
+
 /// What the old type had and the new one knows as well stays; the rest takes the new type's defaults.
 Result<void> exchange(model::SceneSpec& scene, model::ComponentSpec& c, model::TypeSource& types, const Setting& s)
 {
@@ -57,12 +79,7 @@ Result<void> exchange(model::SceneSpec& scene, model::ComponentSpec& c, model::T
                   });
     std::erase_if(c.roles, [&](const model::RoleSpec& r) { return !schema.find_role(r.name); });
     if (c.explicit_commands) std::erase_if(c.commands, [&](const std::string& name) { return (*fresh)->find_command(name) < 0; });
-    for (const Role& role : schema.roles())
-    {
-        const bool given = std::any_of(c.roles.begin(), c.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
-        if (!given && role.family == "Solver/" && scene.find(scene.settings.solver))
-            c.roles.push_back({role.name, {scene.settings.solver}, false, {}});
-    }
+    fill_roles(scene, c, schema);
     return {};
 }
 

@@ -13,6 +13,8 @@ namespace
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMostSamples = 1000;
+/// Mixed errors beyond this are no errors: the run blew up.
+constexpr double kBlownUp = 1e3;
 
 /// The largest; NaN if one is.
 double worst(const std::vector<Distance>& errors, double Distance::*which)
@@ -46,6 +48,7 @@ private:
     const Combination& finest() const;
     void record_all();
     void time_all();
+    RunOptions timed_part(const RunRecord& record) const;
     void judge(Point& point);
     void tell(const std::string& what, double share);
 
@@ -210,6 +213,14 @@ void Run::record_all()
     }
 }
 
+/// What went wrong is timed up to there.
+RunOptions Run::timed_part(const RunRecord& record) const
+{
+    RunOptions out = options_;
+    if (!record.ok()) out.sample_times = {std::max(record.reached, record.dt)};
+    return out;
+}
+
 void Run::time_all()
 {
     const std::size_t n = scenes_.size();
@@ -224,7 +235,7 @@ void Run::time_all()
             tell("timing, round " + std::to_string(r + 1) + " of " + std::to_string(plan_.repeat) + ": " + point.combination.label(),
                  static_cast<double>(n + static_cast<std::size_t>(r) * n + k) /
                      static_cast<double>(n * (static_cast<std::size_t>(plan_.repeat) + 1)));
-            const Timing t = time_run(types_, *scenes_[i], options_);
+            const Timing t = time_run(types_, *scenes_[i], timed_part(point.record));
             if (t.outcome == Outcome::Completed || t.outcome == point.record.outcome) seconds[i].push_back(t.cpu);
         }
     for (std::size_t i = 0; i < n; ++i)
@@ -251,9 +262,17 @@ void Run::judge(Point& point)
         point.errors.push_back(e);
         point.resolved.push_back(!(e.series <= reference.uncertainty[k].series));
     }
+    if (record.ok() && point.error() > kBlownUp)
+    {
+        point.record.outcome = Outcome::BlewUp;
+        point.record.why = "it got " + model::format_real(std::round(point.error())) + " times as far from the reference as that goes";
+    }
     double drift = 0;
     for (const double d : record.energy.drift) drift = std::fabs(d) > drift || std::isnan(d) ? std::fabs(d) : drift;
-    point.energy_drift = record.energy.scale > 0 ? drift / record.energy.scale : drift;
+    // Where nothing moves, a millionth of what there is stands for what moves.
+    double scale = record.energy.scale;
+    for (const double e : record.energy.energy) scale = std::max(scale, 1e-6 * std::fabs(e));
+    point.energy_drift = scale > 0 ? drift / scale : drift;
     if (reference.knows_contacts && record.ok()) point.contacts = compare_contacts(record.contacts, reference.contacts);
 }
 

@@ -39,8 +39,8 @@ Result<SuiteEntry> read_entry(const Json& entry, const std::string& path)
     out.name = entry.at("name").get<std::string>();
     for (const auto& [key, value] : entry.items())
     {
-        static const std::vector<std::string> known{"name",           "title",      "scene", "vary",  "rungs", "reference",
-                                                    "reference_rung", "quantities", "until", "floor", "ladder"};
+        static const std::vector<std::string> known{"name",           "title",      "scene", "vary",  "rungs",  "reference",
+                                                    "reference_rung", "quantities", "until", "floor", "ladder", "scales"};
         if (std::find(known.begin(), known.end(), key) == known.end()) return wrong(path, out.name, "unknown key '" + key + "'");
     }
     out.title = entry.value("title", out.name);
@@ -70,6 +70,12 @@ Result<SuiteEntry> read_entry(const Json& entry, const std::string& path)
     out.until = entry.at("until").get<double>();
     out.ladder = entry.value("ladder", std::string());
     if (entry.contains("floor")) out.floor = entry["floor"].get<double>();
+    if (entry.contains("scales"))
+        for (const auto& [quantity, length] : entry["scales"].items())
+        {
+            if (!(length.get<double>() > 0)) return wrong(path, out.name, "the scale of " + quantity + " is not positive");
+            out.scales[quantity] = length.get<double>();
+        }
     return out;
 }
 
@@ -81,7 +87,9 @@ struct Done
     std::string trouble;
 };
 
-Done run_entry(model::TypeSource& types, const SuiteEntry& entry, const SuiteOptions& options, const std::string& folder)
+/// `place`: "3 of 21".
+Done run_entry(model::TypeSource& types, const SuiteEntry& entry, const SuiteOptions& options, const std::string& folder,
+               const std::string& place)
 {
     Done out;
     out.entry = &entry;
@@ -93,9 +101,11 @@ Done run_entry(model::TypeSource& types, const SuiteEntry& entry, const SuiteOpt
     Plan plan;
     plan.scene = scene.take(), plan.title = entry.title, plan.command = options.command;
     plan.combinations = combine(entry.rungs, entry.varied), plan.reference = entry.reference, plan.repeat = options.repeat;
+    plan.scales = entry.scales;
     plan.run.until = entry.until, plan.run.quantities = entry.quantities, plan.run.floor = entry.floor;
     plan.run.budget = options.budget, plan.run.allocations = options.allocations;
-    if (options.progress) plan.progress = [&](const std::string& text) { options.progress(entry.name + ": " + text); };
+    if (options.progress)
+        plan.progress = [&](const std::string& text) { options.progress("study " + place + ", " + entry.name + ": " + text); };
     auto result = run_study(types, plan);
     if (!result) return fail(result.errors()), out;
     if (auto written = write_all(*result, folder + "/" + entry.name); !written) fail(written.errors());
@@ -230,7 +240,11 @@ Result<void> write_picture(const std::string& file, const plot::Drawing& drawing
 Result<void> add_tally(Page& page, const Tally& t, const SuiteOptions& options, const std::string& folder, const std::string& number)
 {
     page.heading(t.ladder);
-    const plot::Drawing map = plot::heat_map("Best digits", t.names(), t.rungs, t.best);
+    // Rungs as rows: they are many, and their names long.
+    std::vector<std::vector<plot::Cell>> cells(t.rungs.size());
+    for (std::size_t r = 0; r < t.rungs.size(); ++r)
+        for (const std::vector<plot::Cell>& study : t.best) cells[r].push_back(study[r]);
+    const plot::Drawing map = plot::heat_map("Best digits", t.rungs, t.names(), cells);
     page.figure(map, "Correct digits of each rung's best run. A pale cell: no part in that problem, or no result.");
     if (auto written = write_picture(folder + "/digits" + number, map); !written) return written;
     if (t.studies.size() > 1)
@@ -294,7 +308,9 @@ Result<std::vector<std::string>> run_suite(model::TypeSource& types, const Suite
     std::filesystem::create_directories(folder, error);
     if (error) return reason("cannot make the folder " + folder + ": " + error.message());
     std::vector<Done> all;
-    for (const SuiteEntry& entry : suite.entries) all.push_back(run_entry(types, entry, options, folder));
+    for (std::size_t i = 0; i < suite.entries.size(); ++i)
+        all.push_back(
+            run_entry(types, suite.entries[i], options, folder, std::to_string(i + 1) + " of " + std::to_string(suite.entries.size())));
     const std::vector<Tally> tallies = tallies_of(all, options.tolerance);
     std::vector<std::string> sentences = findings_of(all, tallies, options.tolerance);
     if (auto written = write_suite(suite, all, options, sentences, tallies, folder); !written) return written.errors();

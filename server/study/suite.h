@@ -1,7 +1,7 @@
 /// A catalogue of studies, and what they say together: digits by problem and rung, and the performance profile.
 ///
 /// JSON: {"studies": [{"name", "scene", "title", "vary": [..], "rungs": [..], "reference", "reference_rung", "quantities": [..],
-/// "until", "floor", "ladder"}]}, with the words of the command line; scenes are found beside the file.
+/// "until", "floor", "ladder", "scales": {quantity: length}}]}, with the words of the command line; scenes are found beside the file.
 #pragma once
 
 #include "study/study.h"
@@ -19,6 +19,7 @@ struct SuiteEntry
     std::vector<std::string> quantities;
     double until = 1;
     std::optional<double> floor;
+    std::map<std::string, double> scales;  ///< a of the mixed error, by quantity, where it is given
 };
 struct Suite
 {

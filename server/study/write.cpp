@@ -85,10 +85,7 @@ std::string course_csv(const StudyResult& r, const std::vector<double>& times, c
 {
     std::string out = "time";
     for (const Quantity& q : r.quantities)
-    {
-        const std::string letters = q.measure == Measure::Geodesic ? "wxyz" : "xyz";
-        for (std::size_t i = 0; i < q.width; ++i) out += "," + (q.width == 1 ? q.name : q.id + "." + q.field + "." + letters[i]);
-    }
+        for (std::size_t i = 0; i < q.width; ++i) out += "," + q.column(i);
     for (std::size_t n = 0; n < times.size(); ++n)
     {
         out += "\n" + number(times[n]);

@@ -73,8 +73,6 @@ TEST_CASE("a warm step in which nothing happens asks for no memory")
     for (const Subject& subject : subjects())
     {
         CAPTURE(subject.type);
-        // Open: one allocation per step in groups with a servo.
-        if (subject.type == "Constraint/Motor") continue;
         const long loading = plab_test_allocations;
         const auto running = started(compiled(subject.blueprint));
         CHECK_MESSAGE(plab_test_allocations > loading, "allocations are not counted");

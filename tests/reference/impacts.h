@@ -39,11 +39,45 @@ inline std::string gravity(const std::string& between)
 {
     return "<component id=\"g\" type=\"Field/Gravity\" between=\"" + between + "\"/>";
 }
+inline std::string gravity(const std::string& between, const Vec3& g)
+{
+    return "<component id=\"g\" type=\"Field/Gravity\" between=\"" + between + "\" acceleration=\"" + numbers(g) + "\"/>";
+}
 inline std::string contact(const std::string& between, const std::string& resolution, const std::string& restitution,
                            const std::string& more = "")
 {
     return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + resolution +
            "\" response=\"Response/Impulse\" response.restitution=\"" + restitution + "\" " + more + "/>";
+}
+/// A way to deal with contacts: who finds the time, who answers, and for rows by which manager.
+struct Rung
+{
+    const char* resolution;
+    const char* response;
+    const char* manager = "Direct";
+
+    bool rows() const { return std::string(response) == "Rows"; }
+    bool locates() const { return !is("None") && !is("Speculative"); }
+    bool certifies() const { return is("LocalRoot") || is("ConservativeAdvancement"); }
+    bool is(const std::string& wanted) const { return resolution == wanted; }
+    std::string name() const { return std::string(resolution) + " + " + response + (rows() ? std::string("/") + manager : ""); }
+};
+/// Every resolution with every response by impulses that takes it.
+inline constexpr Rung kRungs[] = {
+    {"None", "Impulse"},           {"Bisection", "Impulse"},
+    {"LocalBisection", "Impulse"}, {"ConservativeAdvancement", "Impulse"},
+    {"LocalRoot", "Impulse"},      {"None", "Rows"},
+    {"Speculative", "Rows"},       {"Bisection", "Rows"},
+    {"LocalBisection", "Rows"},    {"ConservativeAdvancement", "Rows"},
+    {"LocalRoot", "Rows"},
+};
+inline std::string contact(const std::string& between, const Rung& rung, double restitution, double friction = 0,
+                           const std::string& more = "")
+{
+    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + rung.resolution +
+           "\" response=\"Response/" + rung.response + "\" response.restitution=\"" + number(restitution) + "\" response.friction=\"" +
+           number(friction) + "\"" + (rung.rows() ? std::string(" response.manager=\"Manager/") + rung.manager + "\"" : "") + " " + more +
+           "/>";
 }
 inline std::string sensor(const std::string& between, const std::string& resolution, const std::string& against = "")
 {

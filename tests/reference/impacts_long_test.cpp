@@ -1,4 +1,10 @@
 // The same claims as in impacts_*_test.cpp, at full size.
+//
+// | problem | rung                 | bound                                                                                |
+// |---------|----------------------|--------------------------------------------------------------------------------------|
+// | C6      | LocalRoot + Impulse  | 31415 exactly                                                                        |
+// | C10     | LocalRoot, sensor    | 0 wrong in 1e6                                                                       |
+// | D3      | LocalRoot + Impulse  | 216 elastic balls: energy to 1e-12 over the fall and the collapse (2 s), nobody sinks |
 #include <algorithm>
 
 #include "impacts.h"
@@ -49,4 +55,35 @@ TEST_CASE("C10: a million random shots at a ball that moves, not one missed")
     }
     CHECK(wrong == 0);
     CHECK(hit > 100000);
+}
+
+TEST_CASE("D3: 6 x 6 x 6 elastic balls fall in a heap and keep their energy to rounding")
+{
+    std::uint64_t seed = 666;
+    const auto jitter = [&] { return 1e-3 * (next_uniform(seed) - 0.5); };
+    std::string balls, all;
+    for (int i = 0; i < 216; ++i)
+    {
+        const std::string id = "b" + std::to_string(1000 + i);
+        const double x = jitter(), y = jitter();
+        balls += sphere(id, 0.1, at({0.21 * (i % 6) + x, 0.21 * (i / 6 % 6) + y, 1 + 0.21 * (i / 36)}, {}, 10));
+        all += id + " ";
+    }
+    Scene s(kGround + balls + gravity(all) + contact(all + "ground", "LocalRoot", "1"), "dt=\"0.01\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    const double e0 = energy(s);
+    CHECK(e0 > 3e4);
+    double worst = 0, lowest = 1;
+    std::size_t impacts = 0;
+    for (int i = 0; i < 200; ++i)
+    {
+        s.step();
+        worst = std::max(worst, std::fabs(energy(s) / e0 - 1));
+        for (const Event& e : s.simulation().events()) impacts += e.kind == "contact.impact";
+    }
+    for (int i = 0; i < 216; ++i) lowest = std::min(lowest, s.vec("b" + std::to_string(1000 + i), "position").z);
+    CHECK(worst < 1e-12);
+    CHECK(lowest > 0.1 - 1e-12);
+    CHECK(impacts > 2000);
+    MESSAGE("D3: E0 ", e0, " J, energy to ", worst, ", ", impacts, " impacts");
 }

@@ -150,6 +150,81 @@ TEST_CASE("a suite makes all of its studies and a report over them")
     CHECK(has(read(where + "/report.html"), "throw/report.html"));
 }
 
+TEST_CASE("plabd and plab-study end in the same state with the same figures")
+{
+    std::filesystem::create_directories(kFolder);
+    for (const auto& [scene, until] : {std::pair<std::string, std::string>{"fan_and_balloons.xml", "4"},
+                                       {"studies/swinging_rod.xml", "1"},
+                                       {"studies/slope.xml", "1"},
+                                       {"studies/robertson.xml", "2"}})
+    {
+        CAPTURE(scene);
+        const std::string where = folder("agree"), out = kFolder + "/agree.json";
+        REQUIRE(run({program("plabd"), scene_file(scene), "--until", until, "--out", out, "--no-bus"}).code == 0);
+        REQUIRE(study({scene_file(scene), "--reference", "none", "--until", until, "--repeat", "1", "--quiet", "-o", where}).code == 0);
+        const auto live = nlohmann::json::parse(read(out));
+        const auto point = results(where)["points"][0];
+        CHECK(point["hash"] == live["hash"]);
+        CHECK(point["steps"] == live["step"]);
+        CHECK(point["energy"]["energy"].back() == live["energy"]);
+        for (const auto& part : point["components"])
+        {
+            const std::string id = part["id"];
+            if (part["requested"].get<std::string>().starts_with("Solver/") || !live["interactions"].contains(id)) continue;
+            const auto& other = live["interactions"][id];
+            CHECK(part["requested"] == other["type"]);
+            CHECK(part["error"] >= other["error"]);
+            for (const auto& [name, value] : part["outputs"].items()) CHECK_MESSAGE(value == other.at(name), id, ".", name);
+        }
+    }
+}
+
+TEST_CASE("part of the repository's catalogue: every ladder has its heat-map, and failures solve nothing")
+{
+    const std::string where = folder("catalogue");
+    auto suite = nlohmann::json::parse(read(scene_file("studies/suite.json")));
+    nlohmann::json part = nlohmann::json::array();
+    for (auto entry : suite["studies"])
+        for (const char* name : {"projectile", "spring-stand", "swinging-rod", "gear-train", "bounce", "slide", "slope", "contact-spring"})
+            if (entry["name"] == name)
+            {
+                entry["scene"] = scene_file("studies/" + entry["scene"].get<std::string>());
+                entry["until"] = std::min(entry["until"].get<double>(), 1.0);
+                for (auto& text : entry["vary"])
+                    if (text.get<std::string>().starts_with("dt="))
+                        text = name == std::string("spring-stand") ? "dt=1/60,1/960" : "dt=1/60,1/120";
+                part.push_back(entry);
+            }
+    REQUIRE(part.size() == 8);
+    suite["studies"] = part;
+    const std::string copy = kFolder + "/part.json";
+    std::ofstream(copy) << suite;
+    const Outcome done = study({"--suite", copy, "--repeat", "1", "-o", where});
+    REQUIRE_MESSAGE(done.code == 0, done.errors);
+    CHECK(has(done.errors, "study 3 of 8, "));
+    const auto json = nlohmann::json::parse(read(where + "/suite.json"));
+    REQUIRE(json["studies"].size() == 8);
+    for (const auto& s : json["studies"]) CHECK_MESSAGE(!s.contains("trouble"), s.dump());
+    for (const auto& s : json["studies"])
+    {
+        if (s["name"] == "spring-stand")
+        {
+            CHECK(s["digits"]["Exponential"] > 9);
+            CHECK(s["cpu_per_simulated_second"]["RungeKutta4"].is_null());
+        }
+        if (s["name"] == "bounce")
+        {
+            CHECK(s["digits"]["LocalRoot + Impulse"] > 12);
+            CHECK(s["digits"]["LocalRoot + Rows"] > 12);
+            CHECK(s["digits"]["None + Impulse"] < 3);
+        }
+        if (s["name"] == "gear-train") CHECK(s["digits"]["Graph"] > 12);
+        if (s["name"] == "swinging-rod") CHECK(s["digits"]["RungeKutta4 + Hinge"] > s["digits"]["SemiImplicitEuler + Hinge"]);
+    }
+    for (const char* picture : {"digits-1.png", "profile-5.png", "digits-6.svg", "report.html"})
+        CHECK_MESSAGE(std::filesystem::exists(where + "/" + picture), std::string(picture));
+}
+
 TEST_CASE("the catalogue of the repository can be read, and each of its plans holds")
 {
     const auto json = nlohmann::json::parse(read(scene_file("studies/suite.json")));

@@ -10,6 +10,7 @@ namespace plab::constraints
 void MotorRows::describe(Schema& s)
 {
     describe_coordinate(s, {"turn", "slide"});
+    s.role(manager, "manager", {Facet::Component}, "holds it where max_effort is finite").optional();
     s.param(mode, "mode", unit::one, "rate: moves at speed; servo: goes to target, at most at speed")
         .or_else("rate")
         .one_of({"rate", "servo"});
@@ -21,6 +22,13 @@ void MotorRows::describe(Schema& s)
         .not_negative()
         .may_be_infinite();
     describe_reaction(s, "b");
+}
+
+Result<void> prepare_motor(Row row, MotorRows& rows, const Bodies& bodies)
+{
+    if (rows.max_effort[row] < kInfinity && !rows.manager[row].valid())
+        return reason("a finite max_effort needs a manager: manager='...', e.g. of a Manager/Direct");
+    return rows.place_coordinate(row, bodies);
 }
 
 void constrain_motor(const StepContext& step, Rows which, const MotorRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink)
@@ -107,6 +115,7 @@ void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows
 void LimitRows::describe(Schema& s)
 {
     describe_coordinate(s, {"turn", "slide", "distance"});
+    s.role(manager, "manager", {Facet::Component}, "advances what is at its bounds");
     s.param(lower, "lower", unit::one, "least position, rad or m; -inf: none").or_else(-kInfinity).may_be_infinite();
     s.param(upper, "upper", unit::one, "largest position, rad or m; inf: none").or_else(kInfinity).may_be_infinite();
     s.param(restitution, "restitution", unit::one, "share of the speed with which it comes back from its limit")
@@ -125,13 +134,14 @@ Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies)
 namespace
 {
 
-/// Rows come in this much before they could act, rad or m, and twice as early as the present speed would have it: what
-/// accelerates within the step is met as well.
+/// Rows come in before they could act: by this much (rad or m), twice as early as the present speed would have it, and by
+/// what this acceleration (rad/s^2 or m/s^2) adds from rest. What is not foreseen is met in the next step.
 constexpr double kReach = 1e-4;
+constexpr double kAcceleration = 20;
 
 void add_side(const LimitRows& rows, Row row, const StepContext& step, ConstraintRow side, double gap, double speed, RowSink& sink)
 {
-    if (gap > kReach + 2 * step.dt * std::fmax(0.0, -speed)) return;
+    if (gap > kReach + step.dt * (2 * std::fmax(0.0, -speed) + 0.5 * kAcceleration * step.dt)) return;
     side.kind = RowKind::OneSided;
     side.error = gap, side.lower = 0, side.restitution = rows.restitution[row];
     sink.add(side);

@@ -61,8 +61,10 @@ struct MotorRows : CoordinateRows, ReactionColumns
 {
     Column<std::string> mode;
     Column<double> speed, target, gain, max_effort;
+    Column<Ref> manager;
     void describe(Schema& s);
 };
+Result<void> prepare_motor(Row row, MotorRows& rows, const Bodies& bodies);
 void constrain_motor(const StepContext& step, Rows which, const MotorRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink);
 
 /// TorsionSpring: torque -(k (x - rest) + c x') on b about the axis; or along it, a force.
@@ -83,6 +85,7 @@ void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows
 struct LimitRows : CoordinateRows, ReactionColumns
 {
     Column<double> lower, upper, restitution;
+    Column<Ref> manager;
     void describe(Schema& s);
 };
 Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies);

@@ -4,6 +4,7 @@
 #include "joints/gear.h"
 #include "joints/motor.h"
 #include "joints/rigid_joints.h"
+#include "joints/rolling.h"
 
 namespace plab::constraints
 {
@@ -85,7 +86,7 @@ void register_coordinates(Registrar& registrar)
     constexpr const char* kStartDoc = "the angle when it began, from which turns are counted";
     registrar.component<MotorRows>("Constraint/Motor", "turns or slides b against a at a speed, or to a target")
         .family("Constraint/Motor")
-        .command<&prepare_coordinate<MotorRows>>(Phase::Prepare, kPrepare, kPlaced)
+        .command<&prepare_motor>(Phase::Prepare, kPrepare, kPlaced)
         .command<&begin_turning<MotorRows>>(Phase::Drive, kStart, kStartDoc)
         .command<&constrain_motor>(Phase::Constrain, kRows, "one row: the speed")
         .command<&finish_coordinate<MotorRows>>(Phase::Finish, kFinish, "position, effort and errors of the step")
@@ -137,6 +138,18 @@ void register_gears(Registrar& registrar)
         .source("R. Willis, Principles of mechanism, 1841");
 }
 
+void register_rolling(Registrar& registrar)
+{
+    registrar.component<RollingRows>("Constraint/Rolling", "an ellipsoid or a ball rolls on a plane without slipping")
+        .family("Constraint/Rolling")
+        .command<&prepare_rolling>(Phase::Prepare, kPrepare, "takes the plane into the frame of a, where it is new")
+        .command<&constrain_rolling>(Phase::Constrain, kRows, "three rows: no speed where it touches; along the normal the height, too")
+        .command<&finish_rolling>(Phase::Finish, kFinish, "contact point, forces and errors of the step")
+        .cost("3 rows")
+        .limits("holds on whatever happens: it neither slips nor lifts off; see normal_force, and friction = force along the plane")
+        .source("Kane, Levinson, Realistic mathematical modeling of the rattleback, 1982");
+}
+
 }  // namespace
 
 void register_joints(Registrar& registrar)
@@ -145,6 +158,7 @@ void register_joints(Registrar& registrar)
     register_lengths(registrar);
     register_coordinates(registrar);
     register_gears(registrar);
+    register_rolling(registrar);
 }
 
 }  // namespace plab::constraints

@@ -39,8 +39,9 @@ void SliderRows::describe(Schema& s)
     describe_pair(s);
     describe_axis(s);
     describe_reaction(s, "b");
-    s.output(travel, "travel", unit::metre, "how far b's point is from a's along the axis");
+    s.output(travel, "travel", unit::metre, "how far b's point has gone along the axis since it was placed");
     s.output(travel_rate, "travel_rate", unit::metre_per_second, "its rate");
+    s.state(travelled, "travelled", unit::metre, "how far point_a has gone along with b").initially(0);
 }
 
 void FixedRows::describe(Schema& s)
@@ -59,7 +60,14 @@ void prepare_hinge(Row row, HingeRows& rows, const Bodies& bodies)
     if (rows.place_axis(row, rows.attitude(bodies, rows.a[row]), rows.attitude(bodies, rows.b[row]))) rows.reset(row);
 }
 
-void prepare_slider(Row row, SliderRows& rows, const Bodies& bodies) { rows.place(row, bodies); }
+void prepare_slider(Row row, SliderRows& rows, const Bodies& bodies)
+{
+    const bool fresh = !rows.placed[row] || rows.placed_anchor[row] != rows.anchor[row];
+    const Vec3 before = rows.point_a[row];
+    rows.place(row, bodies);
+    const Vec3 n_a = rotate(rows.frame_a[row], Vec3{0, 0, 1});
+    rows.travelled[row] = fresh ? 0.0 : rows.travelled[row] + dot(n_a, rows.point_a[row] - before);
+}
 
 void prepare_fixed(Row row, FixedRows& rows, const Bodies& bodies)
 {
@@ -133,7 +141,9 @@ void finish_slider(const StepContext& step, Rows which, SliderRows& rows, const 
     {
         const Sides s = rows.sides(row, bodies);
         const Vec3 n = rotate(s.a.q * rows.frame_a[row], Vec3{0, 0, 1});
-        rows.travel[row] = dot(n, s.d);
+        const double way = dot(n, s.d);
+        rows.travel[row] = rows.travelled[row] += way;
+        rows.point_a[row] += way * rotate(rows.frame_a[row], Vec3{0, 0, 1});
         rows.travel_rate[row] = dot(n, s.rate) + dot(cross(s.a.w, n), s.d);
         rows.take_report(row, reports, step.component_of_row[row]);
     }

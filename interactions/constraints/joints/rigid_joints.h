@@ -24,6 +24,7 @@ struct HingeRows : AxisJointRows, MeterColumns
 struct SliderRows : AxisJointRows
 {
     Column<double> travel, travel_rate;  // m, m/s
+    Column<double> travelled;            // m: a's point goes along, so that another joint in its place holds b where it is
     void describe(Schema& s);
 };
 struct FixedRows : JointRows

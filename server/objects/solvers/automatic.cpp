@@ -15,35 +15,24 @@ namespace plab::solvers
 namespace
 {
 
-constexpr Tick kLookEvery = 16;
-constexpr double kStiff = 1, kFast = 0.05, kFall = 0.25;
-constexpr std::size_t kExponentialSize = 60;
+constexpr double kFast = 0.05;
+constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 constexpr Tolerance kTolerance{1e-9, 1e-12};
 constexpr std::int64_t kMaxSubsteps = 100000;
 
-std::string_view name_of(Choice choice)
+/// In order of demand.
+enum class Method : std::size_t
 {
-    constexpr std::array<std::string_view, 5> names{"", "RungeKutta4", "RotationSplitting", "Exponential", "Radau5"};
-    return names[static_cast<std::size_t>(choice)];
-}
-
-/// Facts of one group over a whole step.
-struct Facts
-{
-    double spin = 0, stiffness = 0;  ///< h |w|, h |lambda|
-    bool linear = false, constrained = false, small = false;
+    Exact,
+    RungeKutta4,
+    RotationSplitting,
+    Exponential,
+    Radau5,
+    DormandPrince54,
 };
+constexpr std::array<std::string_view, 6> kNames{"Exact", "RungeKutta4", "RotationSplitting", "Exponential", "Radau5", "DormandPrince54"};
 
-bool is_stiff(const Facts& facts, double share) { return facts.stiffness > share * kStiff && facts.stiffness > 4 * facts.spin; }
-
-Choice needed(const Facts& facts, double share)
-{
-    if (is_stiff(facts, share)) return facts.linear && facts.small ? Choice::Exponential : Choice::Radau5;
-    return facts.spin > share * kFast && !facts.constrained ? Choice::RotationSplitting : Choice::RungeKutta4;
-}
-
-/// How demanding: the two stiff methods are of one rank.
-int rank(Choice choice) { return std::min(static_cast<int>(choice), static_cast<int>(Choice::Exponential)); }
+std::int64_t bit_of(Method method) { return std::int64_t{1} << static_cast<int>(method); }
 
 std::string number(double x)
 {
@@ -51,163 +40,181 @@ std::string number(double x)
     return x >= 1e6 ? "over 1e6" : text.substr(0, text.find('.') + 3);
 }
 
-std::string why(Choice choice, const Facts& facts)
-{
-    if (choice == Choice::Exponential) return "h |lambda| = " + number(facts.stiffness) + " is above 1 and the forces are linear";
-    if (choice == Choice::Radau5) return "h |lambda| = " + number(facts.stiffness) + " is above 1";
-    if (choice == Choice::RotationSplitting) return "h |w| = " + number(facts.spin) + " is above 0.05";
-    return "h |w| = " + number(facts.spin) + " and h |lambda| = " + number(facts.stiffness) + " are small";
-}
-
-class Rule
+class Choice
 {
 public:
-    Rule(const StepContext& start, Row row, AutomaticRows& rows, DynamicSystem& system)
-        : start_(start), row_(row), rows_(rows), system_(system)
+    Choice(const StepContext& start, Row row, AutomaticRows& rows, DynamicSystem& system)
+        : start_(start), h_(start.dt), trial_(is_trial(start)), row_(row), rows_(rows), m_(rows.memory[row]), system_(system)
     {
     }
 
-    /// Looks at a whole step before it is made. Pieces of a step are not looked at.
-    void look()
+    void advance()
     {
-        const bool first = rows_.choice[row_] == undecided();
-        const Tick tick = start_.tick, looked = rows_.looked[row_];
-        if (first || rows_.latest[row_] != tick) rows_.latest[row_] = tick, rows_.step[row_] = start_.dt;
-        if (start_.dt != rows_.step[row_]) return;
-        if (!first && tick > looked && tick < looked + kLookEvery) return glance();
-        if (first || tick != looked) begin_window();
-        Facts facts = quick_facts();
-        ExponentialMemory& m = rows_.memory[row_];
-        const double rate = measure_stiffness(system_, start_.dt, {m.y, m.f0, m.slope, m.other, m.work, m.units, m.sizes});
-        facts.stiffness = std::min(rate * start_.dt, 1e300);
-        facts.linear = facts.small && is_stiff(facts, kFall) && would_be_exact(m);
-        decide(facts);
+        begin_turn();
+        if (is_free() && advance_in_closed_form(h_, system_)) return say(Method::Exact);
+        spin_ = fastest_spin(system_) * h_;
+        StageSlopes slopes(system_);
+        const bool fast = spin_ > kFast && !system_.is_constrained(), at_once = !fast && expects_soft();
+        if (at_once)
+            advance_by_runge_kutta4(h_, system_, &slopes);
+        else
+            find_slopes(h_, system_, slopes);
+        const Stiffness found = stiffness_of(system_, h_, slopes);
+        stiffness_ = found.value;
+        remember(!found.too_much);
+        if (found.too_much)
+        {
+            if (at_once) take_back_runge_kutta4(h_, trial_, system_, slopes);
+            return advance_stiff();
+        }
+        say(fast ? Method::RotationSplitting : Method::RungeKutta4);
+        if (fast) return advance_by_splitting(h_, 4, system_);
+        if (!at_once) advance_by_runge_kutta4(h_, system_);
+    }
+
+    /// False if some group may need another method; then everything is as it was.
+    bool advance_together()
+    {
+        begin_turn();
+        if (is_free() && advance_in_closed_form(h_, system_))
+        {
+            say(Method::Exact);
+            return true;
+        }
+        spin_ = fastest_spin(system_) * h_;
+        if (spin_ > kFast || system_.is_constrained() || system_.quantity_count() > 0) return false;
+        StageSlopes slopes(system_);
+        const bool at_once = expects_soft();
+        if (at_once)
+            advance_by_runge_kutta4(h_, system_, &slopes);
+        else
+            find_slopes(h_, system_, slopes);
+        const Stiffness found = stiffness_of(system_, h_, slopes, true);
+        stiffness_ = found.value;
+        remember(!found.too_much);
+        if (found.too_much)
+        {
+            if (at_once) take_back_runge_kutta4(h_, trial_, system_, slopes);
+            system_.evaluate(0, 0);
+            return false;
+        }
+        say(Method::RungeKutta4);
+        if (!at_once) advance_by_runge_kutta4(h_, system_);
+        return true;
     }
 
 private:
-    static std::int64_t undecided() { return static_cast<std::int64_t>(Choice::Undecided); }
-
-    /// Whether this step is linear all along. The system is as it was afterwards.
-    bool would_be_exact(ExponentialMemory& memory)
+    bool is_free() const { return system_.forces_are_uniform() && !system_.is_constrained(); }
+    void begin_turn()
     {
-        const bool fine = advance_by_exponential(start_.dt, true, true, memory, system_).fine;
-        FlatSystem(system_).write(memory.y);
-        return fine;
+        if (!trial_ && m_.tick != start_.tick) m_.tick = start_.tick, m_.before = m_.now, m_.now = 0, m_.call = 0;
     }
 
-    /// The spin only; stiffness as last measured.
-    void glance()
+    /// Whether the group that was advanced as this one's turn came in the last step was not stiff. That changes no result: then
+    /// the step of RungeKutta4 is booked at once; else it is looked at first, for what is booked along a step that blows up
+    /// is taken back with rounding errors as large as that.
+    bool expects_soft() const { return trial_ || (m_.call < m_.was_soft.size() && m_.was_soft[m_.call] != 0); }
+    void remember(bool soft)
     {
-        Facts facts = quick_facts();
-        const auto now = static_cast<Choice>(rows_.choice[row_]);
-        if (rank(now) >= rank(Choice::Exponential)) return;
-        facts.stiffness = 0;
-        decide(facts);
+        if (trial_) return;
+        if (m_.call == m_.was_soft.size()) m_.was_soft.push_back(0);
+        m_.was_soft[m_.call++] = soft ? 1 : 0;
     }
 
-    Facts quick_facts()
+    void advance_stiff()
     {
-        Facts facts;
-        facts.spin = std::min(fastest_spin(system_) * start_.dt, 1e300);
-        facts.constrained = system_.is_constrained();
-        facts.small = FlatSystem(system_).size() <= kExponentialSize;
-        rows_.spin[row_] = facts.spin;
-        return facts;
+        if (advance_by_exponential(h_, trial_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
+        if (FlatSystem(system_).size() > kRadauSize)
+        {
+            say(Method::DormandPrince54);
+            const DormandPrinceCounts counts = advance_by_dormand_prince(h_, trial_, kTolerance, kMaxSubsteps, m_.dormand, system_);
+            if (!trial_ && counts.reached < h_) tell_dormand_prince_gave_up(start_, row_, counts);
+            return;
+        }
+        say(Method::Radau5);
+        const Radau5Counts counts = advance_by_radau(h_, trial_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);
+        if (!trial_ && counts.reached < h_) tell_radau_gave_up(start_, row_, counts);
     }
 
-    /// What was needed in the last window at most is the choice to start this one with.
-    void begin_window()
+    std::string why(Method method) const
     {
-        rows_.looked[row_] = start_.tick;
-        const auto need = static_cast<Choice>(rows_.need[row_]), now = static_cast<Choice>(rows_.choice[row_]);
-        rows_.need[row_] = undecided();
-        if (need == Choice::Undecided || rank(need) >= rank(now)) return;
-        choose(need, "less was needed in the last 16 steps");
+        const std::string stiff = "|h lambda| = " + number(stiffness_) + " is above 0.5";
+        switch (method)
+        {
+            case Method::Exact:
+                return "forces are uniform and no joints hold";
+            case Method::Exponential:
+                return stiff + " and the forces are linear";
+            case Method::Radau5:
+                return stiff;
+            case Method::DormandPrince54:
+                return stiff + "; " + std::to_string(FlatSystem(system_).size()) + " numbers in a group are too many for implicit steps (" +
+                       std::to_string(kRadauSize) + "), so internal steps are short";
+            case Method::RotationSplitting:
+                return "h |w| = " + number(spin_) + " is above 0.05";
+            default:
+                return "h |w| = " + number(spin_) + " and |h lambda| = " + number(stiffness_) + " are small";
+        }
     }
 
-    void decide(const Facts& facts)
+    void say(Method method)
     {
-        if (facts.stiffness > 0) rows_.stiffness[row_] = facts.stiffness;
-        const Choice need = needed(facts, 1), lower = needed(facts, kFall), now = static_cast<Choice>(rows_.choice[row_]);
-        if (static_cast<std::int64_t>(lower) > rows_.need[row_]) rows_.need[row_] = static_cast<std::int64_t>(lower);
-        // Between the two stiff methods the more general one wins.
-        const bool harder = rank(need) > rank(now) || (rank(need) == rank(now) && need > now);
-        if (harder) choose(need, why(need, facts));
+        if (trial_) return;
+        if (spin_ >= 0) rows_.spin[row_] = std::min(spin_, 1e300), rows_.stiffness[row_] = std::min(stiffness_, 1e300);
+        m_.now |= bit_of(method);
+        if (const std::int64_t all = m_.before | m_.now; all != m_.shown) show(all);
+        if ((rows_.methods[row_] & bit_of(method)) != 0) return;
+        rows_.methods[row_] |= bit_of(method);
+        rows_.reason[row_] = std::string(kNames[static_cast<std::size_t>(method)]) + ": " + why(method);
+        if (method == Method::RungeKutta4 || method == Method::Exact) return;
+        const Severity severity = method == Method::DormandPrince54 ? Severity::Warning : Severity::Info;
+        start_.emit(row_, "solver.chosen", severity, rows_.reason[row_], {spin_, stiffness_, h_});
     }
 
-    void choose(Choice choice, const std::string& reason)
+    void show(std::int64_t methods)
     {
-        const bool as_expected = rows_.choice[row_] == undecided() && choice == Choice::RungeKutta4;
-        rows_.choice[row_] = static_cast<std::int64_t>(choice);
-        if (!as_expected)
-            start_.emit(row_, "solver.chosen", Severity::Info, std::string(name_of(choice)) + ": " + reason,
-                        {rows_.spin[row_], rows_.stiffness[row_], start_.dt});
+        m_.shown = methods;
+        std::string& out = rows_.resolved[row_];
+        out.clear();
+        for (std::size_t i = 0; i < kNames.size(); ++i)
+            if ((methods & (std::int64_t{1} << i)) != 0) out.append(out.empty() ? "" : ", ").append(kNames[i]);
     }
 
     const StepContext& start_;
+    double h_;
+    bool trial_;
     Row row_;
     AutomaticRows& rows_;
+    AutomaticMemory& m_;
     DynamicSystem& system_;
+    double spin_ = -1, stiffness_ = 0;  ///< spin below 0: not measured
 };
-
-/// True if the closed form holds for this group.
-bool advance_exactly(const StepContext& start, Row row, AutomaticRows& rows, DynamicSystem& system)
-{
-    if (!system.forces_are_uniform() || system.is_constrained()) return false;
-    const double spin = fastest_spin(system) * start.dt;
-    if (!advance_in_closed_form(start.dt, system)) return false;
-    if (is_trial(start)) return true;
-    rows.spin[row] = std::min(spin, 1e300);
-    if (rows.resolved[row] != "Exact") rows.resolved[row] = "Exact";
-    return true;
-}
-
-void advance_chosen(Choice choice, const StepContext& start, Row row, AutomaticRows& rows, DynamicSystem& system)
-{
-    ExponentialMemory& memory = rows.memory[row];
-    switch (choice)
-    {
-        case Choice::RotationSplitting:
-            return advance_by_splitting(start.dt, 4, system);
-        case Choice::Exponential:
-            if (advance_by_exponential(start.dt, is_trial(start), true, memory, system).fine) return;
-            [[fallthrough]];
-        case Choice::Radau5:
-        {
-            const Radau5Counts counts = advance_by_radau(start.dt, is_trial(start), kTolerance, kMaxSubsteps, memory.radau, system);
-            if (counts.reached < start.dt) tell_radau_gave_up(start, row, counts);
-            return;
-        }
-        default:
-            return advance_runge_kutta4(start, row, {}, system);
-    }
-}
 
 }  // namespace
 
 void AutomaticRows::describe(Schema& schema)
 {
-    const std::string codes = ": 1 RungeKutta4, 2 RotationSplitting, 3 Exponential, 4 Radau5; 0 none yet";
-    schema.state(choice, "choice", unit::one, "the method in use" + codes).not_negative().at_most(4);
-    schema.state(need, "need", unit::one, "the most demanding method needed since the last look" + codes).not_negative().at_most(4);
-    schema.state(looked, "looked", unit::one, "step in which stiffness was measured last");
-    schema.state(latest, "latest", unit::one, "step that was made last");
-    schema.state(step, "step", unit::second, "length of that step").not_negative();
-    schema.output(resolved, "resolved", unit::one, "the method that was used for the last group that was advanced");
-    schema.output(spin, "spin", unit::one, "largest h |w| of the bodies, h the step");
-    schema.output(stiffness, "stiffness", unit::one,
-                  "h |lambda| as last measured, lambda the largest eigenvalue of the equations of motion");
+    schema.output(resolved, "resolved", unit::one, "the methods that groups were advanced by in the last steps");
+    schema.output(reason, "reason", unit::one, "why the method that came last was chosen");
+    schema.output(spin, "spin", unit::one, "largest h |w| of the bodies, h the step, of the last group that forces act on");
+    schema.output(stiffness, "stiffness", unit::one, "its |h lambda|, lambda the largest eigenvalue that its motion shows");
+    schema.output(
+        methods, "methods", unit::one,
+        "used since the run began, a sum: 1 Exact, 2 RungeKutta4, 4 RotationSplitting, 8 Exponential, 16 Radau5, 32 DormandPrince54");
     schema.scratch(memory, "memory", "working vectors and matrices");
+}
+
+Result<void> advance_together(const StepContext& context, Row row, AutomaticRows& rows, DynamicSystem& system)
+{
+    const StepContext start = context;  // evaluations change the host's
+    if (Choice(start, row, rows, system).advance_together()) return {};
+    return reason("some of them may need another method");
 }
 
 void advance_automatic(const StepContext& context, Row row, AutomaticRows& rows, DynamicSystem& system)
 {
     const StepContext start = context;  // evaluations change the host's
-    if (advance_exactly(start, row, rows, system)) return;
-    if (!is_trial(start)) Rule(start, row, rows, system).look();
-    const auto choice = static_cast<Choice>(rows.choice[row]);
-    if (!is_trial(start) && rows.resolved[row] != name_of(choice)) rows.resolved[row] = name_of(choice);
-    advance_chosen(choice, start, row, rows, system);
+    Choice(start, row, rows, system).advance();
 }
 
 }  // namespace plab::solvers

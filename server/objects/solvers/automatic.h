@@ -1,23 +1,23 @@
-/// Solver/Automatic: picks a method for each group by a rule, from facts that it measures, and says which and why.
+/// Solver/Automatic: picks a method for each group and each step by a rule, from facts that it measures, and says which and why.
 ///
-///   uniform forces, no joints                    Exact               (machine precision at any step)
-///   stiff and linear, at most 60 numbers         Exponential         (exact; a step along which forces bend: Radau5)
-///   stiff otherwise                              Radau5              (rtol 1e-9)
-///   fast spin, no joints                         RotationSplitting 4
-///   else                                         RungeKutta4         (the same bits as Solver/RungeKutta4)
+///   uniform forces, no joints            Exact                (machine precision at any step)
+///   stiff, linear, few numbers that move Exponential          (exact at any step)
+///   stiff otherwise                      Radau5               (rtol 1e-9)
+///   stiff and large                      DormandPrince54      (explicit: many short internal steps)
+///   fast spin, no joints                 RotationSplitting 4
+///   else                                 RungeKutta4          (the same bits as Solver/RungeKutta4)
 ///
-/// Stiff: h |lambda| > 1 and |lambda| > 4 |w|, lambda the largest eigenvalue of df/dy by a power iteration that starts from
-/// a fixed vector (7 evaluations, every 16 steps and at the start). Fast: h |w| > 0.05, looked at in each step.
-/// A need that is met raises the choice at once; it falls at the end of 16 steps in which it stayed below a quarter of
-/// these bounds, so that it does not flutter. The choice is state: trials, replays and rewound pieces of a step use it and
-/// do not change it; lengths are those of whole steps. Groups that share one component share the most demanding choice
-/// among them (but Exact, which is a group's own); give a stiff one a component of its own.
-/// The output `resolved` names the method; the event solver.chosen tells of each choice but the first where that is
-/// RungeKutta4, and not of Exact, which is no matter of degree.
+/// Stiff: |h lambda| > 0.5 and > 4 |w| h of some member, as the step of RungeKutta4 itself shows (facts.h): if it does, the step is
+/// taken back and made anew, so nothing blows up first, and what is not stiff pays nothing. Fast: h |w| > 0.05.
+/// The choice depends on the start of the advance and its length alone: rewinds, trials and replays choose the same, groups
+/// that share the component do not see one another, and nothing has to be saved.
+/// The output `resolved` names the methods of the last steps, `reason` says why the last new one was taken; the event
+/// solver.chosen tells of each method once, but of RungeKutta4 and Exact, which are no surprise.
 /// Sources: Hairer, Wanner, Solving ordinary differential equations II, section IV.2 (stiffness detection); the bounds:
 /// tests/unit/solvers/automatic_test.cpp.
 #pragma once
 
+#include "dormand_prince54.h"
 #include "exponential.h"
 #include "radau5.h"
 #include "resolved.h"
@@ -25,29 +25,29 @@
 namespace plab::solvers
 {
 
-/// In order of demand. Numbers are state: they do not change.
-enum class Choice : std::int64_t
+struct AutomaticMemory
 {
-    Undecided = 0,
-    RungeKutta4 = 1,
-    RotationSplitting = 2,
-    Exponential = 3,
-    Radau5 = 4,
+    ExponentialMemory exponential;  ///< Radau5's too
+    DormandPrinceMemory dormand;
+    std::int64_t now = 0, before = 0, shown = 0;  ///< methods of this step, the last one, and those that `resolved` names, as bits
+    Tick tick = 0;
+    std::vector<std::uint8_t> was_soft;  ///< by turn in the step
+    std::size_t call = 0;                ///< turns in this step
 };
 
 struct AutomaticRows
 {
-    Column<std::int64_t> choice;  ///< Choice
-    Column<std::int64_t> need;    ///< most demanding Choice since the last look, by the lower bounds
-    Column<std::int64_t> looked;  ///< tick of the last power iteration
-    Column<std::int64_t> latest;  ///< tick of the last whole step
-    Column<double> step;          ///< s, length of that
-    Column<std::string> resolved;
-    Column<double> spin, stiffness;  ///< h |w|, h |lambda|
-    Column<ExponentialMemory> memory;
+    Column<std::string> resolved, reason;
+    Column<double> spin, stiffness;  ///< h |w|, |h lambda|
+    Column<std::int64_t> methods;    ///< used since the run began, as bits
+    Column<AutomaticMemory> memory;
 
     void describe(Schema& schema);
 };
+
+/// Several groups in one system, if all of them would choose Exact, or all RungeKutta4; refuses otherwise, with the state at the
+/// start.
+Result<void> advance_together(const StepContext& context, Row row, AutomaticRows& rows, DynamicSystem& system);
 
 /// One step over context.dt, from coordinates 0.
 void advance_automatic(const StepContext& context, Row row, AutomaticRows& rows, DynamicSystem& system);

@@ -197,20 +197,30 @@ void DormandPrince54Rows::describe(Schema& schema)
     schema.scratch(memory, "memory", "working vectors");
 }
 
-void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince54Rows& rows, DynamicSystem& system)
+DormandPrinceCounts advance_by_dormand_prince(double h, bool trial, const Tolerance& tolerance, std::int64_t max_substeps,
+                                              DormandPrinceMemory& memory, DynamicSystem& system)
 {
-    const StepContext start = context;  // evaluations change the host's
-    const Tolerance tolerance{rows.relative_tolerance[row], rows.absolute_tolerance[row]};
-    Advance advance(start.dt, is_trial(start), tolerance, rows.memory[row], system);
-    const DormandPrinceCounts counts = advance.run(rows.max_substeps[row]);
-    if (is_trial(start)) return;
-    rows.substeps[row] = counts.accepted, rows.refused[row] = counts.refused, rows.evaluations[row] = counts.evaluations;
-    if (counts.reached >= start.dt) return;
+    return Advance(h, trial, tolerance, memory, system).run(max_substeps);
+}
+
+void tell_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts)
+{
     start.emit(row, "solver.gave_up", Severity::Warning,
                std::to_string(counts.accepted) + " internal steps (" + std::to_string(counts.refused) + " more refused) reached " +
                    std::to_string(counts.reached) + " s of " + std::to_string(start.dt) +
                    " s; the group stays as it was there: raise max_substeps, loosen the tolerances, or use Solver/Radau5 if it is stiff",
                {counts.reached, start.dt});
+}
+
+void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince54Rows& rows, DynamicSystem& system)
+{
+    const StepContext start = context;  // evaluations change the host's
+    const Tolerance tolerance{rows.relative_tolerance[row], rows.absolute_tolerance[row]};
+    const DormandPrinceCounts counts =
+        advance_by_dormand_prince(start.dt, is_trial(start), tolerance, rows.max_substeps[row], rows.memory[row], system);
+    if (is_trial(start)) return;
+    rows.substeps[row] = counts.accepted, rows.refused[row] = counts.refused, rows.evaluations[row] = counts.evaluations;
+    if (counts.reached < start.dt) tell_dormand_prince_gave_up(start, row, counts);
 }
 
 }  // namespace plab::solvers

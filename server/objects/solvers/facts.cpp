@@ -11,108 +11,121 @@ namespace plab::solvers
 namespace
 {
 
-constexpr int kPowers = 3;
-constexpr double kShort = 1e-5;  ///< of the motion within a step: for derivatives
-constexpr double kLeast = 1e-2;  ///< m, rad, m/s, rad/s: motion that is taken for granted
+constexpr double kShare = 0.1;        ///< of the others' d1, counts as one's own
+constexpr double kNegligible = 1e-9;  ///< of the speeds: a d3 that changes less does not matter
+constexpr double kRounding = 1e-12;   ///< m/s, rad/s: nor does this
+constexpr double kStiff = 0.5, kOverSpin = 4;
 
-class Look
+double spin_of(DynamicSystem& system, std::size_t body, std::span<const double> u)
+{
+    const RigidMember member = system.rigid(body);
+    const Vec3 s{u[6 * body + 3], u[6 * body + 4], u[6 * body + 5]};
+    return length(member.needle ? s : member.inverse_inertia_B * rotate_back(member.orientation, s));
+}
+
+/// Numbers [begin, end) that are judged together. `unit`: what the speeds of the last three of a body are divided by.
+struct Member
+{
+    std::size_t begin = 0, end = 0;
+    double unit = 1;
+    bool is_body = false, quantities = false;
+};
+
+struct Norms
+{
+    double first = 0, third = 0, speed = 0;  ///< |d1|, |d3|, speeds and what they change by in the step
+};
+
+class Judge
 {
 public:
-    Look(DynamicSystem& system, double h, StiffnessMemory& m) : flat_(system), m_(m)
+    Judge(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone)
+        : system_(system), h_(h), k_(slopes), u0_(system.workspace(0)), each_alone_(each_alone)
     {
-        for (auto* v : {&m.y, &m.f, &m.direction, &m.image, &m.work, &m.units, &m.sizes}) v->resize(flat_.size());
-        flat_.read(m_.y);
-        flat_.units(m_.units);
-        flat_.evaluate(0, m_.y, m_.f);
-        flat_.sizes(m_.y, m_.f, h, m_.sizes);
-        for (std::size_t i = 0; i < flat_.size(); ++i) m_.sizes[i] = std::fmax(m_.sizes[i], kLeast * m_.units[i]);
     }
 
-    double run()
+    Stiffness find()
     {
-        const double found = all_finite(m_.f) ? rate() : std::numeric_limits<double>::infinity();
-        flat_.write(m_.y);
-        return found;
+        Norms all[2];
+        if (!each_alone_) for_each([&](const Member& m) { add(norms(m), all[m.quantities ? 1 : 0]); });
+        Stiffness out;
+        for_each(
+            [&](const Member& m)
+            {
+                const Norms n = norms(m), &others = each_alone_ ? n : all[m.quantities ? 1 : 0];
+                if (!std::isfinite(n.third)) out.value = std::numeric_limits<double>::infinity(), out.too_much = true;
+                if (!(h_ * n.third > kNegligible * others.speed + (m.quantities ? 0 : kRounding))) return;
+                const double found = std::sqrt(2 * n.third / (n.first + (each_alone_ ? 0 : kShare * others.first)));
+                out.value = std::fmax(out.value, found);
+                if (!(found <= kStiff))
+                    out.too_much = out.too_much || !m.is_body || found > kOverSpin * h_ * spin_of(system_, m.begin / 6, u0_);
+            });
+        return out;
     }
 
 private:
-    /// A fixed vector without symmetries, about 1.
-    static double pattern(std::size_t i)
+    template <class Visit>
+    void for_each(Visit visit)
     {
-        const double fraction = 0.618033988749895 * static_cast<double>(i % 64);
-        return (i % 2 == 0 ? 1 : -1) * (0.6 + 0.4 * (fraction - std::floor(fraction)));
+        const std::size_t n = u0_.size(), bodies = system_.body_count(), quantities = system_.quantity_count();
+        for (std::size_t b = 0; b < bodies; ++b) visit(body(b));
+        for (std::size_t i = 6 * bodies; i < n - quantities; ++i) visit(Member{i, i + 1});
+        if (quantities > 0) visit(Member{n - quantities, n, 1, false, true});
     }
 
-    double rate()
+    Member body(std::size_t b)
     {
-        std::fill(m_.direction.begin(), m_.direction.end(), 0.0);
-        for (std::size_t i = flat_.places(); i < flat_.size(); ++i) m_.direction[i] = pattern(i) * m_.units[i];
-        normalise();
-        double square = 0;
-        for (int k = 0; k < kPowers; ++k)
+        Member m{6 * b, 6 * b + 6, 1, true};
+        const RigidMember rigid = system_.rigid(b);
+        if (!rigid.needle) m.unit = std::max({rigid.inertia_B(0, 0), rigid.inertia_B(1, 1), rigid.inertia_B(2, 2)});
+        return m;
+    }
+
+    Norms norms(const Member& m) const
+    {
+        Norms speeds, places;
+        for (std::size_t i = m.begin; i < m.end; ++i)
         {
-            differentiate();
-            std::copy(m_.image.begin(), m_.image.end(), m_.direction.begin());
-            if (largest(0, flat_.size()) == 0) break;
-            differentiate();
-            std::copy(m_.image.begin(), m_.image.end(), m_.direction.begin());
-            std::fill(m_.direction.begin(), m_.direction.begin() + static_cast<std::ptrdiff_t>(flat_.places()), 0.0);
-            square = largest(flat_.places(), flat_.size());
-            if (!std::isfinite(square)) return std::numeric_limits<double>::infinity();
-            if (square == 0) break;
-            normalise();
+            double unit = i >= m.begin + 3 ? m.unit : 1;
+            // Quantities: relative to what they are and become.
+            if (m.quantities) unit = std::fabs(u0_[i]) + std::fabs(h_ * k_.du[0][i]);
+            if (!(unit > 0)) continue;
+            add({of_first(k_.du, i) / unit, of_third(k_.du, i) / unit, (std::fabs(u0_[i]) + h_ * std::fabs(k_.du[0][i])) / unit}, speeds);
+            if (!m.quantities) add({of_first(k_.dx, i) / h_, of_third(k_.dx, i) / h_, 0}, places);
         }
-        return std::sqrt(square);
+        return {speeds.first + places.first, speeds.third + places.third, speeds.speed};
     }
 
-    double largest(std::size_t from, std::size_t to) const
+    static void add(const Norms& n, Norms& to)
     {
-        double most = 0;
-        for (std::size_t i = from; i < to; ++i)
-            if (const double part = std::fabs(m_.direction[i]) / m_.units[i]; !(part <= most)) most = part;
-        return most;
-    }
-    void normalise()
-    {
-        const double size = largest(0, flat_.size());
-        for (double& d : m_.direction) d /= size;
-    }
-
-    /// image = J direction, over a length that moves nothing by more than kShort of its size.
-    void differentiate()
-    {
-        double most = 0;
-        for (std::size_t i = 0; i < flat_.size(); ++i) most = std::fmax(most, std::fabs(m_.direction[i]) / m_.sizes[i]);
-        const double length = kShort / most;
-        for (std::size_t i = 0; i < flat_.size(); ++i) m_.work[i] = m_.y[i] + length * m_.direction[i];
-        flat_.evaluate(0, m_.work, m_.image);
-        for (std::size_t i = 0; i < flat_.size(); ++i)
+        const auto take = [](double value, double& most)
         {
-            const double change = m_.image[i] - m_.f[i];
-            const bool noise = std::fabs(change) <= 4e-16 * std::fabs(m_.f[i]);
-            m_.image[i] = noise ? 0 : change / length;
-        }
+            if (!(value <= most)) most = value;  // a NaN stays
+        };
+        take(n.first, to.first), take(n.third, to.third), take(n.speed, to.speed);
     }
+    static double of_first(const std::array<std::span<double>, 4>& k, std::size_t i) { return std::fabs(k[1][i] - k[0][i]); }
+    static double of_third(const std::array<std::span<double>, 4>& k, std::size_t i) { return std::fabs(k[3][i] - 2 * k[2][i] + k[0][i]); }
 
-    FlatSystem flat_;
-    StiffnessMemory& m_;
+    DynamicSystem& system_;
+    double h_;
+    const StageSlopes& k_;
+    std::span<const double> u0_;
+    bool each_alone_;
 };
 
 }  // namespace
 
-double measure_stiffness(DynamicSystem& system, double h, StiffnessMemory memory) { return Look(system, h, memory).run(); }
-
 double fastest_spin(DynamicSystem& system)
 {
     double most = 0;
-    const auto u = system.speeds();
-    for (std::size_t b = 0; b < system.body_count(); ++b)
-    {
-        const RigidMember member = system.rigid(b);
-        const Vec3 s{u[6 * b + 3], u[6 * b + 4], u[6 * b + 5]};
-        most = std::fmax(most, length(member.needle ? s : member.inverse_inertia_B * rotate_back(member.orientation, s)));
-    }
+    for (std::size_t b = 0; b < system.body_count(); ++b) most = std::fmax(most, spin_of(system, b, system.speeds()));
     return most;
+}
+
+Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone)
+{
+    return Judge(system, h, slopes, each_alone).find();
 }
 
 }  // namespace plab::solvers

@@ -2,23 +2,25 @@
 #pragma once
 
 #include "flat_system.h"
+#include "runge_kutta4.h"
 
 namespace plab::solvers
 {
 
-/// Vectors to work in, of the flat system's size.
-struct StiffnessMemory
-{
-    std::vector<double>&y, &f, &direction, &image, &work, &units, &sizes;
-};
-
-/// The largest eigenvalue of df/dy, 1/s, at the present state, by a power iteration from a fixed vector on
-/// K X_u + C^2  (K = dU/dx, C = dU/du, X_u = dX/du), whose eigenvalues are squares of frequencies and of decay rates: a pair of
-/// conjugate ones gives no trouble. Good to some percent for one dominant force. 7 evaluations. Infinite where forces
-/// are not finite.
-double measure_stiffness(DynamicSystem& system, double h, StiffnessMemory memory);
-
 /// The largest angular speed of a body, rad/s.
 double fastest_spin(DynamicSystem& system);
+
+/// How stiff the equations look along a step of RungeKutta4, from its slopes alone: no evaluation more. Differences of the
+/// slopes are a power iteration, d1 = k2 - k1, d2 = k3 - k2 = (h/2) J d1, d3 = k4 - 2 k3 + k1 = h J d2, so |h lambda|^2 is
+/// about 2 |d3| / |d1| (Hairer, Wanner, Solving ordinary differential equations II, eq. (IV.2.26), does so for other
+/// methods). Each body and shaft is judged by itself, in the norm |du| + |dx| / h, for a stiff one shall not hide behind what
+/// moves more; quantities are judged together. Rates that are small against those of the others, or rounding, do not count.
+struct Stiffness
+{
+    double value = 0;       ///< |h lambda|, the largest found; infinite where slopes are not finite
+    bool too_much = false;  ///< of some member: above 0.5, and above 4 |w| h
+};
+/// With `each_alone` members are judged as if there were no others: what passes then passes in any company.
+Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone = false);
 
 }  // namespace plab::solvers

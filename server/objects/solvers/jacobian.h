@@ -27,5 +27,7 @@ void rough_jacobian(FlatSystem& system, const JacobianPoint& at, double relative
 /// two lengths that agree prove it, and the derivative is right to rounding (two evaluations). Otherwise central
 /// differences with Richardson's extrapolation, over the lengths that agree best (at most 34 evaluations).
 void fine_jacobian(FlatSystem& system, const JacobianPoint& at, SquareMatrix<double>& out);
+/// One column of that. `out` has its size; columns of speeds look at those of places.
+void fine_column(FlatSystem& system, const JacobianPoint& at, std::size_t column, SquareMatrix<double>& out);
 
 }  // namespace plab::solvers

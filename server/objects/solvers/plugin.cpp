@@ -17,6 +17,8 @@ namespace
 using namespace plab::solvers;
 using plab::Phase;
 
+// `uniform` of a solver: under uniform forces alone it treats each body by itself, so groups may be advanced together without
+// changing a bit; `elementwise`: under any.
 constexpr const char* kAdvance = "Solver/Advance";
 constexpr const char* kAdvanceDoc = "advances its group over the step";
 
@@ -80,6 +82,7 @@ void declare_adaptive(plab::Registrar& registrar)
         .family("Solver")
         .command<advance_exact>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(4)
+        .uniform()
         .cost("2 force evaluations and about 1 us per body and step, whatever the step")
         .limits(
             "other forces: RotationSplitting of order 4 is used, joints: RungeKutta4, and an event says so; a spin about an unstable "
@@ -106,19 +109,24 @@ void declare_adaptive(plab::Registrar& registrar)
         .family("Solver")
         .command<advance_exponential>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(4)
-        .cost("4 n + 9 force evaluations per step for n coordinates, more where forces bend; one or two exponentials of size 2 n + 3")
-        .limits("cost grows with n^3: above max_size Radau5 is used; the energy ledger is sampled at most 128 times per step")
+        .cost("2 n + 7 to 4 n + 7 force evaluations per step for n numbers that move, more where forces bend; an exponential of size n + 3")
+        .limits(
+            "cost grows with n^3: above max_size, and where stiff forces sway (springs that are not held to a line), Radau5 is used; where "
+            "forces bend the energy ledger is sampled at most 128 times per step")
         .source("Luan, Appl. Math. Lett. 65 (2017) 132; Hochbruck, Ostermann, Acta Numerica 19 (2010) 209");
     registrar
         .component<AutomaticRows>("Solver/Automatic",
                                   "picks a method for each group by measured spin and stiffness, and says which and why")
         .family("Solver")
+        .command<advance_together>(Phase::Advance, "Solver/AdvanceTogether",
+                                   "advances several groups in one go where Exact or RungeKutta4 is right for all of them")
         .command<advance_automatic>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(4)
-        .cost("that of the method; 7 evaluations more in every 16th step, none for free flight")
+        .uniform()
+        .cost("that of the method; 7 evaluations more for stiff groups, 4 for fast spins")
         .limits(
-            "stiffness that appears between two looks (16 steps) is met by RungeKutta4 till then; groups that share one component share "
-            "its most demanding choice")
+            "a stiff force that nothing has set in motion yet is not seen; stiff groups of more than 200 numbers whose forces bend: "
+            "short explicit steps")
         .source("Hairer, Wanner, Solving ordinary differential equations II, section IV.2");
 }
 

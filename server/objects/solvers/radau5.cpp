@@ -64,7 +64,9 @@ private:
         const double error = stages_.error(t_, step, counts_.accepted == 0 || refused_before_);
         const double factor = std::min(kSafety, kSafety * (1 + 2 * kNewtonIterations) / (newton.iterations + 2 * kNewtonIterations));
         double quotient = std::clamp(std::pow(std::max(error, 1e-12), 0.25) / factor, 1.0 / kGrow, 1.0 / kShrink);
-        if (!(error < 1)) return refuse(step, std::isfinite(error) ? std::min(0.9, 1 / quotient) : 0.1);
+        // Forces that jump: no step across is short enough for the tolerance, and one that is short is right but for when they jump.
+        const bool over_a_jump = step <= kLeast * h_ && std::isfinite(error);
+        if (!(error < 1) && !over_a_jump) return refuse(step, std::isfinite(error) ? std::min(0.9, 1 / quotient) : 0.1);
         if (counts_.accepted > 0)
         {
             // Gustafsson's prediction from the last two errors.
@@ -148,6 +150,7 @@ private:
     }
 
     static constexpr double kSafety = 0.9, kShrink = 1.0 / 5, kGrow = 8;
+    static constexpr double kLeast = 1e-10;  ///< of the whole step
     double h_, t_ = 0;
     bool trial_;
     Tolerance inner_;
@@ -189,6 +192,7 @@ void Radau5Rows::describe(Schema& schema)
     schema.output(refused, "refused", unit::one, "internal steps that were tried again shorter");
     schema.output(evaluations, "evaluations", unit::one, "force evaluations in the last step");
     schema.output(factorisations, "factorisations", unit::one, "pairs of linear systems that were factorised in the last step");
+    schema.state(told_size, "told_size", unit::one, "an event told that the group is large");
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 
@@ -207,12 +211,33 @@ void tell_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& c
                {counts.reached, start.dt});
 }
 
+namespace
+{
+
+/// Above this many numbers an internal step takes more than about a tenth of a second.
+constexpr std::size_t kLarge = 300;
+
+void tell_size(const StepContext& start, Row row, Radau5Rows& rows, std::size_t n)
+{
+    if (n <= kLarge || rows.told_size[row]) return;
+    rows.told_size[row] = true;
+    start.emit(row, "solver.large", Severity::Warning,
+               "a group of " + std::to_string(n) +
+                   " numbers (places and speeds): each internal step factorises dense matrices of that size, " +
+                   "which costs as its cube, and holds " + std::to_string(n * n * 40 >> 20) +
+                   " MB; Solver/DormandPrince54 or a shorter step of Solver/RungeKutta4 may be cheaper",
+               {static_cast<double>(n)});
+}
+
+}  // namespace
+
 void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, DynamicSystem& system)
 {
     const StepContext start = context;  // evaluations change the host's
     const Tolerance tolerance{rows.relative_tolerance[row], rows.absolute_tolerance[row]};
     const Radau5Counts counts = advance_by_radau(start.dt, is_trial(start), tolerance, rows.max_substeps[row], rows.memory[row], system);
     if (is_trial(start)) return;
+    tell_size(start, row, rows, FlatSystem(system).size());
     rows.substeps[row] = counts.accepted, rows.refused[row] = counts.refused;
     rows.evaluations[row] = counts.evaluations, rows.factorisations[row] = counts.factorisations;
     if (counts.reached < start.dt) tell_radau_gave_up(start, row, counts);

@@ -9,6 +9,9 @@
 ///   parts of a step see the same numbers. A multistep method (CVODE) would lose what it remembers at each step and event,
 ///   and start with order 1 again.
 /// - The energy ledger books the three stages with the weights of the method (order 5), one evaluation each.
+/// - Where forces jump, an internal step of 1e-10 of the whole one is made whatever its error: that is how well the time of the
+///   jump is known.
+/// - Dense: more than 300 numbers in a group are named once by the event solver.large, with what they cost.
 /// - If max_substeps internal steps do not reach the end, the group stays where it got to: event solver.gave_up.
 /// Source: Hairer, Wanner, Solving ordinary differential equations II, section IV.8; the program RADAU5.
 #pragma once
@@ -43,6 +46,7 @@ struct Radau5Rows
     Column<double> relative_tolerance, absolute_tolerance;
     Column<std::int64_t> max_substeps;
     Column<std::int64_t> substeps, refused, evaluations, factorisations;
+    Column<bool> told_size;
     Column<Radau5Memory> memory;
 
     void describe(Schema& schema);

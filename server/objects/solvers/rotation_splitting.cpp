@@ -33,6 +33,18 @@ constexpr double kB1 = 0.209515106613362, kB2 = -0.143851773179818;
 constexpr double kC1 = kA1, kC2 = kB1 - kC1, kC3 = kA2 - kC2, kC4 = kB2 - kC3, kC5 = kA3 - kC4;
 constexpr std::array<double, 6> kOrder4{kC1, kC2, kC3, kC4, kC5, 0.5 - kC1 - kC2 - kC3 - kC4 - kC5};
 
+/// The whole free rotation. Turns about the axes one by one are no way for needles: the long axis spins as fast as what is left
+/// of a momentum that the other turns have moved about, over almost nothing.
+void turn_freely(Spinning& body, double time)
+{
+    PrincipalAxes principal;
+    principal.axes = Mat3::identity(), principal.reciprocal = body.reciprocal;
+    principal.moment = {1 / body.reciprocal.x, 1 / body.reciprocal.y, 1 / body.reciprocal.z};
+    const FreeTop top(principal, body.m);
+    body.turn = body.turn * top.turn(time);
+    body.m = top.momentum(time);
+}
+
 /// sin and cos of half an angle, and from them the turn of a vector: no library call for the small angles of a step.
 void turn_about(Spinning& body, int axis, double time)
 {
@@ -113,7 +125,10 @@ private:
         for (std::size_t i = 0; i < bodies; ++i)
         {
             Spinning body = load(i);
-            for (int k = 0; k < 3; ++k) turn_about(body, reversed ? 2 - k : k, time);
+            if (system_.rigid(i).needle)
+                turn_freely(body, time);
+            else
+                for (int k = 0; k < 3; ++k) turn_about(body, reversed ? 2 - k : k, time);
             store(i, body);
             for (std::size_t k = 6 * i; k < 6 * i + 3; ++k) x_[k] += time * u_[k];
         }

@@ -22,11 +22,35 @@ constexpr std::array<StageOfMethod, 4> kStages{{
     {1.0, 0.0, 1.0 / 6, 1},
 }};
 
+void copy(std::span<const double> from, std::span<double> to)
+{
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[i];
+}
+
+/// The point of stage s, of the slope before it.
+void go_to_stage(std::size_t s, double h, DynamicSystem& system, const StageSlopes& slopes)
+{
+    const auto x = system.coordinates();
+    const auto u = system.speeds();
+    const auto u0 = system.workspace(0);
+    const double length = s == 0 ? 0.0 : h * kStages[s - 1].next;
+    for (std::size_t i = 0; i < u.size(); ++i)
+    {
+        x[i] = s == 0 ? 0.0 : length * slopes.dx[s - 1][i];
+        u[i] = s == 0 ? u0[i] : u0[i] + length * slopes.du[s - 1][i];
+    }
+}
+
 }  // namespace
 
-void advance_runge_kutta4(const StepContext& context, Row, const RungeKutta4Rows&, DynamicSystem& system)
+StageSlopes::StageSlopes(DynamicSystem& system)
 {
-    const double h = context.dt;
+    for (std::size_t s = 0; s < 4; ++s)
+        dx[s] = system.workspace(3 + static_cast<int>(s)), du[s] = system.workspace(7 + static_cast<int>(s));
+}
+
+void advance_by_runge_kutta4(double h, DynamicSystem& system, StageSlopes* slopes)
+{
     const auto x = system.coordinates();
     const auto u = system.speeds();
     const auto dx = system.coordinate_rates();
@@ -37,9 +61,11 @@ void advance_runge_kutta4(const StepContext& context, Row, const RungeKutta4Rows
     const std::size_t n = u.size();
 
     for (std::size_t i = 0; i < n; ++i) u0[i] = u[i], sum_dx[i] = 0, sum_du[i] = 0;
-    for (const StageOfMethod& stage : kStages)
+    for (std::size_t s = 0; s < kStages.size(); ++s)
     {
+        const StageOfMethod& stage = kStages[s];
         system.evaluate(stage.time * h, stage.weight);
+        if (slopes) copy(dx, slopes->dx[s]), copy(du, slopes->du[s]);
         for (std::size_t i = 0; i < n; ++i)
         {
             sum_dx[i] += stage.sum_weight * dx[i];
@@ -53,6 +79,33 @@ void advance_runge_kutta4(const StepContext& context, Row, const RungeKutta4Rows
         x[i] = h / 6 * sum_dx[i];
         u[i] = u0[i] + h / 6 * sum_du[i];
     }
+}
+
+void find_slopes(double h, DynamicSystem& system, StageSlopes& slopes)
+{
+    copy(system.speeds(), system.workspace(0));
+    for (std::size_t s = 0; s < kStages.size(); ++s)
+    {
+        go_to_stage(s, h, system, slopes);
+        system.evaluate(kStages[s].time * h, 0);
+        copy(system.coordinate_rates(), slopes.dx[s]), copy(system.speed_rates(), slopes.du[s]);
+    }
+    go_to_stage(0, h, system, slopes);
+}
+
+void take_back_runge_kutta4(double h, bool trial, DynamicSystem& system, const StageSlopes& slopes)
+{
+    for (std::size_t s = 0; s < kStages.size() && !trial; ++s)
+    {
+        go_to_stage(s, h, system, slopes);
+        system.evaluate(kStages[s].time * h, -kStages[s].weight);
+    }
+    go_to_stage(0, h, system, slopes);
+}
+
+void advance_runge_kutta4(const StepContext& context, Row, const RungeKutta4Rows&, DynamicSystem& system)
+{
+    advance_by_runge_kutta4(context.dt, system);
 }
 
 }  // namespace plab::solvers

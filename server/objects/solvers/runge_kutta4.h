@@ -6,6 +6,8 @@
 /// Numer. Math. 29 (1999).
 #pragma once
 
+#include <array>
+
 #include "plab/registrar.h"
 
 namespace plab::solvers
@@ -18,5 +20,21 @@ struct RungeKutta4Rows
 
 /// One step over context.dt, from coordinates 0.
 void advance_runge_kutta4(const StepContext& context, Row row, const RungeKutta4Rows& rows, DynamicSystem& system);
+
+/// The slopes k1 to k4 of a step, in the system's workspaces 3 to 10: for who judges it, and may take it back.
+struct StageSlopes
+{
+    explicit StageSlopes(DynamicSystem& system);
+
+    std::array<std::span<double>, 4> dx, du;
+};
+
+/// The method itself; workspaces 0 to 2. Keeps the slopes if asked to.
+void advance_by_runge_kutta4(double h, DynamicSystem& system, StageSlopes* slopes = nullptr);
+/// Only the slopes: nothing is booked, and the system is as it was.
+void find_slopes(double h, DynamicSystem& system, StageSlopes& slopes);
+/// After an advance with slopes: back to the start. What had been booked is taken back, unless it was a trial, which books
+/// nothing.
+void take_back_runge_kutta4(double h, bool trial, DynamicSystem& system, const StageSlopes& slopes);
 
 }  // namespace plab::solvers

@@ -94,6 +94,9 @@ Result<std::unique_ptr<ExactSolution>> make_pendulum(const SceneFacts& facts, do
 Result<std::unique_ptr<ExactSolution>> make_kepler(const SceneFacts& facts, double until);
 Result<std::unique_ptr<ExactSolution>> make_bounce(const SceneFacts& facts, double until);
 Result<std::unique_ptr<ExactSolution>> make_slide(const SceneFacts& facts, double until);
-Result<std::unique_ptr<ExactSolution>> make_gear_pair(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_gears(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_rest(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_rocking(const SceneFacts& facts, double until);
+Result<std::unique_ptr<ExactSolution>> make_spring_bounce(const SceneFacts& facts, double until);
 
 }  // namespace plab::study

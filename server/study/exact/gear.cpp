@@ -1,73 +1,152 @@
-// Two shafts that a coupling holds together: speeds engage by reflected inertia, a constant torque turns both.
+// Shafts that couplings hold together: speeds engage by reflected inertia, constant torques turn all of a train.
 #include <cmath>
+#include <map>
 
 #include "model/values.h"
-#include "study/exact/exact.h"
+#include "study/exact/facts.h"
 
 namespace plab::study
 {
 namespace
 {
 
-class GearPair final : public ExactSolution
+/// A train of shafts, all of whose speeds are ratios of one; directory indices.
+struct Train
+{
+    std::map<std::uint32_t, double> ratio;
+    double inertia = 0;       ///< sum of ratio^2 J, kg m^2
+    double speed = 0;         ///< rad/s: what the couplings cannot change is sum of ratio J w
+    double acceleration = 0;  ///< rad/s^2
+};
+
+class Gears final : public ExactSolution
 {
 public:
-    GearPair(std::string driver, std::string driven, double ratio, double angle1, double angle2, double speed, double acceleration)
-        : driver_(std::move(driver)),
-          driven_(std::move(driven)),
-          ratio_(ratio),
-          angle1_(angle1),
-          angle2_(angle2),
-          speed_(speed),
-          acceleration_(acceleration)
+    struct Wheel
     {
-    }
+        double ratio, angle, speed, acceleration;
+    };
+    explicit Gears(std::map<std::string, Wheel> wheels, std::string words) : wheels_(std::move(wheels)), words_(std::move(words)) {}
     bool state(const std::string& id, double t, ExactState& out) const override
     {
-        if (id != driver_ && id != driven_) return false;
-        const double turned = speed_ * t + 0.5 * acceleration_ * t * t, r = id == driver_ ? 1.0 : ratio_;
-        out.angle = (id == driver_ ? angle1_ : angle2_) + r * turned;
-        out.speed = r * (speed_ + acceleration_ * t);
+        const auto found = wheels_.find(id);
+        if (found == wheels_.end()) return false;
+        const Wheel& w = found->second;
+        out.angle = w.angle + w.ratio * (w.speed * t + 0.5 * w.acceleration * t * t);
+        out.speed = w.ratio * (w.speed + w.acceleration * t);
         return true;
     }
-    std::string words() const override
-    {
-        return "closed form of a gear pair: ratio " + model::format_real(ratio_) + ", driver from " + model::format_real(speed_) +
-               " rad/s with " + model::format_real(acceleration_) + " rad/s^2";
-    }
+    std::string words() const override { return words_; }
 
 private:
-    std::string driver_, driven_;
-    double ratio_, angle1_, angle2_, speed_, acceleration_;
+    std::map<std::string, Wheel> wheels_;
+    std::string words_;
 };
+
+struct Mesh
+{
+    std::uint32_t driver, driven;
+    double factor;
+};
+
+/// Turns of driven per turn of driver, as velocity_factor or as tooth counts say.
+double factor_of(const SceneFacts& facts, std::uint32_t gear)
+{
+    const auto teeth = [&](const char* name)
+    {
+        const Value v = facts.world().get(gear, name);
+        const auto* n = std::get_if<std::int64_t>(&v);
+        return n ? static_cast<double>(*n) : 0.0;
+    };
+    if (!(teeth("driver_teeth") > 0)) return real_of(facts, gear, "velocity_factor");
+    const Value mesh = facts.world().get(gear, "mesh");
+    const auto* kind = std::get_if<std::string>(&mesh);
+    return (kind && *kind == "external" ? -1 : 1) * teeth("driver_teeth") / teeth("driven_teeth");
+}
+
+Result<std::vector<Mesh>> meshes_of(const SceneFacts& facts)
+{
+    std::vector<Mesh> out;
+    std::vector<std::uint32_t> gears = facts.of_type("Constraint/AngularVelocity/");
+    for (const std::uint32_t i : facts.of_type("Constraint/Gear")) gears.push_back(i);
+    for (const std::uint32_t i : gears)
+    {
+        const auto driver = participants(facts, i, "driver"), driven = participants(facts, i, "driven");
+        for (const auto* side : {&driver, &driven})
+            if (side->size() != 1 || facts.world().component(side->front()).facet != Facet::Shaft)
+                return reason(facts.world().id_of(i) + " couples others than two shafts");
+        out.push_back({driver.front(), driven.front(), factor_of(facts, i)});
+    }
+    if (out.empty()) return reason("it has 0 couplings of shafts");
+    return out;
+}
+
+/// Everybody who is reached from `first`; a ring has to close.
+Result<Train> train_of(const std::vector<Mesh>& meshes, std::uint32_t first)
+{
+    Train out;
+    out.ratio[first] = 1;
+    for (bool grown = true; grown;)
+    {
+        grown = false;
+        for (const Mesh& m : meshes)
+        {
+            const auto a = out.ratio.find(m.driver), b = out.ratio.find(m.driven);
+            if (a != out.ratio.end() && b == out.ratio.end()) out.ratio[m.driven] = a->second * m.factor, grown = true;
+            if (a == out.ratio.end() && b != out.ratio.end()) out.ratio[m.driver] = b->second / m.factor, grown = true;
+            if (a != out.ratio.end() && b != out.ratio.end() && std::fabs(a->second * m.factor - b->second) > 1e-12 * std::fabs(b->second))
+                return reason("a ring of its couplings contradicts itself");
+        }
+    }
+    return out;
+}
+
+/// Constant torque on a shaft, N m: of loads, and `torque` of a script on what it drives.
+double torque_on(const SceneFacts& facts, std::uint32_t shaft)
+{
+    double out = 0;
+    for (const std::uint32_t i : facts.of_type("Field/Load"))
+        for (const std::uint32_t who : participants(facts, i, "between"))
+            if (who == shaft) out += real_of(facts, i, "shaft_torque");
+    for (const std::uint32_t i : facts.of_type("Script/"))
+        for (const std::uint32_t who : participants(facts, i, "driven"))
+            if (who == shaft) out += facts.number("torque").value_or(0);
+    return out;
+}
 
 }  // namespace
 
-Result<std::unique_ptr<ExactSolution>> make_gear_pair(const SceneFacts& facts, double)
+Result<std::unique_ptr<ExactSolution>> make_gears(const SceneFacts& facts, double)
 {
+    const auto meshes = meshes_of(facts);
+    if (!meshes) return meshes.errors();
+    if (!facts.foreign_force({"Script/", "Constraint/AngularVelocity/", "Constraint/Gear", "Field/Load"}).empty())
+        return reason("other forces act than Field/Load and a script's constant torque");
     const world::World& world = facts.world();
-    const auto gears = facts.of_type("Constraint/AngularVelocity/");
-    if (gears.size() != 1) return reason("it has " + std::to_string(gears.size()) + " couplings of shafts; this form is about one");
-    const auto find = [&](const char* role) -> std::uint32_t
-    {
-        for (const Role& r : world.table_of(gears.front()).schema().roles())
-            if (r.name == role)
-                for (const Ref ref : world.participants(gears.front(), r)) return world.host().component_of(ref);
-        return kNoIndex;
-    };
-    const std::uint32_t driver = find("driver"), driven = find("driven");
-    if (driver == kNoIndex || driven == kNoIndex) return reason("its coupling has no driver and driven shaft");
-    const std::uint32_t a = world.component(driver).host_index, b = world.component(driven).host_index;
     const Shafts& shafts = facts.shafts();
-    if (!shafts.dynamic(a) || !shafts.dynamic(b)) return reason("one of the two shafts is prescribed or static");
-    if (!facts.foreign_force({"Script/", "Constraint/AngularVelocity/"}).empty())
-        return reason("other forces act than a script's constant torque");
-    const double r = std::get<double>(world.get(gears.front(), "velocity_factor"));
-    const double J = shafts.inertia[a] + r * r * shafts.inertia[b];
-    // The momentum that the coupling cannot change: J1 w1 + r J2 w2.
-    const double speed = (shafts.inertia[a] * shafts.speed[a] + r * shafts.inertia[b] * shafts.speed[b]) / J;
-    return std::unique_ptr<ExactSolution>(std::make_unique<GearPair>(world.id_of(driver), world.id_of(driven), r, shafts.angle[a],
-                                                                     shafts.angle[b], speed, facts.number("torque").value_or(0) / J));
+    std::map<std::string, Gears::Wheel> wheels;
+    std::string words = "closed form of gears";
+    for (const Mesh& m : *meshes)
+    {
+        if (wheels.count(world.id_of(m.driver)) > 0) continue;
+        auto train = train_of(*meshes, m.driver);
+        if (!train) return train.errors();
+        double momentum = 0, torque = 0;
+        for (const auto& [i, ratio] : train->ratio)
+        {
+            const std::uint32_t row = world.component(i).host_index;
+            if (!shafts.dynamic(row)) return reason("the shaft " + world.id_of(i) + " is prescribed or static");
+            train->inertia += ratio * ratio * shafts.inertia[row];
+            momentum += ratio * shafts.inertia[row] * shafts.speed[row], torque += ratio * torque_on(facts, i);
+        }
+        train->speed = momentum / train->inertia, train->acceleration = torque / train->inertia;
+        for (const auto& [i, ratio] : train->ratio)
+            wheels[world.id_of(i)] = {ratio, shafts.angle[world.component(i).host_index], train->speed, train->acceleration};
+        words += ": " + world.id_of(m.driver) + " and " + std::to_string(train->ratio.size() - 1) + " more, inertia " +
+                 model::format_real(train->inertia) + " kg m^2, from " + model::format_real(train->speed) + " rad/s with " +
+                 model::format_real(train->acceleration) + " rad/s^2";
+    }
+    return std::unique_ptr<ExactSolution>(std::make_unique<Gears>(std::move(wheels), std::move(words)));
 }
 
 }  // namespace plab::study

@@ -116,7 +116,7 @@ std::vector<Mark> marks_of(const Scale& scale, int most)
 void draw_panel(Drawing& d, const Panel& p, const std::string& x_name, const std::string& y_name)
 {
     const Ink grid{Ink::Role::Grid, 0, 0, 0, 0}, muted{Ink::Role::Muted, 0, 0, 0, 0};
-    for (const Mark& t : marks_of(p.x))
+    for (const Mark& t : p.x_marks.empty() ? marks_of(p.x) : p.x_marks)
     {
         const double x = p.at(t.value, p.y.low).x;
         if (x < p.left - 0.5 || x > p.right() + 0.5) continue;
@@ -133,6 +133,26 @@ void draw_panel(Drawing& d, const Panel& p, const std::string& x_name, const std
     d.line({{p.left, p.top}, {p.left, p.bottom()}, {p.right(), p.bottom()}}, {muted, 1.2, false});
     d.words({p.left + p.width / 2, p.bottom() + 40}, x_name, {13, {}, Anchor::Middle, false, false});
     d.words({p.left - 58, p.top + p.height / 2}, y_name, {13, {}, Anchor::Middle, false, true});
+}
+
+void Labels::add(Drawing& d, Spot at, const std::string& text, double size, Ink ink, bool bold)
+{
+    constexpr double kNear = 45;
+    for (const auto& [spot, words] : words_)
+        if (words == text && std::hypot(spot.x - at.x, spot.y - at.y) < kNear) return;
+    const double width = text_width(text, size);
+    const double right = at.x + 8, left = at.x - 8 - width, up = at.y - 7, down = at.y + 7 + 0.75 * size;
+    for (const Spot s : {Spot{right, up}, Spot{right, down}, Spot{left, down}, Spot{left, up}})
+    {
+        const Area area{s.x, s.y - 0.8 * size, s.x + width, s.y + 0.2 * size};
+        const bool free = std::none_of(
+            taken_.begin(), taken_.end(),
+            [&](const Area& t) { return area.left < t.right && t.left < area.right && area.top < t.bottom && t.top < area.bottom; });
+        if (!free) continue;
+        taken_.push_back(area), words_.emplace_back(at, text);
+        d.words(s, text, {size, ink, Anchor::Start, bold, false});
+        return;
+    }
 }
 
 std::string power_of_ten(int exponent)

@@ -32,11 +32,34 @@ struct Mark
 };
 std::vector<Mark> marks_of(const Scale& scale, int most = 8);
 
+/// Words beside things, each only where nothing stands yet.
+class Labels
+{
+public:
+    static constexpr double kSize = 10.5;
+
+    /// Something is there, so far to all sides.
+    void occupy(Spot at, double reach) { taken_.push_back({at.x - reach, at.y - reach, at.x + reach, at.y + reach}); }
+    void occupy(double left, double top, double right, double bottom) { taken_.push_back({left, top, right, bottom}); }
+    /// At the first free corner of `at`; not at all where there is none, or the same words stand near by.
+    void add(Drawing& drawing, Spot at, const std::string& text, double size = kSize, Ink ink = {Ink::Role::Muted, 0, 0, 0, 0},
+             bool bold = false);
+
+private:
+    struct Area
+    {
+        double left, top, right, bottom;
+    };
+    std::vector<Area> taken_;
+    std::vector<std::pair<Spot, std::string>> words_;
+};
+
 /// The area where data stand.
 struct Panel
 {
     double left = 0, top = 0, width = 1, height = 1;  ///< px
     Scale x, y;
+    std::vector<Mark> x_marks;  ///< instead of the scale's own, if there are any
 
     Spot at(double vx, double vy) const { return {left + width * x.at(vx), top + height * (1 - y.at(vy))}; }
     double right() const { return left + width; }

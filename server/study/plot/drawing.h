@@ -84,7 +84,7 @@ public:
     /// An <svg> element. `standalone`: with the XML head and its own colours; else those of svg_style() must be around.
     std::string svg(bool standalone) const;
     /// White paper, `scale` pixels per px.
-    Result<void> write_png(const std::string& path, double scale = 2) const;
+    Result<void> write_png(const std::string& path, double scale = 1.5) const;
 
 private:
     enum class Kind : std::uint8_t

@@ -12,7 +12,7 @@ namespace
 
 constexpr std::size_t kMostLines = 12;
 
-/// Each rung with its longest step; more lines than that nobody can read.
+/// Each rung with its longest step that gave a result; more lines than that nobody can read.
 std::vector<const Point*> lines_of(const StudyResult& r)
 {
     std::vector<const Point*> out;
@@ -20,7 +20,8 @@ std::vector<const Point*> lines_of(const StudyResult& r)
     {
         const Point* best = nullptr;
         for (const Point& p : r.points)
-            if (p.combination.rung == rung && p.record.energy.time.size() > 1 && (!best || p.record.dt > best->record.dt)) best = &p;
+            if (p.combination.rung == rung && p.record.ok() && p.record.energy.time.size() > 1 && (!best || p.record.dt > best->record.dt))
+                best = &p;
         if (best && out.size() < kMostLines) out.push_back(best);
     }
     return out;
@@ -53,6 +54,8 @@ std::optional<Drawing> energy(const StudyResult& r)
     p.x = Scale::around(Scale::Kind::Linear, times), p.y = Scale::around(Scale::Kind::SymLog, drifts);
     p.x.low = 0, p.y.threshold = std::max(p.y.threshold, 0.1 * kRoundOff * scale);
     d.words({96, 26}, "Energy that nobody put in", {16, {}, Anchor::Start, true, false});
+    d.words({96 + text_width("Energy that nobody put in", 16) * 1.1 + 14, 26}, r.title,
+            {13, {Ink::Role::Muted, 0, 0, 0, 0}, Anchor::Start, false, false});
     draw_panel(d, p, "time, s", "drift, J");
     for (std::size_t k = 0; k < lines.size(); ++k)
     {
@@ -60,9 +63,11 @@ std::optional<Drawing> energy(const StudyResult& r)
         std::vector<Spot> line;
         for (std::size_t i = 0; i < e.time.size(); ++i)
             if (std::isfinite(e.drift[i])) line.push_back(p.at(e.time[i], e.drift[i]));
-        d.line(std::move(line), {Ink::series(static_cast<int>(k)), 1.6, false}, names[k]);
+        // The first are the broadest, so that lines that lie upon one another can all be seen.
+        const double width = 1.6 + 0.5 * static_cast<double>(std::min<std::size_t>(lines.size() - 1 - k, 6));
+        d.line(std::move(line), {Ink::series(static_cast<int>(k)), width, k >= Ink::kSeries}, names[k]);
         const double y = p.top + 8 + 20.0 * static_cast<double>(k);
-        d.line({{p.right() + 16, y}, {p.right() + 36, y}}, {Ink::series(static_cast<int>(k)), 2.5, false});
+        d.line({{p.right() + 16, y}, {p.right() + 36, y}}, {Ink::series(static_cast<int>(k)), 2.5, k >= Ink::kSeries});
         d.words({p.right() + 42, y + 4}, names[k], {12, {}, Anchor::Start, false, false});
     }
     return d;
@@ -87,10 +92,14 @@ std::vector<Picture> pictures_of(const StudyResult& r)
         out.push_back(
             {"energy",
              "Kinetic and stored energy, less the start's and less the work of whatever stores none: what the methods made up (above 0) "
-             "or lost (below). Each rung at its longest step.",
+             "or lost (below). Each rung at its longest step that gave a result; of lines that lie upon one another the first is the "
+             "broadest.",
              std::move(*d)});
     if (r.reference.kind != "none")
-        out.push_back({"digits", "Correct digits, −log₁₀ of the largest error of the whole series.", digit_map(r)});
+        out.push_back({"digits",
+                       "Correct digits, −log₁₀ of the largest error of the whole series; of the worst quantity, where there is a column "
+                       "per step length.",
+                       digit_map(r)});
     return out;
 }
 

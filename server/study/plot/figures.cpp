@@ -16,6 +16,8 @@ constexpr double kWidth = 860, kHeight = 520;
 Ink ink_of(std::size_t rung) { return Ink::series(static_cast<int>(rung)); }
 int shape_of(std::size_t rung) { return static_cast<int>(rung % Drawing::kMarkers); }
 
+/// Of a run that went wrong, the error until then is none to compare.
+double error_of(const Point& p) { return p.record.ok() ? p.error() : std::nan(""); }
 double shown(double error) { return std::isnan(error) ? error : std::max(error, kLeastError); }
 double milliseconds(const Point& p) { return 1e3 * p.cpu_per_second(); }
 
@@ -45,13 +47,17 @@ void draw_legend(Drawing& d, const Panel& p, const std::vector<std::string>& run
     double y = p.top + 8;
     for (std::size_t i = 0; i < rungs.size() && y < p.bottom(); ++i, y += 20)
     {
-        d.line({{p.right() + 16, y}, {p.right() + 36, y}}, {ink_of(i), 1.5, false});
+        d.line({{p.right() + 16, y}, {p.right() + 36, y}}, {ink_of(i), 1.5, i >= Ink::kSeries});
         d.marker({p.right() + 26, y}, shape_of(i), 4.5, ink_of(i), true);
         d.words({p.right() + 42, y + 4}, rungs[i], {12, {}, Anchor::Start, false, false});
     }
 }
 
-void draw_title(Drawing& d, const std::string& title) { d.words({84, 26}, title, {16, {}, Anchor::Start, true, false}); }
+void draw_title(Drawing& d, const std::string& title, const std::string& scene)
+{
+    d.words({84, 26}, title, {16, {}, Anchor::Start, true, false});
+    d.words({84 + text_width(title, 16) * 1.1 + 14, 26}, scene, {13, kMuted, Anchor::Start, false, false});
+}
 
 double uncertainty_of(const StudyResult& r)
 {
@@ -61,13 +67,15 @@ double uncertainty_of(const StudyResult& r)
 }
 
 /// Errors down here are those of the reference as well.
-void draw_unresolved(Drawing& d, const Panel& p, double uncertainty)
+void draw_unresolved(Drawing& d, const Panel& p, double uncertainty, Labels& labels)
 {
     if (!(uncertainty > p.y.low)) return;
     const double y = p.at(p.x.low, std::min(uncertainty, p.y.high)).y;
-    d.box({p.left, y}, p.width, p.bottom() - y, {Ink::Role::Shade, 0, 0, 0, 0}, "the reference is not known better than this");
-    d.words({p.left + 8, p.bottom() - 8}, "below " + short_number(uncertainty) + ": not resolved by the reference",
-            {11, kMuted, Anchor::Start, false, false});
+    // Over the grid, inside the frame.
+    d.box({p.left + 1, y}, p.width - 1, p.bottom() - y - 1, {Ink::Role::Shade, 0, 0, 0, 0}, "the reference is not known better than this");
+    const std::string text = "below " + short_number(uncertainty) + ": not resolved by the reference";
+    d.words({p.left + 8, p.bottom() - 8}, text, {11, kMuted, Anchor::Start, false, false});
+    labels.occupy(p.left, p.bottom() - 20, p.left + 16 + text_width(text, 11), p.bottom());
 }
 
 std::string hint_of(const StudyResult& r, const Point& p)
@@ -93,44 +101,30 @@ void draw_front(Drawing& d, const Panel& p, const StudyResult& r)
     if (steps.size() > 1) d.line(std::move(steps), {{Ink::Role::Front, 0, 0, 0, 0}, 5, false}, "Pareto front: nobody is better in both");
 }
 
-/// Words beside markers, each only where no earlier one stands.
-class Labels
-{
-public:
-    void add(Drawing& d, Spot at, const std::string& text)
-    {
-        const double width = text_width(text, kSize);
-        for (const auto& [spot, w] : placed_)
-            if (at.x < spot.x + w && spot.x < at.x + width && std::fabs(at.y - spot.y) < kSize) return;
-        placed_.emplace_back(at, width);
-        d.words(at, text, {kSize, kMuted, Anchor::Start, false, false});
-    }
-
-private:
-    static constexpr double kSize = 10.5;
-    std::vector<std::pair<Spot, double>> placed_;
-};
-
-/// Points of each rung, joined by ascending x, with the step length beside each where there is room.
+/// Points of each rung, joined in the order of their step lengths; those are named where `labels` has room.
 void draw_series(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& rungs, double (*x_of)(const Point&),
-                 bool name_steps)
+                 Labels* labels)
 {
-    Labels labels;
+    std::vector<std::pair<Spot, std::string>> named;
     for (std::size_t k = 0; k < rungs.size(); ++k)
     {
         std::vector<const Point*> points;
         for (const Point& q : r.points)
-            if (q.combination.rung == rungs[k] && std::isfinite(q.error()) && std::isfinite(x_of(q)) && x_of(q) > 0) points.push_back(&q);
-        std::sort(points.begin(), points.end(), [&](const Point* a, const Point* b) { return x_of(*a) < x_of(*b); });
+            if (q.combination.rung == rungs[k] && std::isfinite(error_of(q)) && std::isfinite(x_of(q)) && x_of(q) > 0) points.push_back(&q);
+        std::stable_sort(points.begin(), points.end(), [&](const Point* a, const Point* b) { return a->record.dt > b->record.dt; });
         std::vector<Spot> line;
-        for (const Point* q : points) line.push_back(p.at(x_of(*q), shown(q->error())));
-        if (line.size() > 1) d.line(line, {ink_of(k), 1.5, false});
+        for (const Point* q : points) line.push_back(p.at(x_of(*q), shown(error_of(*q))));
+        if (line.size() > 1) d.line(line, {ink_of(k), 1.5, k >= Ink::kSeries});
         for (std::size_t i = 0; i < points.size(); ++i)
         {
             d.marker(line[i], shape_of(k), 5.5, ink_of(k), points[i]->is_resolved(), hint_of(r, *points[i]));
-            if (name_steps && !points[i]->combination.dt.empty()) labels.add(d, {line[i].x + 8, line[i].y - 7}, points[i]->combination.dt);
+            named.emplace_back(line[i], points[i]->combination.dt);
         }
     }
+    if (!labels) return;
+    for (const auto& [at, dt] : named) labels->occupy(at, 5);
+    for (const auto& [at, dt] : named)
+        if (!dt.empty()) labels->add(d, at, dt);
 }
 
 /// Runs that have a cost but no error stand at the upper edge.
@@ -138,7 +132,7 @@ void draw_failures(Drawing& d, const Panel& p, const StudyResult& r, const std::
 {
     for (const Point& q : r.points)
     {
-        if (std::isfinite(q.error()) || !(x_of(q) > 0) || !std::isfinite(x_of(q))) continue;
+        if (std::isfinite(error_of(q)) || !(x_of(q) > 0) || !std::isfinite(x_of(q))) continue;
         const Spot at{p.at(x_of(q), p.y.low).x, p.top + 8};
         const Ink ink = ink_of(rung_index(rungs, q));
         const std::string hint = q.combination.label() + ": " + std::string(name_of(q.record.outcome)) + "\n" + q.record.why;
@@ -155,7 +149,7 @@ std::vector<std::pair<double, double>> errors_by_step(const StudyResult& r, cons
     const double floor = 10 * std::max(kRoundOff, uncertainty_of(r));
     std::vector<std::pair<double, double>> out;
     for (const Point& q : r.points)
-        if (q.combination.rung == rung && q.error() > floor && std::isfinite(q.error())) out.emplace_back(q.record.dt, q.error());
+        if (q.combination.rung == rung && q.error() > floor && std::isfinite(error_of(q))) out.emplace_back(q.record.dt, q.error());
     std::sort(out.begin(), out.end());
     return out;
 }
@@ -165,11 +159,27 @@ bool near(const std::pair<double, double>& a, const std::pair<double, double>& b
     return a.first == b.first && std::fabs(std::log(a.second / b.second)) < 0.1;
 }
 
+/// The step lengths as they were written, where there are few; else none.
+std::vector<Mark> step_marks(const StudyResult& r, const Scale& x)
+{
+    constexpr std::size_t kMost = 8;
+    std::vector<Mark> out;
+    for (const Point& q : r.points)
+    {
+        const bool there =
+            std::any_of(out.begin(), out.end(), [&](const Mark& m) { return std::fabs(x.at(m.value) - x.at(q.record.dt)) < 0.05; });
+        if (q.combination.dt.empty() || q.record.dt <= 0) return {};
+        if (!there) out.push_back({q.record.dt, q.combination.dt});
+    }
+    return out.size() <= kMost ? out : std::vector<Mark>();
+}
+
 /// A right triangle under the two shortest steps of a rung that are above round-off, with the slope that was seen.
-void draw_slope(Drawing& d, const Panel& p, const std::vector<std::pair<double, double>>& e, Ink ink)
+void draw_slope(Drawing& d, const Panel& p, const std::vector<std::pair<double, double>>& e, Ink ink, Labels& labels)
 {
     const double slope = std::log(e[1].second / e[0].second) / std::log(e[1].first / e[0].first);
-    if (!(slope > 0.3) || slope > 12) return;
+    // Less than that is no order: errors that a tolerance bounds.
+    if (!(slope > 0.7) || slope > 12) return;
     const double x0 = e[0].first, x1 = e[1].first, y0 = e[0].second / 1.6;
     const double y1 = y0 * std::pow(x1 / x0, slope);
     if (y0 < p.y.low || y1 > p.y.high) return;
@@ -177,8 +187,7 @@ void draw_slope(Drawing& d, const Panel& p, const std::vector<std::pair<double, 
            "slope between the two shortest steps above round-off");
     char text[16];
     std::snprintf(text, sizeof text, "%.2f", slope);
-    const Spot at = p.at(x1, std::sqrt(y0 * y1));
-    d.words({at.x + 6, at.y + 4}, text, {12, ink, Anchor::Start, true, false});
+    labels.add(d, p.at(x1, std::sqrt(y0 * y1)), text, 12, ink, true);
 }
 
 }  // namespace
@@ -215,15 +224,16 @@ Drawing work_precision(const StudyResult& r)
 {
     std::vector<double> costs, errors;
     for (const Point& q : r.points)
-        if (q.cpu_per_second() > 0) costs.push_back(milliseconds(q)), errors.push_back(shown(q.error()));
+        if (q.cpu_per_second() > 0) costs.push_back(milliseconds(q)), errors.push_back(shown(error_of(q)));
     const std::vector<std::string> rungs = rungs_of(r);
     Drawing d(kWidth, kHeight, "Error against CPU time: " + r.title);
     Panel p = panel_beside(widest(rungs), Scale::around(Scale::Kind::Log, costs), Scale::around(Scale::Kind::Log, errors));
-    draw_title(d, "Error against CPU time");
-    draw_unresolved(d, p, uncertainty_of(r));
+    draw_title(d, "Error against CPU time", r.title);
+    Labels labels;
     draw_panel(d, p, "CPU time, ms per simulated second", "largest error, whole series");
+    draw_unresolved(d, p, uncertainty_of(r), labels);
     draw_front(d, p, r);
-    draw_series(d, p, r, rungs, &milliseconds, true);
+    draw_series(d, p, r, rungs, &milliseconds, &labels);
     draw_failures(d, p, r, rungs, &milliseconds);
     draw_legend(d, p, rungs);
     return d;
@@ -233,24 +243,28 @@ std::optional<Drawing> convergence(const StudyResult& r)
 {
     std::vector<double> steps, errors;
     for (const Point& q : r.points)
-        if (std::isfinite(q.error())) steps.push_back(q.record.dt), errors.push_back(shown(q.error()));
+        if (std::isfinite(error_of(q))) steps.push_back(q.record.dt), errors.push_back(shown(error_of(q)));
     if (steps.empty() || std::all_of(steps.begin(), steps.end(), [&](double s) { return s == steps.front(); })) return {};
     const std::vector<std::string> rungs = rungs_of(r);
     Drawing d(kWidth, kHeight, "Error against step length: " + r.title);
     Panel p = panel_beside(widest(rungs), Scale::around(Scale::Kind::Log, steps), Scale::around(Scale::Kind::Log, errors));
-    draw_title(d, "Error against step length");
-    draw_unresolved(d, p, uncertainty_of(r));
+    draw_title(d, "Error against step length", r.title);
+    p.x_marks = step_marks(r, p.x);
+    Labels labels;
     draw_panel(d, p, "step length, s", "largest error, whole series");
+    draw_unresolved(d, p, uncertainty_of(r), labels);
     std::vector<std::pair<double, double>> drawn;
+    for (const Point& q : r.points)
+        if (std::isfinite(error_of(q))) labels.occupy(p.at(q.record.dt, shown(error_of(q))), 5);
     for (std::size_t k = 0; k < rungs.size(); ++k)
     {
         const auto e = errors_by_step(r, rungs[k]);
         // Rungs that lie upon one another share a triangle.
         if (e.size() < 2 || std::any_of(drawn.begin(), drawn.end(), [&](const auto& other) { return near(other, e[0]); })) continue;
-        draw_slope(d, p, e, ink_of(k));
+        draw_slope(d, p, e, ink_of(k), labels);
         drawn.push_back(e[0]);
     }
-    draw_series(d, p, r, rungs, &step_of, false);
+    draw_series(d, p, r, rungs, &step_of, nullptr);
     draw_failures(d, p, r, rungs, &step_of);
     draw_legend(d, p, rungs);
     return d;

@@ -16,7 +16,7 @@ Drawing work_precision(const StudyResult& result);
 std::optional<Drawing> convergence(const StudyResult& result);
 /// Energy that nobody put in, over time; the vertical axis is symlog.
 std::optional<Drawing> energy(const StudyResult& result);
-/// Digits by combination and quantity.
+/// Digits of the worst quantity by rung and step length; with one step length, by rung and quantity.
 Drawing digit_map(const StudyResult& result);
 
 /// A named picture of a study, ready to be written as FILE.svg and FILE.png.

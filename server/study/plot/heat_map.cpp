@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "study/plot/axes.h"
 #include "study/plot/figures.h"
@@ -72,8 +73,44 @@ Drawing heat_map(const std::string& title, const std::vector<std::string>& rows,
     return d;
 }
 
+namespace
+{
+
+Cell cell_of(const StudyResult& r, const study::Point& p, double error, const std::string& what)
+{
+    if (!p.record.ok()) return {std::nan(""), std::string(name_of(p.record.outcome)), p.record.why};
+    std::string hint = p.combination.label() + ", " + what + ": error " + short_number(error);
+    for (std::size_t k = 0; k < r.quantities.size() && k < p.errors.size(); ++k)
+        hint += "\n" + r.quantities[k].name + ": " + short_number(p.errors[k].series_absolute) + " " + r.quantities[k].unit;
+    return {digits(error), "", hint};
+}
+
+/// The place of a text among the others; at the end if it is new.
+std::size_t place_of(std::vector<std::string>& all, const std::string& text)
+{
+    const auto found = std::find(all.begin(), all.end(), text);
+    if (found == all.end()) return all.push_back(text), all.size() - 1;
+    return static_cast<std::size_t>(found - all.begin());
+}
+
+/// Rungs by step lengths: of the worst quantity.
+Drawing by_step(const StudyResult& r)
+{
+    std::vector<std::string> rows, columns;
+    for (const study::Point& p : r.points) place_of(rows, p.combination.rung), place_of(columns, p.combination.dt + " s");
+    std::vector<std::vector<Cell>> cells(rows.size(), std::vector<Cell>(columns.size(), Cell{std::nan(""), "", "not run"}));
+    for (const study::Point& p : r.points)
+        cells[place_of(rows, p.combination.rung)][place_of(columns, p.combination.dt + " s")] = cell_of(r, p, p.error(), "worst");
+    return heat_map("Correct digits: " + r.title, rows, columns, cells);
+}
+
+}  // namespace
+
 Drawing digit_map(const StudyResult& r)
 {
+    std::set<std::string> lengths;
+    for (const study::Point& p : r.points) lengths.insert(p.combination.dt);
+    if (lengths.size() > 1 && lengths.count("") == 0) return by_step(r);
     std::vector<std::string> rows, columns;
     for (const Quantity& q : r.quantities) columns.push_back(q.name);
     std::vector<std::vector<Cell>> cells;
@@ -82,16 +119,9 @@ Drawing digit_map(const StudyResult& r)
         rows.push_back(p.combination.label());
         std::vector<Cell>& row = cells.emplace_back();
         for (std::size_t k = 0; k < columns.size(); ++k)
-        {
-            Cell cell{k < p.errors.size() ? digits(p.errors[k].series) : std::nan(""), "", ""};
-            if (!p.record.ok()) cell = {std::nan(""), std::string(name_of(p.record.outcome)), p.record.why};
-            if (cell.hint.empty() && k < p.errors.size())
-                cell.hint = p.combination.label() + ", " + columns[k] + ": error " + short_number(p.errors[k].series) + ", that is " +
-                            short_number(p.errors[k].series_absolute) + " " + r.quantities[k].unit;
-            row.push_back(std::move(cell));
-        }
+            row.push_back(cell_of(r, p, k < p.errors.size() ? p.errors[k].series : std::nan(""), columns[k]));
     }
-    return heat_map("Correct digits", rows, columns, cells);
+    return heat_map("Correct digits: " + r.title, rows, columns, cells);
 }
 
 Drawing performance_profile(const std::string& title, const std::vector<std::string>& solvers, const std::vector<std::vector<double>>& cost)

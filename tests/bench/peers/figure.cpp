@@ -48,7 +48,8 @@ public:
         : drawing_(&drawing), points_(&result.points), metric_(metric)
     {
         const Metric& m = result.which.metrics[metric];
-        panel_ = {corner.x + kLeft, corner.y + kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom, {}, {}};
+        panel_.left = corner.x + kLeft, panel_.top = corner.y + kTop;
+        panel_.width = kWidth - kLeft - kRight, panel_.height = kHeight - kTop - kBottom;
         std::vector<double> costs, errors;
         for (const Point& p : *points_)
             if (p.counts(metric)) costs.push_back(cost_of(p)), errors.push_back(error_of(p));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -12,19 +11,10 @@ namespace plab::peers
 namespace
 {
 
-/// Below this a figure is rounding: two such figures are equal.
-constexpr double kRounding = 1e-15;
 /// An error has to be less than this share of the one before for a point to be ahead: settings that do the same differ by rounding.
 constexpr double kGain = 0.995;
 /// A figure that is no answer any more. Not a number compares as false as well.
 constexpr double kBlownUp = 1e6;
-
-std::string figure(double v)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", v);
-    return text;
-}
 
 /// For machines.
 std::string full(double v)
@@ -42,70 +32,6 @@ std::string quoted(const std::string& text)
 }
 
 std::string step_text(const Run& run) { return run.control.empty() ? run.step.text() : ""; }
-
-/// pLab's point of least error among those that cost no more; null: none is as cheap.
-const Point* best_within(const std::vector<Point>& points, std::size_t metric, double cost)
-{
-    const Point* best = nullptr;
-    for (const Point& p : points)
-        if (p.is_plab() && p.counts(metric) && p.cost <= cost && (best == nullptr || p.figures[metric] < best->figures[metric])) best = &p;
-    return best;
-}
-
-std::string verdict(double peer, double own)
-{
-    const double factor = std::fmax(peer, kRounding) / std::fmax(own, kRounding);
-    if (factor >= 1) return factor < 1.005 ? "even" : "leads " + figure(factor) + "x";
-    return "lags " + figure(1 / factor) + "x";
-}
-
-void summarize(const CaseResult& result, std::size_t metric, std::string& out)
-{
-    const Metric& m = result.which.metrics[metric];
-    out += "\n### " + result.which.title + ": " + m.text + (m.unit == "1" ? "" : ", " + m.unit) + "\n\n";
-    out += "| ms/s | peer | its error | pLab's best at no more cost | ms/s | its error | pLab |\n|---:|---|---:|---|---:|---:|---|\n";
-    const auto peers = front(result.points, metric, false);
-    for (const std::size_t i : peers)
-    {
-        const Point& peer = result.points[i];
-        const Point* own = best_within(result.points, metric, peer.cost);
-        out += "| " + figure(peer.cost) + " | " + peer.run.label() + " | " + figure(peer.figures[metric]) + " | ";
-        if (own == nullptr)
-            out += "none as cheap | | | lags |\n";
-        else
-            out += own->run.settings + (own->run.control.empty() ? " dt " + own->run.step.text() : " tol " + own->run.control) + " | " +
-                   figure(own->cost) + " | " + figure(own->figures[metric]) + " | " + verdict(peer.figures[metric], own->figures[metric]) +
-                   " |\n";
-    }
-    if (peers.empty()) out += "| | no peer has a point | | | | | |\n";
-    std::string own_front;
-    for (const std::size_t i : front(result.points, metric, true))
-    {
-        const Point& p = result.points[i];
-        own_front += (own_front.empty() ? "" : "; ") + figure(p.cost) + " → " + figure(p.figures[metric]) + " (" + p.run.settings + " " +
-                     (p.run.control.empty() ? p.run.step.text() : p.run.control) + ")";
-    }
-    out += "\npLab's front, ms/s → error: " + (own_front.empty() ? "none" : own_front) + ".\n";
-}
-
-/// One line per settings and reason.
-void tell_failures(const CaseResult& result, std::string& out)
-{
-    for (const std::string& note : result.notes) out += "- " + note + "\n";
-    std::vector<std::pair<std::string, std::string>> told;  // line, steps
-    for (const Point& p : result.points)
-    {
-        if (p.outcome == Outcome::Done) continue;
-        const std::string line = "- " + p.run.engine + " " + p.run.settings + ": " + name_of(p.outcome) + ", " + p.why;
-        const std::string step = p.run.control.empty() ? p.run.step.text() : p.run.control;
-        const auto place = std::find_if(told.begin(), told.end(), [&line](const auto& t) { return t.first == line; });
-        if (place == told.end())
-            told.emplace_back(line, step);
-        else
-            place->second += ", " + step;
-    }
-    for (const auto& [line, steps] : told) out += line + " (" + steps + ")\n";
-}
 
 }  // namespace
 
@@ -170,20 +96,6 @@ std::string json_of(const std::vector<CaseResult>& results)
         all.push_back({{"case", r.which.id}, {"title", r.which.title}, {"points", points}, {"notes", r.notes}});
     }
     return all.dump(1) + "\n";
-}
-
-std::string summary_of(const std::vector<CaseResult>& results)
-{
-    std::string out;
-    for (const CaseResult& r : results)
-    {
-        out += "\n## Case " + r.which.id + "\n";
-        for (std::size_t m = 0; m < r.which.metrics.size(); ++m) summarize(r, m, out);
-        std::string failures;
-        tell_failures(r, failures);
-        if (!failures.empty()) out += "\nLeft out or failed:\n\n" + failures;
-    }
-    return out;
 }
 
 }  // namespace plab::peers

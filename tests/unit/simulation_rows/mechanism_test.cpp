@@ -228,7 +228,7 @@ TEST_CASE("speeds that come together keep momentum, and their loss is booked")
     m.build();
     const double before = m.energy();
     std::vector<double> work(1, 0.0);
-    const auto report = m.rows.project_speeds(StepContext{}, &work);
+    const auto report = m.rows.project_speeds(StepContext{}, {&work, 1, {}, {}});
     CHECK(report.speed_error < 1e-15);
     CHECK(length(2 * m.host.bodies.velocity[0] + 3 * m.host.bodies.velocity[1] - Vec3{2, 4, 0}) < 1e-14);
     CHECK(m.energy() < before);

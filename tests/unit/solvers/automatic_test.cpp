@@ -1,7 +1,6 @@
-/// Solver/Automatic: the rule, its memory, and the bits of what it picks.
+/// Solver/Automatic: the rule, and the bits of what it picks.
 #include "objects/solvers/automatic.h"
 #include "objects/solvers/facts.h"
-#include "objects/solvers/runge_kutta4.h"
 #include "unit/solvers/problems.h"
 
 using namespace plab;
@@ -17,46 +16,63 @@ struct Automatic : Solver<AutomaticRows>
     std::string resolved() const { return rows.resolved[0]; }
 };
 
-void rk4(double h, DynamicSystem& system)
-{
-    StepContext context;
-    context.dt = h;
-    advance_runge_kutta4(context, 0, {}, system);
-}
+void rk4(double h, DynamicSystem& system) { advance_by_runge_kutta4(h, system); }
 
 Body::Law light_drag()
 {
     return [](double, const Body& b) { return Body::Load{-0.1 * b.velocity(), -0.001 * rotate(b.attitude(), b.spin_B())}; };
 }
 
-double measured(FakeSystem& system, double h)
+Stiffness measured(FakeSystem& system, double h)
 {
-    std::vector<double> v[7];
-    return measure_stiffness(system, h, {v[0], v[1], v[2], v[3], v[4], v[5], v[6]});
+    StageSlopes slopes(system);
+    find_slopes(h, system, slopes);
+    return stiffness_of(system, h, slopes);
+}
+
+/// m = 1 on k = 1e6, and beside it in one group a large slow motion.
+Points hidden_spring(double moved)
+{
+    return Points({moved, 5}, {0, 3}, [](double, const auto& q, const auto&, auto& a) { a[0] = -1e6 * q[0], a[1] = -9.81 - 4 * q[1]; });
 }
 
 }  // namespace
 
-TEST_CASE("stiffness is measured: springs by frequency, dampers by rate, whatever the units")
+TEST_CASE("stiffness is what the slopes show: springs by frequency, dampers by rate, whatever the units")
 {
-    for (const double k : {1.0, 1e4, 1e8, 1e12})
+    for (const double k : {1e4, 1e6, 1e8, 1e12})
     {
         Points spring = damped_spring(k, 0.05);
-        CHECK(measured(spring, 0.01) == doctest::Approx(std::sqrt(k)).epsilon(0.02));
+        const double ratio = measured(spring, 0.01).value / (0.01 * std::sqrt(k));
+        CHECK(ratio > 0.7);
+        CHECK(ratio < 1.5);
     }
     Points drag({0}, {3}, [](double, const auto&, const auto& v, auto& a) { a[0] = -1e6 * v[0]; });
-    CHECK(measured(drag, 0.01) == doctest::Approx(1e6).epsilon(0.01));
-    Points chain({0, 0, 0}, {0, 0, 0},
+    CHECK(measured(drag, 0.01).value == doctest::Approx(1e4).epsilon(0.05));
+    Points chain({0.1, 0, 0}, {0, 0, 0},
                  [](double, const auto& q, const auto&, auto& a)
                  { a[0] = -1e6 * (q[0] - q[1]), a[1] = -1e6 * (2 * q[1] - q[0] - q[2]), a[2] = -1e6 * (q[2] - q[1]); });
-    CHECK(measured(chain, 0.01) == doctest::Approx(std::sqrt(3e6)).epsilon(0.2));
+    CHECK(measured(chain, 0.01).too_much);
+    Points soft_chain({0.1, 0, 0}, {0, 0, 0},
+                      [](double, const auto& q, const auto&, auto& a)
+                      { a[0] = -(q[0] - q[1]), a[1] = -(2 * q[1] - q[0] - q[2]), a[2] = -(q[2] - q[1]); });
+    CHECK(!measured(soft_chain, 0.1).too_much);
     Points free({0}, {3}, [](double, const auto&, const auto&, auto& a) { a[0] = -9.81; });
-    CHECK(measured(free, 0.01) == 0);
+    CHECK(measured(free, 0.01).value == 0);
     Amounts reaction({1, 0}, [](double, const auto& z, auto& r) { r[0] = -1e5 * z[0], r[1] = 1e5 * z[0]; });
-    CHECK(measured(reaction, 1) == doctest::Approx(1e5).epsilon(0.02));
+    CHECK(measured(reaction, 1).value == doctest::Approx(1e5).epsilon(0.1));
 }
 
-TEST_CASE("what is soft and slow gets the bits of RungeKutta4, and no word is lost about it")
+TEST_CASE("a stiff member is seen behind what moves more, and rounding is not")
+{
+    Points hidden = hidden_spring(1e-7);
+    CHECK(measured(hidden, 0.01).too_much);
+    // At rest far from the origin: what the slopes show is rounding of the places.
+    Points rest({1e6}, {0}, [](double, const auto& q, const auto&, auto& a) { a[0] = -100 * (q[0] - 1e6) - 1e-14 * q[0]; });
+    CHECK(!measured(rest, 0.01).too_much);
+}
+
+TEST_CASE("what is soft and slow gets the bits of RungeKutta4 at its price, and no word is lost about it")
 {
     Automatic automatic;
     Points a = driven_oscillator(), b = driven_oscillator();
@@ -66,7 +82,7 @@ TEST_CASE("what is soft and slow gets the bits of RungeKutta4, and no word is lo
     CHECK(a.work == b.work);
     CHECK(automatic.resolved() == "RungeKutta4");
     CHECK(automatic.events.all.empty());
-    CHECK(a.evaluations < b.evaluations * 1.2);
+    CHECK(a.evaluations == b.evaluations + 4);  // the first step is looked at before it is made
     Automatic slow;
     Body c(diagonal(kBoxInertia), {1, 2, 3}, light_drag()), d(diagonal(kBoxInertia), {1, 2, 3}, light_drag());
     c.run(0.01, 100, std::ref(slow)), d.run(0.01, 100, rk4);
@@ -93,57 +109,88 @@ TEST_CASE("free flight is exact, fast spin is split, stiff springs are exponenti
     spring.run(0.01, 30, std::ref(c));
     CHECK(c.resolved() == "Exponential");
     CHECK(std::fabs(spring.place[0] - damped_place(1e6, 0.05, 0.3)) < 1e-12);
-    CHECK(c.rows.stiffness[0] == doctest::Approx(10).epsilon(0.05));
+    CHECK(spring.work == doctest::Approx(0.5 * spring.speed() * spring.speed()).epsilon(1e-9).scale(0.5e6));
+    CHECK(spring.booked == doctest::Approx(30).epsilon(1e-12));
 
     Amounts reaction({2, 0}, [](double, const auto& y, auto& f) { f[0] = y[1], f[1] = ((1 - y[0] * y[0]) * y[1] - y[0]) / 1e-6; });
     reaction.run(0.5, 4, std::ref(d));
-    CHECK(d.resolved() == "Radau5");
+    CHECK(d.resolved().find("Radau5") != std::string::npos);
     CHECK(reaction[0] == doctest::Approx(0.1706167732170483e1).epsilon(1e-8));
 }
 
-TEST_CASE("the choice falls only when less was needed for a whole window, and does not flutter")
+TEST_CASE("a stiff spring that wakes up long after the start does not blow up for one step")
 {
-    // A spin that drag brakes from h |w| = 0.1 through the bounds 0.05 and 0.0125.
     Automatic automatic;
-    Body b(Mat3::diagonal(1, 1, 1), {0, 0, 10}, [](double, const Body& body) { return Body::Load{{}, -1.0 * body.momentum()}; });
-    b.run(0.01, 70, std::ref(automatic));
-    CHECK(b.spin_B().z * 0.01 < 0.05);
-    CHECK(automatic.resolved() == "RotationSplitting");
-    b.run(0.01, 300, std::ref(automatic));
-    CHECK(automatic.resolved() == "RungeKutta4");
+    // Slack until t = 0.3, h w = 100 afterwards.
+    Points p({1}, {0}, [](double t, const auto& q, const auto&, auto& a) { a[0] = t < 0.305 ? 0.0 : -1e8 * q[0]; });
+    double most = 0;
+    for (int i = 0; i < 100; ++i) p.run(0.01, 1, std::ref(automatic)), most = std::fmax(most, std::fabs(p.place[0]));
+    CHECK(most < 1.0001);
+    CHECK(0.5 * p.speed() * p.speed() + 0.5e8 * p.place[0] * p.place[0] == doctest::Approx(0.5e8).epsilon(1e-5));
     CHECK(automatic.events.count("solver.chosen") == 2);
+    CHECK(p.booked == doctest::Approx(100).epsilon(1e-12));  // the step that was taken back is not in the books
 }
 
-TEST_CASE("trials and pieces of a step use the choice and do not change it")
+TEST_CASE("a stiff spring beside a large slow motion stays where it is")
 {
-    Automatic automatic;
-    Points soft = damped_spring(1, 0.05), stiff = damped_spring(1e8, 0.05);
-    soft.run(0.01, 1, std::ref(automatic));
-    automatic.trial = true;
-    stiff.run(0.01, 1, std::ref(automatic));
-    automatic.trial = false;
-    CHECK(automatic.rows.choice[0] == static_cast<std::int64_t>(Choice::RungeKutta4));
-    CHECK(automatic.events.all.empty());
-    // A piece of the same step: the host's tick stays.
-    automatic.tick = 0;
-    Points again = damped_spring(1e8, 0.05);
-    again.run(0.004, 1, std::ref(automatic));
-    CHECK(automatic.rows.choice[0] == static_cast<std::int64_t>(Choice::RungeKutta4));
+    for (const double moved : {0.0, 1e-9, 1e-5})
+    {
+        CAPTURE(moved);
+        Automatic automatic;
+        Points p = hidden_spring(moved);
+        double most = 0;
+        for (int i = 0; i < 300; ++i) p.run(0.01, 1, std::ref(automatic)), most = std::fmax(most, std::fabs(p.place[0]));
+        CHECK(most < 3 * moved + 5e-6);  // what passes unseen is a small part of what hides it
+        const double t = 3, mean = -9.81 / 4;
+        CHECK(p.place[1] == doctest::Approx(mean + (5 - mean) * std::cos(2 * t) + 1.5 * std::sin(2 * t)).epsilon(1e-7));
+    }
 }
 
-TEST_CASE("groups that share a component share the most demanding choice")
+TEST_CASE("the choice depends on the start of the advance alone: trials, pieces and other groups do not change it")
 {
-    Automatic automatic;
-    Points soft = damped_spring(1, 0.05), stiff = damped_spring(1e8, 0.05);
+    Automatic automatic, alone;
+    Points stiff = damped_spring(1e8, 0.05), same = damped_spring(1e8, 0.05), soft = damped_spring(1, 0.05), slow = damped_spring(1, 0.05);
     for (Tick tick = 0; tick < 40; ++tick)
-        for (Points* p : {&soft, &stiff})
-        {
-            automatic.tick = tick;
-            p->run(0.01, 1, std::ref(automatic));
-            if (tick > 0) CHECK(automatic.rows.choice[0] == static_cast<std::int64_t>(Choice::Exponential));
-        }
+    {
+        automatic.tick = alone.tick = tick, soft.run(0.01, 1, std::ref(automatic));
+        automatic.tick = tick, automatic.trial = true;
+        Points tried = stiff;
+        tried.run(0.003, 1, std::ref(automatic));
+        automatic.tick = tick, automatic.trial = false;
+        stiff.run(0.01, 1, std::ref(automatic)), same.run(0.01, 1, std::ref(alone)), slow.run(0.01, 1, rk4);
+    }
+    CHECK(stiff.place == same.place);
+    CHECK(soft.place == slow.place);
+    CHECK(automatic.resolved() == "RungeKutta4, Exponential");
     CHECK(automatic.events.count("solver.chosen") == 1);
-    CHECK(soft.place[0] == doctest::Approx(damped_place(1, 0.05, 0.4)).epsilon(1e-9));
+    CHECK(automatic.rows.reason[0].find("Exponential: |h lambda| = ") == 0);
+}
+
+TEST_CASE("a trial leaves no trace")
+{
+    Automatic trial;
+    trial.trial = true;
+    Points p = damped_spring(1e8, 0.05);
+    p.run(0.01, 3, std::ref(trial));
+    CHECK(trial.resolved().empty());
+    CHECK(trial.rows.methods[0] == 0);
+    CHECK(std::fabs(p.place[0] - damped_place(1e8, 0.05, 0.03)) < 1e-10);
+}
+
+TEST_CASE("stiff, bending and large: explicit internal steps, and a word about the size")
+{
+    Automatic automatic;
+    const std::size_t n = 101;
+    Points p(std::vector<double>(n, 0.5), std::vector<double>(n, 0.0),
+             [](double, const auto& q, const auto&, auto& a)
+             {
+                 for (std::size_t i = 0; i < q.size(); ++i) a[i] = -1e6 * q[i] * q[i] * q[i];
+             });
+    p.run(0.01, 2, std::ref(automatic));
+    CHECK(automatic.resolved() == "DormandPrince54");
+    REQUIRE(automatic.events.count("solver.chosen") == 1);
+    CHECK(automatic.events.all[0].message.find("202 numbers") != std::string::npos);
+    CHECK(0.5 * p.speed() * p.speed() + 0.25e6 * std::pow(p.place[0], 4) == doctest::Approx(0.25e6 / 16).epsilon(1e-7));
 }
 
 TEST_CASE("joints: no closed forms and no splitting")
@@ -153,17 +200,4 @@ TEST_CASE("joints: no closed forms and no splitting")
     b.constrained = true;
     b.run(0.01, 3, std::ref(automatic));
     CHECK(automatic.resolved() == "RungeKutta4");
-}
-
-TEST_CASE("a spin that swings about the bound does not make the choice flutter")
-{
-    Automatic automatic;
-    // h |w| between 0.03 and 0.07, 100 steps to a swing.
-    Body b(Mat3::diagonal(1, 1, 1), {0, 0, 5},
-           [](double t, const Body&) {
-               return Body::Load{{}, {0, 0, 4 * M_PI * std::cos(2 * M_PI * t)}};
-           });
-    b.run(0.01, 1000, std::ref(automatic));
-    CHECK(automatic.resolved() == "RotationSplitting");
-    CHECK(automatic.events.count("solver.chosen") == 1);
 }

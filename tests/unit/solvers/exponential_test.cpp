@@ -99,6 +99,36 @@ TEST_CASE("a jump of the wind on stiff drag is exact, and so is drive that is li
     CHECK(solver.rows.linear[0]);
 }
 
+TEST_CASE("the books of linear forces close, however many turns a step holds, at a bounded price")
+{
+    for (const double k : {1e2, 1e6, 1e12})
+        for (const double h : {0.01, 1.0})
+        {
+            CAPTURE(k);
+            CAPTURE(h);
+            const double c = 1e-3 * std::sqrt(k);
+            Exponentials solver;
+            Points p({1, 7, 3}, {0, 0, 0},
+                     [=](double t, const auto& q, const auto& v, auto& a) { a[0] = -k * q[0] - c * v[0] - 9.81 + t, a[1] = 0, a[2] = 0; });
+            p.run(h, 3, std::ref(solver));
+            CHECK(std::fabs(p.work - 0.5 * p.speed() * p.speed()) < 1e-11 * k);
+            CHECK(p.booked == doctest::Approx(3).epsilon(1e-12));
+            CHECK(solver.rows.evaluations[0] <= 17);  // 2 of 6 numbers move
+        }
+}
+
+TEST_CASE("a stop that the motion does not reach is not felt, not even by the books")
+{
+    Exponentials solver;
+    const auto law = [](double, const auto& q, const auto&, auto& a)
+    { a[0] = -1e4 * q[0] - (q[0] > 0.01001 ? 1e9 * q[0] : 0.0), a[1] = -1e4 * (q[1] - q[0]); };
+    Points p({0.01, 0}, {0, 0}, law);
+    p.run(0.05, 20, std::ref(solver));
+    const double energy = 0.5 * p.speed() * p.speed();
+    CHECK(std::fabs(p.place[0] - 0.01 * std::cos(100.0)) < 1e-10);
+    CHECK(energy == doctest::Approx(0.5e4 * (1e-4 - p.place[0] * p.place[0])).epsilon(1e-8));
+}
+
 TEST_CASE("forces that bend: order 4, and books of order 4")
 {
     const auto run = [](int steps)
@@ -145,11 +175,18 @@ TEST_CASE("large groups and overflow go to Radau5, told once")
 {
     Exponentials solver;
     solver.rows.max_size[0] = 3;
-    Points p({1, 0}, {0, 0}, [](double, const auto& q, const auto&, auto& a) { a[0] = -q[0], a[1] = -q[1]; });
+    Points p({1, 2}, {0, 0}, [](double, const auto& q, const auto&, auto& a) { a[0] = -q[0], a[1] = -q[1]; });
     p.run(0.5, 2, std::ref(solver));
     CHECK(p.place[0] == doctest::Approx(std::cos(1.0)).epsilon(1e-8));
     CHECK(solver.rows.told.resolved[0] == "Radau5");
-    CHECK(solver.events.count("solver.fell_back") == 1);
+    REQUIRE(solver.events.count("solver.fell_back") == 1);
+    CHECK(solver.events.all[0].message.find("4 numbers") != std::string::npos);
+    // What does not move is not counted.
+    Exponentials still;
+    still.rows.max_size[0] = 2;
+    Points q({1, 0}, {0, 0}, [](double, const auto& x, const auto&, auto& a) { a[0] = -x[0], a[1] = -x[1]; });
+    q.run(0.5, 2, std::ref(still));
+    CHECK(still.rows.told.resolved[0] == "Exponential");
 }
 
 TEST_CASE("derivatives by extrapolated differences are right to 1e-9")

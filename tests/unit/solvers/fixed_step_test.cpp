@@ -271,6 +271,29 @@ TEST_CASE("a needle keeps its fast spin in every splitting")
     CHECK(std::hypot(w.x - 0.1 * std::cos(rate), w.y - 0.1 * std::sin(rate)) < 2e-9);
 }
 
+TEST_CASE("a needle that spins across its length turns like the top it is, in every splitting")
+{
+    // I = (1e-12, 1, 1), 10 rad/s about z: the momentum is fixed, so the needle sweeps a cone about it.
+    const Mat3 inertia = Mat3::diagonal(1e-12, 1, 1);
+    const Vec3 w{0.1, 0.1, 10};
+    for (const int order : {2, 4})
+    {
+        Body needle(inertia, w, {}, true);
+        needle.run(1.0 / 60, 600, splitting(order));
+        CHECK(length(needle.momentum() - inertia * w) < 1e-11);
+        CHECK(length(needle.spin_B()) == doctest::Approx(length(w)).epsilon(1e-10));
+        // The same motion with a torque that is 0, so that it is kicked.
+        Body kicked(
+            inertia, w,
+            [](double, const Body& b) {
+                return Body::Load{-1.0 * b.place(), {}};
+            },
+            true);
+        kicked.run(1.0 / 60, 600, splitting(order));
+        CHECK(attitude_error(kicked.orientation, needle.orientation) < 1e-9);
+    }
+}
+
 TEST_CASE("the plugin declares the ladder")
 {
     Registrar registrar;

@@ -223,3 +223,17 @@ TEST_CASE("the implicit midpoint rule halves its step where it must, and says wh
     CHECK(lost.events.count("solver.failed") == 1);
     CHECK(nan.place[0] == 1);
 }
+
+TEST_CASE("a group that is large for dense matrices is named once, with its size")
+{
+    Radau solver(1e-6, 1e-9);
+    Amounts many(std::vector<double>(301, 1.0),
+                 [](double, const auto& y, auto& f)
+                 {
+                     for (std::size_t i = 0; i < y.size(); ++i) f[i] = -y[i];
+                 });
+    many.run(0.01, 2, std::ref(solver));
+    REQUIRE(solver.events.count("solver.large") == 1);
+    CHECK(solver.events.all[0].message.find("301 numbers") != std::string::npos);
+    CHECK(many[300] == doctest::Approx(std::exp(-0.02)).epsilon(1e-9));
+}

@@ -176,7 +176,7 @@ TEST_CASE("a scene that a closed form does not describe is refused, and why")
     CHECK(has(refusal(bounce, "slide"), "ball is no box"));
     CHECK(has(refusal(box, "bounce"), "nothing collides"));
     CHECK(has(refusal(box, "kepler"), "mu"));
-    CHECK(has(refusal(box, "gear-pair"), "0 couplings"));
+    CHECK(has(refusal(box, "gears"), "0 couplings"));
     CHECK(has(refusal(box, "torqe-free"), "did you mean 'torque-free'"));
     CHECK(has(refusal(box, "kepler:mu=fast"), "mu=fast"));
     const Scene pushed("<component id='m' type='State/RigidBody' mass='1' inertia='1 1 1'/>" + lua("driven='m'", "", ""));

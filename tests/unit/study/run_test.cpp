@@ -1,6 +1,8 @@
 // One run: what it notes is what the scene did, and a run that goes wrong is a record that says so.
 #include "study/run.h"
 
+#include <map>
+
 #include "publish/sampler.h"
 #include "study/observe.h"
 #include "study/settings.h"
@@ -100,6 +102,142 @@ TEST_CASE("the figures of a study are those that the server publishes live")
                 }
     }
     CHECK(record.momentum_change == doctest::Approx(length(sampler.sample(s, 9).momentum)));
+}
+
+namespace
+{
+
+model::SceneSpec compiled_file(const std::string& file)
+{
+    auto blueprint = blueprint::read_blueprint_file(std::string(PLAB_SOURCE_DIR) + "/" + file);
+    REQUIRE(blueprint.ok());
+    auto scene = model::compile(*blueprint, library());
+    REQUIRE(scene.ok());
+    return scene.take();
+}
+
+/// What an observer of the metrics adds up over a run.
+struct Live
+{
+    std::vector<publish::Metrics> samples;
+    double deepest = 0, residual = 0, violation = 0;
+    std::uint64_t evaluations = 0;
+    std::map<std::string, int> events;
+};
+
+Live watch(const model::SceneSpec& spec, int steps, int every)
+{
+    Live out;
+    simulation::Simulation s(library(), 1);
+    REQUIRE(s.load(spec).ok());
+    publish::Sampler sampler;
+    out.samples.push_back(sampler.sample(s, 1));
+    for (int n = 1; n <= steps; ++n)
+    {
+        s.step();
+        const publish::Metrics m = sampler.sample(s, 1 + n);
+        out.deepest = std::max(out.deepest, m.deepest), out.residual = std::max(out.residual, m.residual);
+        out.evaluations += s.stepper().report().evaluations;
+        for (const Event& e : s.events()) ++out.events[e.kind];
+        if (n % every != 0) continue;
+        for (const publish::InteractionMetrics& i : m.interactions)
+            if (i.requested.starts_with("Constraint/")) out.violation = std::max(out.violation, i.error);
+        out.samples.push_back(m);
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("live metrics and a study agree on energy, momenta, violation, evaluations and events, scene by scene")
+{
+    struct Run
+    {
+        const char* file;
+        int per_second, steps;
+        bool by_work;  ///< energy that nobody put in: kinetic less all work
+    };
+    for (const Run& run : {Run{"scenes/fan_and_balloons.xml", 240, 960, true}, Run{"scenes/studies/double_pendulum.xml", 120, 120, false},
+                           Run{"scenes/studies/bounce.xml", 120, 240, true}, Run{"scenes/studies/stack.xml", 60, 30, true},
+                           Run{"scenes/studies/spring_stand.xml", 240, 60, true}, Run{"scenes/studies/gear_train.xml", 120, 60, false}})
+    {
+        CAPTURE(run.file);
+        const model::SceneSpec spec = compiled_file(run.file);
+        const int every = run.steps / 10;
+        const Live live = watch(spec, run.steps, every);
+        RunOptions how;
+        for (int k = 0; k <= 10; ++k) how.sample_times.push_back(static_cast<double>(k * every) / run.per_second);
+        const RunRecord record = record_run(library(), spec, how);
+        REQUIRE(record.energy.energy.size() == live.samples.size());
+        double momentum = 0, spin = 0;
+        for (std::size_t k = 0; k < live.samples.size(); ++k)
+        {
+            const publish::Metrics &m = live.samples[k], &start = live.samples.front();
+            CHECK(record.energy.energy[k] == m.kinetic + m.stored);
+            if (run.by_work) CHECK(record.energy.drift[k] == doctest::Approx(m.unexplained).epsilon(1e-9));
+            momentum = std::max(momentum, length(m.momentum - start.momentum));
+            spin = std::max(spin, length(m.angular_momentum - start.angular_momentum));
+        }
+        CHECK(record.momentum_change == momentum);
+        CHECK(record.angular_momentum_change == spin);
+        CHECK(record.violation == live.violation);
+        CHECK(record.penetration == live.deepest);
+        CHECK(record.residual == live.residual);
+        CHECK(record.evaluations == live.evaluations);
+        CHECK(record.events == live.events);
+        CHECK(record.evaluations > 0);
+        for (const publish::InteractionMetrics& m : live.samples.back().interactions)
+            for (const PartFigures& part : record.parts)
+                if (part.id == m.component) CHECK(part.requested == m.requested);
+    }
+}
+
+TEST_CASE("a spring with a damper loses energy, and that is no error")
+{
+    const RunRecord record =
+        record_run(library(),
+                   compiled(kBall + "<component id='spring' type='Constraint/SpringDamper' b='ball' anchor_a='0 0 0' anchor_b='0 0 0' "
+                                    "length='0.5' stiffness='100' damping='2'/><component id='solver' type='Solver/RungeKutta4'/>"),
+                   options(2));
+    CHECK(record.energy.energy.back() < 0.1 * record.energy.energy.front());
+    for (const double d : record.energy.drift) CHECK(std::fabs(d) < 1e-4 * record.energy.scale);
+}
+
+TEST_CASE("a stiff spring at a long step blows up: told as that, and no further than that")
+{
+    const model::SceneSpec spec = compiled_file("scenes/studies/spring_stand.xml");
+    auto explicit_one = apply(spec, library(), {{"solver", "RungeKutta4"}, {"dt", "1/60"}});
+    REQUIRE(explicit_one.ok());
+    RunOptions how;
+    how.until = 2, how.quantities = {"table.position.z"};
+    const RunRecord blown = record_run(library(), *explicit_one, how);
+    CHECK(blown.outcome == Outcome::BlewUp);
+    CHECK(name_of(blown.outcome) == "blew up");
+    CHECK(blown.why.find("table") != std::string::npos);
+    CHECK(blown.reached < 2);
+    auto exponential = apply(spec, library(), {{"solver", "Exponential"}, {"dt", "1/60"}});
+    REQUIRE(exponential.ok());
+    CHECK(record_run(library(), *exponential, how).ok());
+}
+
+TEST_CASE("what does not converge goes on, and is counted as a warning; a solver that gives up has failed")
+{
+    const model::SceneSpec stack = compiled_file("scenes/studies/stack.xml");
+    auto few = apply(stack, library(), {{"manager", "SequentialImpulse"}, {"manager.max_iterations", "1"}});
+    REQUIRE(few.ok());
+    RunOptions how;
+    how.until = 0.5, how.quantities = {"cube20.position"};
+    const RunRecord loose = record_run(library(), *few, how);
+    CHECK(loose.ok());
+    CHECK(loose.residual > 1e-6);
+    CHECK(!loose.warnings.empty());
+    CHECK(!loose.first_warning.empty());
+    auto bound =
+        apply(compiled_file("scenes/studies/robertson.xml"), library(), {{"solver", "DormandPrince54"}, {"solver.max_substeps", "3"}});
+    REQUIRE(bound.ok());
+    how.quantities = {"reaction.values.2"};
+    const RunRecord gave_up = record_run(library(), *bound, how);
+    CHECK((!gave_up.ok() || !gave_up.warnings.empty()));
 }
 
 TEST_CASE("a run that goes wrong is a record with the reason")

@@ -216,6 +216,64 @@ TEST_CASE("bounces: exact with a resolution, late without")
     CHECK(r.points[0].contacts.worst_time_error > 1e-3);
 }
 
+TEST_CASE("auto: an uncertainty that holds where the error is known, for order 2 and for round-off")
+{
+    for (const auto& [solver, order] : {std::pair<std::string, double>{"StoermerVerlet", 2}, {"Exponential", 0}})
+    {
+        CAPTURE(solver);
+        Plan p = plan("scenes/studies/oscillator.xml", {"solver=" + solver, "dt=1/120"}, "auto", {"mass.position.x"}, 2);
+        const StudyResult r = study_of(p);
+        p.reference = parse_reference("exact:oscillator");
+        const StudyResult exact = study_of(p);
+        const Distance error = distance(r.quantities[0], r.reference.courses[0], exact.reference.courses[0], exact.reference.scale[0]);
+        if (order > 0) CHECK(r.reference.order[0] == doctest::Approx(order).epsilon(0.05));
+        CHECK(error.series <= std::max(r.reference.uncertainty[0].series, exact.reference.uncertainty[0].series));
+    }
+}
+
+TEST_CASE("a list of numbers: all of it, or one; the name that plabd's trace has")
+{
+    const StudyResult r =
+        study_of(plan("scenes/studies/robertson.xml", {"solver=Radau5", "dt=1/10"}, "none", {"reaction.values", "reaction.values.2"}, 1));
+    REQUIRE(r.quantities.size() == 2);
+    CHECK(r.quantities[0].width == 3);
+    CHECK(r.quantities[0].column(2) == "reaction.values.3");
+    CHECK(r.quantities[1].width == 1);
+    const Course &all = r.points[0].record.courses[0], &second = r.points[0].record.courses[1];
+    CHECK(all.at(all.samples() - 1)[1] == second.values.back());
+    CHECK(near(all.at(all.samples() - 1)[0] + all.at(all.samples() - 1)[1] + all.at(all.samples() - 1)[2], 1, 1e-12));
+    CHECK(has(run_study(library(), plan("scenes/studies/robertson.xml", {}, "none", {"reaction.values.4"}, 1)).error().text(), "values"));
+}
+
+TEST_CASE("the response by rows gets its manager, which can be chosen and set")
+{
+    const model::SceneSpec scene = scene_of("scenes/studies/bounce.xml");
+    const auto done = apply(scene, library(),
+                            {{"contact.response", "Rows"},
+                             {"contact.response.manager", "SoftStep"},
+                             {"contact.response.manager.substeps", "4"},
+                             {"contact.resolution", "None"}});
+    REQUIRE_MESSAGE(done.ok(), (done ? "" : done.error().text()));
+    REQUIRE(done->find("contact.response.manager") != nullptr);
+    CHECK(done->find("contact.response.manager")->type == "Manager/SoftStep");
+    simulation::Simulation s(library(), 1);
+    CHECK(s.load(*done).ok());
+}
+
+TEST_CASE("a run that is lost is no small error: it is named, left out of the front, and timed up to there")
+{
+    const StudyResult r = study_of(plan("scenes/studies/spring_stand.xml", {"solver=RungeKutta4,Exponential", "dt=1/60,1/7680"},
+                                        "exact:oscillator", {"table.position.z"}, 0.1));
+    CHECK(r.points[0].record.outcome == Outcome::BlewUp);
+    CHECK(r.points[0].cpu_min > 0);
+    CHECK(r.points[1].record.ok());
+    CHECK(r.points[2].error() < 1e-9);
+    CHECK(r.points[1].error() < 1e-3);
+    const auto told = findings(r);
+    CHECK(std::any_of(told.begin(), told.end(),
+                      [](const auto& s) { return has(s, "One run gave no result (blew up): RungeKutta4 at 1/60 s"); }));
+}
+
 TEST_CASE("nothing to study is an error that says what would be right")
 {
     const std::string file = "scenes/studies/projectile.xml";

@@ -1,0 +1,67 @@
+/// Tells of solid bodies that do not keep one another out. Two events, both warnings:
+///
+/// contact.missed: one passed through another between two looks. Sign: seen from the other body's shape, the way of a body's centre of mass
+/// from the start of the step to its end, taken as straight, crosses the shape, and neither end is inside. Solid bodies do not do that,
+/// however fast they are. Looked at for bodies that collide with one another, for those that move farther in the step than half their own
+/// least width, and only where neither was turned aside within the step (way = speed times step, to a tenth).
+///
+/// contact.deep: one sinks into another. Sign: at the end of kDeepSteps steps in a row an overlap is more than kDeep of half the least
+/// width of one of the two, where contacts are answered by impulses or rows. (How deep a spring gives way is its stiffness' choice, and its
+/// output.)
+///
+/// Balls and boxes are tested as they are, capsules and cylinders by a box inside them; half-spaces cannot be passed, meshes, hulls and
+/// compounds are not tested. Not part of the state: neither saved nor hashed, and it changes nothing.
+#pragma once
+
+#include <vector>
+
+#include "plab/context.h"
+#include "plab/tables.h"
+
+namespace plab::simulation
+{
+
+class Simulation;
+
+class TunnelWatch
+{
+public:
+    /// The structure has changed: who collides with whom is looked up anew.
+    void begin_anew() { ready_ = false; }
+    void before_step(const Simulation& s);
+    /// Adds to `events`; once per body until begin_anew().
+    void after_step(const Simulation& s, std::vector<Event>& events);
+
+private:
+    struct Place
+    {
+        Vec3 position;
+        Quat orientation;
+    };
+    struct Sinking
+    {
+        Tick last = -2;  ///< step at whose end it was deep
+        int steps = 0;   ///< in a row
+    };
+    struct Crowd
+    {
+        std::uint32_t detector = kNoIndex;  ///< component
+        std::vector<std::uint32_t> bodies;
+        bool certified = false;  ///< its resolution sees whatever happens inside the step: bodies bounce round one another
+    };
+
+    void look_up(const Simulation& s);
+    void look(const Simulation& s, const Crowd& crowd, std::uint32_t body, std::vector<Event>& events);
+    void look_for_overlaps(const Simulation& s, std::vector<Event>& events);
+    bool passed(const Simulation& s, std::uint32_t body, std::uint32_t other) const;
+
+    bool ready_ = false;
+    std::vector<Crowd> crowds_;
+    std::vector<Place> start_;         ///< by body
+    std::vector<double> least_width_;  ///< half of it, by body, m
+    std::vector<std::uint8_t> told_;   ///< by body
+    std::vector<Sinking> sinking_;     ///< by body
+    double shallow_ = 0;               ///< m: no overlap up to here is deep for anybody
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,47 @@
+/// Scenes and measures that the tests of solvers share.
+#pragma once
+
+#include "support/scene.h"
+
+namespace plab::test
+{
+
+/// A rung as a table names it: type without "Solver/", and attributes.
+struct SolverRung
+{
+    std::string type;
+    std::string attributes = {};
+};
+
+inline std::string solver(const SolverRung& rung)
+{
+    return "<component id=\"solver\" type=\"Solver/" + rung.type + "\" " + rung.attributes + "/>";
+}
+
+inline std::string per_second(int steps) { return "dt=\"1/" + std::to_string(steps) + "\""; }
+
+inline double observed_order(double coarse, double fine) { return std::log2(coarse / fine); }
+
+/// w_WB in B, rad/s.
+inline Vec3 body_spin(const Scene& s, const std::string& body)
+{
+    return rotate_back(s.quat(body, "orientation"), s.vec(body, "angular_velocity"));
+}
+
+/// m x'' = -k x - c x' along x; the spring hangs so far away that its length is never 0.
+inline std::string spring_scene(const SolverRung& rung, double k, double c, double start = 1)
+{
+    const auto number = [](double v)
+    {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.17g", v);
+        return std::string(text);
+    };
+    return solver(rung) + "<component id=\"mass\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"" + number(start) +
+           " 0 0\"/><component id=\"spring\" type=\"Constraint/SpringDamper\" b=\"mass\" anchor_a=\"-2 0 0\" anchor_b=\"0 0 0\" "
+           "length=\"2\""
+           " stiffness=\"" +
+           number(k) + "\" damping=\"" + number(c) + "\"/>";
+}
+
+}  // namespace plab::test

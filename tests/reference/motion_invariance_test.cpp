@@ -1,0 +1,129 @@
+// A11 and A13. A11: two tumbling bodies on a spring, translated by 1e7 m, boosted by 1e3 m/s, turned: the same relative motion.
+// A13: bodies that drag brings to rest, to e^-1500: zeros at the end, never denormal numbers, whose arithmetic costs a hundredfold.
+//
+// A11, after 2 s       translated 1e7 m   boosted 1e3 m/s   turned
+//   explicit, Automatic  1e-7 m           1e-10 m           1e-12 m   (the aim; a place is held to 1.9e-9 m there)
+//   DormandPrince54      1e-7 m           1e-9 m            1e-10 m   (its tolerance)
+//   Radau5               1e-7 m           1e-7 m            1e-8 m    (its tolerance)
+//   ImplicitMidpoint     5e-7 m           1e-10 m           1e-11 m   (its iteration ends in the rounding of places)
+//   Exponential          2e-4 m           1e-10 m           1e-11 m   (derivatives are differences of rounded places)
+#include <limits>
+
+#include "reference/motion.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+struct Frame
+{
+    Vec3 shift, boost;
+    Quat turn;
+};
+
+std::string text(const Vec3& v)
+{
+    char out[96];
+    std::snprintf(out, sizeof out, "%.17g %.17g %.17g", v.x, v.y, v.z);
+    return out;
+}
+
+std::string text(const Quat& q)
+{
+    char out[128];
+    std::snprintf(out, sizeof out, "%.17g %.17g %.17g %.17g", q.w, q.x, q.y, q.z);
+    return out;
+}
+
+std::string body(const std::string& id, const Frame& f, const Vec3& place, const Vec3& speed, const Vec3& spin)
+{
+    return "<component id=\"" + id + "\" type=\"State/RigidBody\" mass=\"1\" inertia=\"0.2 0.3 0.4\" position=\"" +
+           text(f.shift + rotate(f.turn, place)) + "\" orientation=\"" + text(f.turn) + "\" linear_velocity=\"" +
+           text(f.boost + rotate(f.turn, speed)) + "\" angular_velocity=\"" + text(rotate(f.turn, spin)) + "\"/>";
+}
+
+struct Relative
+{
+    Vec3 place;
+    Quat attitude;
+};
+
+/// Of b, in the frame of the scene, after 2 s.
+Relative pair(const SolverRung& rung, const Frame& f)
+{
+    Scene s(solver(rung) + body("a", f, {}, {0, 0.1, 0}, {0.5, 1, 2}) + body("b", f, {1, 0, 0}, {0, -0.3, 0.2}, {2, 0.1, -1}) +
+                "<component id=\"spring\" type=\"Constraint/SpringDamper\" a=\"a\" b=\"b\" anchor_a=\"0.1 0 0\" anchor_b=\"-0.2 0.1 0\""
+                " stiffness=\"50\" damping=\"0.5\" length=\"0.8\"/>",
+            per_second(240));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(2);
+    const Quat back = conjugate(f.turn);
+    return {rotate(back, s.vec("b", "position") - s.vec("a", "position")), back * s.quat("b", "orientation")};
+}
+
+std::string braked(int n)
+{
+    std::string out;
+    for (int i = 0; i < n; ++i)
+        out += "<component id=\"b" + std::to_string(i) +
+               "\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" linear_velocity=\"1 2 3\""
+               " angular_velocity=\"0.1 0.2 0.3\"/>";
+    return out + "<component id=\"drag\" type=\"Field/Drag\" between=\"*\" linear=\"5\" rotational=\"5\"/>";
+}
+
+}  // namespace
+
+TEST_CASE("A11: the same relative motion wherever, however fast and whichever way")
+{
+    const Quat turn = normalized(Quat{0.3, -0.5, 0.7, 0.4});
+    struct Row
+    {
+        SolverRung rung;
+        double far, fast, turned;
+    };
+    const Row table[] = {
+        {{"SemiImplicitEuler"}, 1e-7, 1e-10, 1e-12}, {{"StoermerVerlet"}, 1e-7, 1e-10, 1e-12}, {{"RungeKutta4"}, 1e-7, 1e-10, 1e-12},
+        {{"RotationSplitting"}, 1e-7, 1e-10, 1e-12}, {{"Automatic"}, 1e-7, 1e-10, 1e-12},      {{"ImplicitMidpoint"}, 5e-7, 1e-10, 1e-11},
+        {{"DormandPrince54"}, 1e-7, 1e-9, 1e-10},    {{"Radau5"}, 1e-7, 1e-7, 1e-8},           {{"Exponential"}, 2e-4, 1e-10, 1e-11}};
+    for (const Row& row : table)
+    {
+        const SolverRung& rung = row.rung;
+        CAPTURE(rung.type);
+        const Relative here = pair(rung, {});
+        const auto apart = [&](const Frame& f)
+        {
+            const Relative there = pair(rung, f);
+            return std::fmax(distance(here.place, there.place), attitude_error(here.attitude, there.attitude));
+        };
+        const double far = apart({{1e7, -1e7, 1e7}, {}, {}}), fast = apart({{}, {1e3, 0, -1e3}, {}}), turned = apart({{}, {}, turn});
+        MESSAGE(rung.type << ": " << far << " " << fast << " " << turned);
+        CHECK(far < row.far);
+        CHECK(fast < row.fast);
+        CHECK(turned < row.turned);
+    }
+}
+
+TEST_CASE("A13: motion dies away as e^-5t, ends in zeros before numbers become denormal, and steps stay what they are")
+{
+    for (const SolverRung& rung : {SolverRung{"RungeKutta4"}, SolverRung{"Automatic"}, SolverRung{"StoermerVerlet"}})
+    {
+        CAPTURE(rung.type);
+        Scene s(solver(rung) + braked(20), per_second(50));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.step(2);  // Automatic looks twice at the first one
+        const auto evaluations = s.simulation().stepper().report().evaluations;
+        s.run(10);
+        CHECK(s.vec("b7", "linear_velocity").x == doctest::Approx(std::exp(-50.0)).epsilon(0.05));
+        while (s.simulation().time() < 300)
+        {
+            s.step();
+            const Vec3 v = s.vec("b7", "linear_velocity"), w = s.vec("b7", "angular_velocity");
+            for (const double number : {v.x, v.y, v.z, w.x, w.y, w.z})
+                REQUIRE((number == 0 || std::fabs(number) > std::numeric_limits<double>::min()));
+        }
+        CHECK(s.vec("b7", "linear_velocity") == Vec3{});
+        CHECK(s.simulation().stepper().report().evaluations == evaluations);
+    }
+}

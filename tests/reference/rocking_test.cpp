@@ -1,0 +1,175 @@
+// Rocking and walking on edges: contacts that are taken over by others. C23 (Housner's block), C24 (rimless wheel).
+//
+// C23: half-diagonal 1, alpha = .2, let go at theta = .1. I_o theta'' = -m g R sin(alpha - theta): quarter period
+// .48608973195735393546 s, spin at the impact .46883536463483484333 rad/s (quadrature and energy, mpmath, 40 digits; the small-angle
+// formula gives .4855195874 s). At the impact the old edge lets go: w'/w = 1 - 1.5 sin^2(alpha).
+// C24: eight spokes of 1 m, slope .08, mass 1 at the hub, with a small inertia I about its axle (a point would spin freely):
+//   w+ = r w-,  r = (I + cos 45) / (I + 1);   w-^2 = w+^2 + 2 g (cos(.08 - pi/8) - cos(.08 + pi/8)) / (1 + I)
+// fixed point 1.0954628 and contraction of w^2 cos^2 45 = .5 for I = 0; 1.0958222331616213, .50041388537773225 for I = 1e-3.
+//
+// | problem | rung                                    | bound                                                               |
+// |---------|-----------------------------------------|---------------------------------------------------------------------|
+// | C23     | impact alone, all that locate           | w'/w to 1e-6 (started 1e-7 rad ahead of it)                         |
+// |         | quarter period, located + Impulse       | .15 h: an edge that stands is stepped with order 1 (asserted)       |
+// |         | located + Rows                          | .45 h                                                               |
+// |         | None + Impulse; None, Speculative + Rows| 1.15 h; 3 h: a step late, and the edge trembles                     |
+// | C24     | located + Impulse; None + Rows          | fixed point to 12 h rad/s (order 1), contraction .5 -+ .1 at h = .001 |
+// |         | Speculative, LocalRoot + Rows           | 0.1 rad/s: a spoke's two corners may come down one step apart        |
+//
+// Aims not reached: the fixed point to more digits. Standing contacts are held at the level of speeds, with order 1.
+#include <algorithm>
+#include <numbers>
+
+#include "impacts.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+constexpr double kAlpha = 0.2, kQuarter = .48608973195735393546;
+
+/// A block on two plates, so that each edge meets a body of its own and its impact can be located; turned about the edge at the
+/// origin by `tilt` from standing flat, spinning with `spin` towards flat. The plates reach `under` (m) below it: where that is much,
+/// it comes to lie on their ends as well as on its edge, and what the impact leaves is not Housner's.
+std::string block(double tilt, double spin, double under, const Rung& rung)
+{
+    const Vec3 arm{-std::sin(kAlpha - tilt), 0, std::cos(kAlpha - tilt)};
+    const std::string attitude = " orientation=\"" + number(std::cos(tilt / 2)) + " 0 " + number(std::sin(tilt / 2)) + " 0\"";
+    const std::string turning = " angular_velocity=\"0 " + number(-spin) + " 0\"";
+    const double left = -2 * std::sin(kAlpha) + under - 1;
+    return box("left", {1, 2, 0.5}, "position=\"" + numbers({left, 0, -0.5}) + "\"", "Static") +
+           box("right", {1, 2, 0.5}, "position=\"" + numbers({1 - under, 0, -0.5}) + "\"", "Static") +
+           box("block", {std::sin(kAlpha), 0.5, std::cos(kAlpha)}, at(arm, cross({0, -spin, 0}, arm)) + attitude + turning) +
+           contact("block", rung, 0, 2, "against=\"left right\"");
+}
+}  // namespace
+
+TEST_CASE("C23: at the impact of a rocking block the old edge lets go")
+{
+    for (const Rung& rung : kRungs)
+    {
+        if (!rung.locates()) continue;
+        CAPTURE(rung.name());
+        Scene s(block(1e-7, 1, 1e-7, rung), "dt=\"1/100\"");  // no gravity: at 1 rad/s it is there in 1e-7 s
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = s.keep_events = true;
+        s.step();
+        CHECK(s.count("contact.impact") >= 2);
+        CHECK(std::fabs(-s.vec("block", "angular_velocity").y - (1 - 1.5 * std::sin(kAlpha) * std::sin(kAlpha))) < 1e-6);
+    }
+}
+
+namespace
+{
+/// s: when the block first meets the other plate, as it is told.
+double first_impact(const Rung& rung, double h)
+{
+    Scene s(block(0.1, 0, 0.1, rung) + gravity("block"), "dt=\"" + number(h) + "\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = s.keep_events = true;
+    while (s.simulation().time() < 0.6) s.step();
+    for (const Event& e : s.events)
+        if (e.kind == "contact.begin" && e.time > 0.3) return e.time;
+    return 0;
+}
+}  // namespace
+
+TEST_CASE("C23: a rocking block comes down after Housner's quarter period")
+{
+    for (const Rung& rung : kRungs)
+    {
+        CAPTURE(rung.name());
+        double off[3];
+        int k = 0;
+        for (const double h : {0.01, 0.0025, 0.000625}) off[k] = std::fabs(first_impact(rung, h) - kQuarter), ++k;
+        const double share = rung.rows() ? (rung.locates() ? 0.45 : 3) : (rung.locates() ? 0.15 : 1.15);
+        for (k = 0; k < 3; ++k) CHECK(off[k] < share * 0.01 / (1 << (2 * k)));
+        if (rung.locates() && !rung.rows()) CHECK((off[0] / off[1] > 3 && off[0] / off[1] < 6));
+    }
+    CHECK(std::fabs(first_impact({"LocalRoot", "Impulse"}, 0.000625) - kQuarter) < 0.5 * (kQuarter - 0.485519587413140505));
+}
+
+namespace
+{
+constexpr Vec3 kDownhill{0.783963147838, 0, -9.778624738829};  // 9.81 (sin .08, 0, -cos .08)
+
+std::string wheel(const Rung& rung)
+{
+    const double alpha = std::numbers::pi / 8, spin = 1.2;
+    std::string points;
+    for (int i = 0; i < 8; ++i)
+        for (const double y : {-0.3, 0.3}) points += numbers({std::sin(alpha + 2 * alpha * i), y, std::cos(alpha + 2 * alpha * i)}) + " ";
+    return std::string(kGround) + "<component id=\"wheel.shape\" type=\"Shape/ConvexHull\" points=\"" + points +
+           "\"/><component id=\"wheel\" type=\"State/RigidBody\" shape=\"wheel.shape\" center_of_mass=\"0 0 0\" inertia=\"" +
+           numbers({1, 1e-3, 1}) + "\" angular_velocity=\"0 " + number(spin) + " 0\" " +
+           at({0, 0, std::cos(alpha)}, {spin * std::cos(alpha), 0, spin * std::sin(alpha)}) + "/>" + gravity("wheel", kDownhill) +
+           contact("wheel ground", rung, 0, 3);
+}
+
+/// Spins after each step of a rimless wheel.
+std::vector<double> walk(const Rung& rung, double h, double until)
+{
+    Scene s(wheel(rung), "dt=\"" + number(h) + "\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = true;
+    std::vector<double> out;
+    // A step of the walk is where the spin falls; the impact may take two time steps.
+    double before = 1.2, least = 1.2;
+    bool falling = false;
+    while (s.simulation().time() < until)
+    {
+        s.step();
+        const double now = s.vec("wheel", "angular_velocity").y;
+        if (now < before - 0.02)
+            falling = true, least = now;
+        else if (falling)
+            falling = false, out.push_back(least);
+        before = now;
+    }
+    return out;
+}
+}  // namespace
+
+TEST_CASE("C24: a rimless wheel comes to its limit cycle, half as far away with each step")
+{
+    constexpr double kFixed = 1.0958222331616213;
+    for (const Rung& rung : {Rung{"LocalRoot", "Impulse"}, Rung{"LocalBisection", "Impulse"}, Rung{"None", "Rows"},
+                             Rung{"Speculative", "Rows"}, Rung{"LocalRoot", "Rows"}})
+        for (const double h : {0.0025, 0.001})
+        {
+            CAPTURE(rung.name());
+            CAPTURE(h);
+            const std::vector<double> w = walk(rung, h, 8);
+            REQUIRE(w.size() >= 7);
+            const bool trembles = rung.rows() && !rung.is("None");
+            CHECK(std::fabs(w[6] - kFixed) < (trembles ? 0.1 : 12 * h));
+            if (trembles || rung.rows() || h > 0.001) continue;
+            const double end = w.back() * w.back(), first = w[0] * w[0] - end, second = w[1] * w[1] - end;
+            CHECK(std::fabs(second / first - 0.5) < 0.1);
+        }
+}
+
+TEST_CASE("a wheel that walks on its edges at long steps makes no energy, however its corners come and go")
+{
+    // Corners that came round unseen used to sink in, be parted by lifting the wheel, and sink in again: 0.06 J a step.
+    for (const char* resolution : {"LocalRoot", "LocalBisection"})
+    {
+        CAPTURE(std::string(resolution));
+        Scene s(wheel({resolution, "Impulse"}), "dt=\"1/100\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = true;
+        const auto& bodies = s.simulation().world().host().bodies;
+        const std::uint32_t b = s.simulation().world().component(s.simulation().world().find("wheel")).host_index;
+        const auto total = [&] { return bodies.kinetic_energy(b) - dot(kDownhill, bodies.position[b]); };
+        double before = total(), worst = 0;
+        for (int i = 0; i < 1000; ++i)
+        {
+            s.step();
+            const double now = total();
+            worst = std::max(worst, now - before), before = now;
+        }
+        CHECK(worst < 2e-3);
+        CHECK(s.vec("wheel", "angular_velocity").y < 1.5);
+    }
+}

@@ -1,0 +1,96 @@
+// C16, SimBenchmark's rolling test: a box of 10 kg is pushed over the ground by 150 N with 25 balls of 1 kg on it.
+//
+// mu = 0.4 between box and ground, 0.8 between balls and box, both start at rest. All points under the box slide the same way, so
+// however the load is shared friction is mu (M + n m) g against the push, and no torque turns the box. A ball that rolls on the box
+// takes f = m a forward, and f R = 2/5 m R^2 alpha backward spin; no slip: a + alpha R = A, so a = 2/7 A, and
+//
+//   A = (F - mu (M + n m) g) / (M + 2/7 n m) = 12.66 / 17.142857... m/s^2      f / m g = .0215 < 0.8: it does roll
+//
+// in whatever direction the push goes: a friction pyramid of the usual kind does not move at all at 60 degrees (it holds up to
+// sqrt 2 mu N there).
+//
+// | rung                              | bound at h = 1/100, after 4 s                                     |
+// |-----------------------------------|-------------------------------------------------------------------|
+// | Rows/Direct, any resolution       | speeds 1e-13 m/s, sideways 1e-13, yaw 1e-14 rad/s                 |
+// | Impulse, certifying               | speeds 2e-12                                                      |
+// | Impulse, None and bisections      | not run: the balls begin to touch one by one, and each is answered|
+// |                                   | with all the others; that takes seconds                           |
+// | Rows/SequentialImpulse            | 1e-3 m/s, sideways 1e-4                                           |
+// | Rows/SoftStep                     | 0.5 m/s: soft contacts let it slip more easily                    |
+#include <algorithm>
+#include <numbers>
+
+#include "impacts.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+constexpr double kAcceleration = (150 - 0.4 * 9.81 * 35) / (10 + 25 * 2.0 / 7);
+
+std::string law(const std::string& a, const std::string& b, double friction)
+{
+    return "<component id=\"" + a + "." + b + "\" type=\"Material/Pair\" a=\"" + a + "\" b=\"" + b + "\" friction=\"" + number(friction) +
+           "\" restitution=\"0\"/>";
+}
+
+struct Rolled
+{
+    double box = 0, balls = 0, side = 0, yaw = 0;  ///< errors, m/s and rad/s
+};
+
+Rolled roll(const Rung& rung, double angle)
+{
+    const Vec3 push{std::cos(angle), std::sin(angle), 0}, side{-push.y, push.x, 0};
+    std::string body = box("box", {10, 10, 0.5}, at({0, 0, 0.5}, {}, 10) + " material=\"wood\""), ids = "box ";
+    for (int i = 0; i < 25; ++i)
+    {
+        const std::string id = "ball" + std::to_string(10 + i);
+        body += sphere(id, 0.5, at({2.0 * (i % 5 - 2), 2.0 * (i / 5 - 2), 1.5}) + " material=\"rubber\"");
+        ids += id + " ";
+    }
+    Scene s(
+        "<component id=\"ground\" type=\"State/Static\" shape=\"floor\" material=\"stone\"/><component id=\"floor\" "
+        "type=\"Shape/Plane\"/>" +
+            body + gravity(ids) + "<component id=\"push\" type=\"Field/Load\" between=\"box\" force=\"" + numbers(push * 150) + "\"/>" +
+            law("wood", "stone", 0.4) + law("wood", "rubber", 0.8) + contact(ids + "ground", rung, 0),
+        "dt=\"1/100\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(4);
+    Rolled out;
+    const Vec3 v = s.vec("box", "linear_velocity");
+    out.box = std::fabs(dot(v, push) - 4 * kAcceleration), out.side = std::fabs(dot(v, side));
+    out.yaw = std::fabs(s.vec("box", "angular_velocity").z);
+    for (int i = 0; i < 25; ++i)
+    {
+        const Vec3 u = s.vec("ball" + std::to_string(10 + i), "linear_velocity");
+        out.balls = std::max(out.balls, std::fabs(dot(u, push) - 4 * kAcceleration * 2 / 7));
+        out.side = std::max(out.side, std::fabs(dot(u, side)));
+    }
+    return out;
+}
+}  // namespace
+
+TEST_CASE("C16: a box with balls on it is pushed as far in any direction")
+{
+    struct Case
+    {
+        Rung rung;
+        double speed, side, yaw;
+    };
+    for (const Case& c :
+         {Case{{"None", "Rows"}, 1e-13, 1e-13, 1e-14}, Case{{"Speculative", "Rows"}, 1e-13, 1e-13, 1e-14},
+          Case{{"LocalRoot", "Rows"}, 1e-13, 1e-13, 1e-14}, Case{{"LocalRoot", "Impulse"}, 2e-12, 2e-12, 1e-14},
+          Case{{"None", "Rows", "SequentialImpulse"}, 1e-3, 1e-4, 1e-5}, Case{{"None", "Rows", "SoftStep"}, 0.5, 0.01, 1e-3}})
+        for (const double angle : {std::numbers::pi / 2, std::numbers::pi / 3})
+        {
+            CAPTURE(c.rung.name());
+            CAPTURE(angle);
+            const Rolled r = roll(c.rung, angle);
+            CHECK(r.box < c.speed);
+            CHECK(r.balls < c.speed);
+            CHECK(r.side < c.side);
+            CHECK(r.yaw < c.yaw);
+        }
+}

@@ -1,0 +1,120 @@
+// B5: stiff numbers with rates, the rates in scripts, whole runs in one to ten steps of the scene. References: test set for IVP solvers
+// (Mazzia, Magherini), recomputed there in quadruple precision. Correct digits (scd) at rtol 1e-9, aim 8:
+//
+//   rung             Robertson, 1e11 s   van der Pol, 1e-6, 2 s   HIRES, 321.8122 s
+//   Radau5           9                   8                        8
+//   Automatic        9                   8                        8          (chooses Radau5)
+//   DormandPrince54  gives up by name    gives up by name         7
+#include <vector>
+
+#include "reference/motion.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+struct Reaction
+{
+    std::string values, code;
+    double until;
+    std::vector<double> reference;
+};
+
+/// Its time in units of 1e8 s: steps of a scene are not as long.
+const Reaction kRobertson{"1 0 0",
+                          R"(local y = between[1]
+                          local a, b, c = y:value(1), y:value(2), y:value(3)
+                          local f, s = -0.04 * a + 1e4 * b * c, 3e7 * b * b
+                          y:add_rate(1, 1e8 * f) y:add_rate(3, 1e8 * s) y:add_rate(2, -1e8 * (f + s)))",
+                          1e3,
+                          {0.2083340149701255e-7, 0.8333360770334713e-13, 0.9999999791665050}};
+const Reaction kVanDerPol{"2 0",
+                          R"(local y = between[1]
+                          local a, b = y:value(1), y:value(2)
+                          y:add_rate(1, b) y:add_rate(2, ((1 - a * a) * b - a) / 1e-6))",
+                          2,
+                          {0.1706167732170483e1, -0.8928097010247975}};
+const Reaction kHires{"1 0 0 0 0 0 0 0.0057",
+                      R"(local z = between[1]
+                      local y = {}
+                      for i = 1, 8 do y[i] = z:value(i) end
+                      local fast = 280 * y[6] * y[8]
+                      z:add_rate(1, -1.71 * y[1] + 0.43 * y[2] + 8.32 * y[3] + 0.0007)
+                      z:add_rate(2, 1.71 * y[1] - 8.75 * y[2])
+                      z:add_rate(3, -10.03 * y[3] + 0.43 * y[4] + 0.035 * y[5])
+                      z:add_rate(4, 8.32 * y[2] + 1.71 * y[3] - 1.12 * y[4])
+                      z:add_rate(5, -1.745 * y[5] + 0.43 * y[6] + 0.43 * y[7])
+                      z:add_rate(6, -fast + 0.69 * y[4] + 1.71 * y[5] - 0.43 * y[6] + 0.69 * y[7])
+                      z:add_rate(7, fast - 1.81 * y[7])
+                      z:add_rate(8, -fast + 1.81 * y[7]))",
+                      321.8122,
+                      {0.7371312573325668e-3, 0.1442485726316185e-3, 0.5888729740967575e-4, 0.1175651343283149e-2, 0.2386356198831331e-2,
+                       0.6238968252742796e-2, 0.2849998395185769e-2, 0.2850001604814231e-2}};
+
+Scene scene_of(const Reaction& r, const SolverRung& rung, int steps)
+{
+    char dt[40];
+    std::snprintf(dt, sizeof dt, "dt=\"%.17g\"", r.until / steps);
+    return Scene(solver(rung) + "<component id=\"z\" type=\"State/Quantities\" values=\"" + r.values +
+                     "\"/><component id=\"law\" type=\"Script/Lua\" between=\"z\"><param name=\"code\">function force(t, state) " + r.code +
+                     " end</param></component>",
+                 dt);
+}
+
+/// Correct digits of the worst component.
+double scd(const Reaction& r, const SolverRung& rung, int steps)
+{
+    Scene s = scene_of(r, rung, steps);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(steps);
+    const Reals z = std::get<Reals>(s.get("z", "values"));
+    double worst = 1e-16;
+    for (std::size_t i = 0; i < r.reference.size(); ++i) worst = std::fmax(worst, std::fabs(z[i] / r.reference[i] - 1));
+    return -std::log10(worst);
+}
+
+}  // namespace
+
+TEST_CASE("B5: Radau5 has eight digits and more")
+{
+    struct Row
+    {
+        const Reaction* reaction;
+        std::string attributes;
+        int steps;
+        double digits;
+    };
+    const std::string tight = "relative_tolerance=\"1e-9\" absolute_tolerance=\"1e-18\"",
+                      usual = "relative_tolerance=\"1e-9\" absolute_tolerance=\"1e-12\"";
+    for (const Row& row :
+         {Row{&kRobertson, tight, 1, 9}, Row{&kRobertson, tight, 10, 9}, Row{&kVanDerPol, usual, 4, 8}, Row{&kHires, usual, 1, 8}})
+    {
+        const double digits = scd(*row.reaction, {"Radau5", row.attributes}, row.steps);
+        MESSAGE(row.reaction->values << ": " << digits);
+        CHECK(digits > row.digits);
+    }
+}
+
+TEST_CASE("B5: Automatic sees that reactions are stiff")
+{
+    for (const auto& [reaction, steps, digits] : {std::tuple{&kRobertson, 10, 3.0}, {&kVanDerPol, 4, 8.0}, {&kHires, 10, 8.0}})
+    {
+        const double found = scd(*reaction, {"Automatic"}, steps);
+        MESSAGE(reaction->values << ": " << found);
+        CHECK(found > digits);
+    }
+}
+
+TEST_CASE("B5: explicit steps give up by name, or take their time")
+{
+    Scene s = scene_of(kRobertson, {"DormandPrince54", "max_substeps=\"2000\""}, 1);
+    s.warnings_expected = s.keep_events = true;
+    s.step();
+    REQUIRE(s.count("solver.gave_up") == 1);
+    CHECK(s.events.back().message.find("Solver/Radau5") != std::string::npos);
+    const double digits = scd(kHires, {"DormandPrince54"}, 10);
+    MESSAGE("HIRES: " << digits);
+    CHECK(digits > 7);
+}

@@ -1,0 +1,236 @@
+// B1, B3 and B4 by the rungs: a spring from soft to 1e12 N/m, quadratic drag, stiff drag. References: closed forms.
+//
+// B1, m = 1, damping ratio 0.05, from rest at 1 m, 0.3 s; error of the place in m
+//   rung                         step      k
+//   Exponential                  1e-2 s    1e2 .. 1e12: 1e-12
+//   Automatic                    1e-2 s    the same from 1e4 on; 1e2: 1e-5 (RungeKutta4)
+//   Radau5                       1e-2 s    1e2 .. 1e12: 1e-8
+//   ImplicitMidpoint             1e-2 s    1e2 .. 1e12: it rings within the amplitude, and does not blow up; order 2 at k = 1e2
+//   DormandPrince54              1e-2 s    1e2 .. 1e8: 1e-8
+//   RungeKutta4, RotationSplitting, StoermerVerlet, SemiImplicitEuler
+//                                1e-3 s    k = 1e2, 1e4: the table below, with orders; beyond 2.8 / w (2 / w): not_finite is told
+// B3, quadratic drag 0.01 kg/m: v(5), y(5), and the final speed; B4, c / m = 1e6 1/s, wind of 10 m/s from t = 0
+#include <vector>
+
+#include "reference/motion.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+double exact_place(double k, double t)
+{
+    const double zeta = 0.05, w = std::sqrt(k), root = std::sqrt(1 - zeta * zeta);
+    return std::exp(-zeta * w * t) * (std::cos(w * root * t) + zeta / root * std::sin(w * root * t));
+}
+
+double exact_speed(double k, double t)
+{
+    const double zeta = 0.05, w = std::sqrt(k), root = std::sqrt(1 - zeta * zeta);
+    return -w / root * std::exp(-zeta * w * t) * std::sin(w * root * t);
+}
+
+/// m, of the place and of the speed over w: the error of the place alone passes 0 as it swings.
+double spring_error(const SolverRung& rung, double k, const std::string& step)
+{
+    Scene s(spring_scene(rung, k, 0.1 * std::sqrt(k)), step);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(0.3);
+    return std::hypot(s.vec("mass", "position").x - exact_place(k, 0.3),
+                      (s.vec("mass", "linear_velocity").x - exact_speed(k, 0.3)) / std::sqrt(k));
+}
+
+struct Fall
+{
+    double speed = 0, place = 0, last = 0;  ///< relative errors at 5 s, and of the final speed at 65 s
+};
+
+Fall fall_error(const SolverRung& rung, int steps)
+{
+    Scene s(solver(rung) + R"(<component id="ball" type="State/RigidBody" mass="1" inertia="1 1 1"/>
+                              <component id="g" type="Field/Gravity" between="ball"/>
+                              <component id="drag" type="Field/Drag" between="ball" quadratic="0.01"/>)",
+            per_second(steps));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(5);
+    Fall out;
+    out.speed = std::fabs(s.vec("ball", "linear_velocity").z / -28.7023194557054083 - 1);
+    out.place = std::fabs(s.vec("ball", "position").z / -91.5600402510837169 - 1);
+    s.run(65);
+    out.last = std::fabs(s.vec("ball", "linear_velocity").z / -31.3209195267316505 - 1);
+    return out;
+}
+
+Scene windy(const SolverRung& rung, const std::string& step)
+{
+    return Scene(solver(rung) + R"(<component id="ball" type="State/RigidBody" mass="1" inertia="1 1 1"/>
+                                   <component id="drag" type="Field/Drag" between="ball" linear="1e6" medium_velocity="10 0 0"/>)",
+                 step);
+}
+
+}  // namespace
+
+TEST_CASE("B1: the references of the closed form")
+{
+    CHECK(exact_place(1e2, 0.3) == doctest::Approx(-0.84539188273933843).epsilon(1e-14));
+    CHECK(exact_place(1e6, 0.3) == doctest::Approx(-1.3249336825406493e-7).epsilon(1e-9));
+}
+
+TEST_CASE("B1: springs of 1e2 to 1e12 N/m in steps of 10 ms: the stiff rungs follow, the explicit one with error control to 1e8")
+{
+    for (const double k : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
+    {
+        CAPTURE(k);
+        for (const SolverRung& rung : {SolverRung{"Exponential"}, SolverRung{"Automatic"}})
+        {
+            const double error = spring_error(rung, k, "dt=\"1/100\"");
+            MESSAGE(rung.type << " " << k << ": " << error);
+            CHECK(error < (rung.type == "Automatic" && k < 1e3 ? 1e-5 : 1e-12));  // there it is RungeKutta4
+        }
+        const double radau = spring_error({"Radau5"}, k, "dt=\"1/100\"");
+        MESSAGE("Radau5 " << k << ": " << radau);
+        CHECK(radau < 1e-8);
+        const double midpoint = spring_error({"ImplicitMidpoint"}, k, "dt=\"1/100\"");
+        MESSAGE("ImplicitMidpoint " << k << ": " << midpoint);
+        CHECK(midpoint < 2);  // twice the amplitude: it stays within it, at some phase
+        if (k > 1e8) continue;
+        const double pair = spring_error({"DormandPrince54"}, k, "dt=\"1/100\"");
+        MESSAGE("DormandPrince54 " << k << ": " << pair);
+        CHECK(pair < 1e-8);
+    }
+}
+
+TEST_CASE("B1: rungs of fixed step below their limit, with their orders")
+{
+    struct Row
+    {
+        SolverRung rung;
+        int order;
+        double soft, stiffer;  ///< m, at 1/1000 with k = 1e2 and 1e4
+    };
+    const Row table[] = {
+        {{"SemiImplicitEuler"}, 1, 1e-2, 0.1}, {{"StoermerVerlet"}, 2, 3e-5, 1e-2}, {{"RotationSplitting", "order=\"2\""}, 2, 3e-5, 1e-2},
+        {{"ImplicitMidpoint"}, 2, 3e-5, 1e-2}, {{"RungeKutta4"}, 4, 1e-9, 2e-5},    {{"RotationSplitting"}, 4, 1e-12, 1e-7}};
+    for (const Row& row : table)
+    {
+        CAPTURE(row.rung.type);
+        CAPTURE(row.rung.attributes);
+        const double soft = spring_error(row.rung, 1e2, per_second(1000)), stiffer = spring_error(row.rung, 1e4, per_second(1000));
+        const double coarse = spring_error(row.rung, 1e2, per_second(100)), middle = spring_error(row.rung, 1e2, per_second(200)),
+                     fine = spring_error(row.rung, 1e2, per_second(400));
+        MESSAGE(row.rung.type << ": " << soft << " " << stiffer << " orders " << observed_order(coarse, middle) << " "
+                              << observed_order(middle, fine));
+        CHECK(soft < row.soft);
+        CHECK(stiffer < row.stiffer);
+        CHECK(observed_order(coarse, middle) == doctest::Approx(row.order).epsilon(0.15));
+        CHECK(observed_order(middle, fine) == doctest::Approx(row.order).epsilon(0.1));
+    }
+}
+
+TEST_CASE("B1: beyond its limit an explicit rung is told of by name, never silently not a number")
+{
+    for (const SolverRung& rung : {SolverRung{"SemiImplicitEuler"}, SolverRung{"StoermerVerlet"}, SolverRung{"RungeKutta4"},
+                                   SolverRung{"RotationSplitting"}, SolverRung{"RotationSplitting", "order=\"2\""}})
+    {
+        CAPTURE(rung.type);
+        Scene s(spring_scene(rung, 1e8, 0), "dt=\"1/100\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = s.keep_events = true;
+        s.step(400);
+        CHECK(s.count("state.not_finite") >= 1);
+        CHECK(is_finite(s.vec("mass", "position")));
+    }
+}
+
+TEST_CASE("B3: quadratic drag by the rungs")
+{
+    struct Row
+    {
+        SolverRung rung;
+        int steps, order;  ///< 0: error control
+        double bound, last;
+    };
+    const Row table[] = {{{"SemiImplicitEuler"}, 240, 1, 2e-3, 1e-12},
+                         {{"StoermerVerlet"}, 240, 2, 1e-6, 1e-12},
+                         {{"RotationSplitting", "order=\"2\""}, 240, 2, 1e-6, 1e-12},
+                         {{"ImplicitMidpoint"}, 240, 2, 1e-6, 1e-12},
+                         {{"RungeKutta4"}, 240, 4, 1e-12, 1e-12},
+                         {{"Automatic"}, 240, 4, 1e-12, 1e-12},
+                         {{"RotationSplitting"}, 240, 4, 1e-12, 1e-12},
+                         {{"Exponential"}, 240, 4, 1e-12, 1e-12},
+                         {{"DormandPrince54"}, 10, 0, 1e-11, 1e-12},
+                         {{"Radau5"}, 10, 0, 1e-8, 1e-12}};
+    for (const Row& row : table)
+    {
+        CAPTURE(row.rung.type);
+        CAPTURE(row.rung.attributes);
+        const Fall error = fall_error(row.rung, row.steps);
+        MESSAGE(row.rung.type << ": " << error.speed << " " << error.place << " " << error.last);
+        CHECK(error.speed < row.bound);
+        CHECK(error.place < row.bound);
+        CHECK(error.last < row.last);
+        if (row.order == 0) continue;
+        const double order = observed_order(fall_error(row.rung, 10).place, fall_error(row.rung, 20).place);
+        MESSAGE("order " << order);
+        CHECK(order == doctest::Approx(row.order).epsilon(0.15));
+    }
+}
+
+TEST_CASE("B4: a jump of the wind on stiff drag")
+{
+    struct Row
+    {
+        SolverRung rung;
+        double speed, place;  ///< m/s, m, at 1 s in steps of 0.01 s
+    };
+    for (const Row& row : {Row{{"Exponential"}, 1e-12, 1e-12}, Row{{"Automatic"}, 1e-12, 1e-12}, Row{{"Radau5"}, 1e-8, 1e-8}})
+    {
+        CAPTURE(row.rung.type);
+        Scene s = windy(row.rung, "dt=\"1/100\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(1);
+        const double speed = std::fabs(s.vec("ball", "linear_velocity").x - 10),
+                     place = std::fabs(s.vec("ball", "position").x - (10 - 1e-5));
+        MESSAGE(row.rung.type << ": " << speed << " " << place);
+        CHECK(speed < row.speed);
+        CHECK(place < row.place);
+    }
+    // A-stable, not L-stable: it rings about the answer, and never leaves (0, 20).
+    Scene midpoint = windy({"ImplicitMidpoint"}, "dt=\"1/100\"");
+    for (int i = 0; i < 100; ++i)
+    {
+        midpoint.step();
+        CHECK(std::fabs(midpoint.vec("ball", "linear_velocity").x - 10) < 10.001);
+    }
+    // The transient itself.
+    for (const SolverRung& rung :
+         {SolverRung{"DormandPrince54"}, SolverRung{"RungeKutta4"}, SolverRung{"Radau5"}, SolverRung{"Exponential"}})
+    {
+        CAPTURE(rung.type);
+        Scene s = windy(rung, "dt=\"1e-7\"");
+        s.run(2e-6);
+        const double error = std::fabs(s.vec("ball", "linear_velocity").x - 10 * (1 - std::exp(-2.0)));
+        MESSAGE(rung.type << ": " << error);
+        CHECK(error < 1e-5);
+    }
+}
+
+TEST_CASE("B4: explicit rungs that cannot follow say so")
+{
+    Scene pair = windy({"DormandPrince54", "max_substeps=\"1000\""}, "dt=\"1/100\"");
+    pair.warnings_expected = pair.keep_events = true;
+    pair.step(2);
+    CHECK(pair.count("solver.gave_up") >= 1);
+    for (const SolverRung& rung :
+         {SolverRung{"SemiImplicitEuler"}, SolverRung{"StoermerVerlet"}, SolverRung{"RungeKutta4"}, SolverRung{"RotationSplitting"}})
+    {
+        CAPTURE(rung.type);
+        Scene s = windy(rung, "dt=\"1/100\"");
+        s.warnings_expected = s.keep_events = true;
+        s.step(200);
+        CHECK(s.count("state.not_finite") >= 1);
+        CHECK(is_finite(s.vec("ball", "linear_velocity")));
+    }
+}

@@ -1,0 +1,199 @@
+// Statics under Response/Rows: what contacts carry, in closed form. D.. as in the catalogue of reference problems.
+#include <algorithm>
+
+#include "statics_scene.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+constexpr double kG = 9.81;
+
+/// Unit cubes one upon another.
+std::string stack(const std::vector<double>& masses, const std::string& manager)
+{
+    std::string body = kGround, ids;
+    for (std::size_t i = 0; i < masses.size(); ++i)
+    {
+        body += box(name_of_box(i), {0.5, 0.5, 0.5}, masses[i], {0, 0, static_cast<double>(i) + 0.5});
+        ids += name_of_box(i) + " ";
+    }
+    return body + gravity(ids) + contact(ids + "ground", manager, 0.8);
+}
+
+struct Loads
+{
+    double worst = 0;      ///< largest relative error of what a face carries
+    double moved = 0;      ///< m, the top
+    std::size_t told = 0;  ///< events that contacts did not converge
+};
+Loads loads_of(const std::vector<double>& masses, const std::string& manager, const std::string& dt, std::int64_t steps)
+{
+    Scene s(stack(masses, manager), "dt=\"" + dt + "\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.keep_events = true;
+    s.warnings_expected = manager != "Direct";  // what falls through is told as a warning
+    s.step(steps);
+    Loads out;
+    out.told = s.count("manager.not_converged");
+    double above = 0;
+    for (std::size_t i = masses.size(); i-- > 0;)
+    {
+        above += masses[i] * kG;
+        const Vec3 f = force_between(s, i == 0 ? "ground" : name_of_box(i - 1), name_of_box(i));
+        out.worst = std::max(out.worst, length(f - Vec3{0, 0, above}) / above);
+    }
+    const std::size_t top = masses.size() - 1;
+    out.moved = distance(s.vec(name_of_box(top), "position"), {0, 0, static_cast<double>(top) + 0.5});
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("D1: r kg on 1 kg, r = 1 to 1e8: reactions (1 + r) m g and r m g to 1e-12 with Direct, and nothing moves")
+{
+    for (const double r : {1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8})
+    {
+        CAPTURE(r);
+        const Loads loads = loads_of({1, r}, "Direct", "1/60", 60);
+        // At 1e8 two impulses of 1.6e7 N s on 1 kg leave it 2e-9 m/s by rounding: measured 2e-9, and 2e-9 m.
+        CHECK(loads.worst < (r < 1e8 ? 1e-12 : 1e-8));
+        CHECK(loads.moved < (r < 1e6 ? 1e-12 : 1e-8));
+        CHECK(loads.told == 0);
+    }
+}
+
+// Where a cheap rung does not carry the load it says so: `manager.not_converged`, and the figure in `residual`.
+TEST_CASE("D1: the cheap rungs: 1:1 to 1e-5, 10:1 within 2 % and 2 mm, from 1000:1 the light box is crushed, and it is told")
+{
+    for (const char* manager : {"SequentialImpulse", "SoftStep"})
+    {
+        CAPTURE(manager);
+        const Loads equal = loads_of({1, 1}, manager, "1/60", 60), ten = loads_of({1, 10}, manager, "1/60", 60);
+        CHECK(equal.worst < 1e-5);
+        CHECK(equal.moved < 1e-3);
+        CHECK(ten.worst < 0.02);
+        CHECK(ten.moved < 2e-3);
+        const Loads heavy = loads_of({1, 1e3}, manager, "1/60", 60);
+        CHECK(heavy.moved > 0.5);
+        CHECK(heavy.told > 0);
+    }
+}
+
+TEST_CASE("D2: n cubes: (n - k + 1) m g between them to 1e-11 with Direct")
+{
+    for (const std::size_t n : {10u, 20u, 50u, 100u})
+    {
+        CAPTURE(n);
+        const Loads loads = loads_of(std::vector<double>(n, 1.0), "Direct", "1/60", 30);
+        CHECK(loads.worst < 1e-11);
+        CHECK(loads.moved < 1e-11);
+    }
+}
+
+TEST_CASE("D2: the cheap rungs at 1/60: three cubes to 1 mm; ten sink 1 cm with sub-steps, 1 dm with sweeps, which tell it")
+{
+    const std::vector<double> three(3, 1.0), ten(10, 1.0);
+    CHECK(loads_of(three, "SequentialImpulse", "1/60", 120).moved < 1e-3);
+    CHECK(loads_of(three, "SoftStep", "1/60", 120).moved < 1e-3);
+    const Loads swept = loads_of(ten, "SequentialImpulse", "1/60", 120), soft = loads_of(ten, "SoftStep", "1/60", 120);
+    CHECK(swept.moved < 0.1);
+    CHECK(swept.told > 0);
+    CHECK(soft.moved < 0.01);
+    CHECK(soft.worst < 0.1);
+}
+
+// A slab on four feet with a heavy box off its centre. Equilibrium gives three equations for four feet; what is left free is the
+// split (+ - - +). Of all splits Direct takes the one with the least sum of squares, which is affine in the feet's places:
+//   f_i = W / 4 (1 + x x_i / a^2 + y y_i / b^2),   (x, y): where the resultant passes, (+-a, +-b): the feet.
+TEST_CASE("D6: a table with four feet: the sum and the moments exactly, the split of least norm")
+{
+    const double a = 0.6, b = 0.4, mass = 10, load = 30, x = 0.25, y = 0.1;
+    std::string feet, shapes;
+    for (int i = 0; i < 4; ++i)
+    {
+        const std::string id = "foot" + std::to_string(i);
+        shapes += "<component id=\"" + id + "\" type=\"Shape/Sphere\" radius=\"0.05\" position=\"" +
+                  vector({(i & 1) != 0 ? a : -a, (i & 2) != 0 ? b : -b, -0.05}) + "\"/>";
+        feet += id + " ";
+    }
+    shapes +=
+        "<component id=\"slab\" type=\"Shape/Box\" half_extents=\"0.7 0.5 0.05\"/>"
+        "<component id=\"table.shape\" type=\"Shape/Compound\" parts=\"slab " +
+        feet +
+        "\"/>"
+        "<component id=\"table\" type=\"State/RigidBody\" shape=\"table.shape\" mass=\"10\" inertia=\"1 2 3\" "
+        "center_of_mass=\"0 0 0\" position=\"0 0 0.1\"/>";
+    struct Rung
+    {
+        const char* manager;
+        double moments, split;  ///< relative; m
+    };
+    // Sweeps stop at the first split that they come to.
+    for (const Rung rung : {Rung{"Direct", 1e-13, 1e-4}, {"SequentialImpulse", 1e-5, 1}, {"SoftStep", 1e-4, 1e-3}})
+    {
+        CAPTURE(rung.manager);
+        Scene s(kGround + shapes + box("load", {0.1, 0.1, 0.1}, load, {x, y, 0.25}) + gravity("table load") +
+                    contact("table load ground", rung.manager, 0.5),
+                "dt=\"1/60\"");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.step(60);
+        const std::vector<double> f = point_forces(s, "ground", "table");
+        REQUIRE(f.size() == 4);
+        const double weight = (mass + load) * kG, cx = load * x / (mass + load), cy = load * y / (mass + load);
+        CHECK(std::fabs((f[0] + f[1] + f[2] + f[3]) / weight - 1) < rung.moments);
+        CHECK(std::fabs(a * (f[1] + f[3] - f[0] - f[2]) / weight - cx) < rung.moments);
+        CHECK(std::fabs(b * (f[2] + f[3] - f[0] - f[1]) / weight - cy) < rung.moments);
+        for (std::size_t i = 0; i < 4; ++i)
+        {
+            const double xi = (i & 1) != 0 ? a : -a, yi = (i & 2) != 0 ? b : -b;
+            const double least = weight / 4 * (1 + cx * xi / (a * a) + cy * yi / (b * b));
+            CHECK(std::fabs(f[i] / least - 1) < rung.split);
+        }
+    }
+}
+
+// A uniform capsule of length L between the centres of its ends (radius r), its foot on a floor with friction, its head at a smooth
+// wall. Moments about the foot's centre: m g L cos / 2 = f (L sin + r), f <= mu m g: it slips iff
+//   (sin theta + r / L) / cos theta < 1 / (2 mu),     tan theta < 1 / (2 mu) for a thin one.
+// Below that, by delta, it slides: with F' = mu L cos + L sin / 2 the angle falls by delta (cosh k t - 1),
+//   k^2 = m g F' / (I + m L^2 sin^2 / 4),   I = m L^2 / 12.
+TEST_CASE("D7: a ladder slips iff tan theta < 1 / (2 mu), to 1e-4 rad either way")
+{
+    const double mu = 0.5, length = 2, r = 0.002;
+    // sin + r / L = cos / (2 mu): theta = atan(1 / 2 mu) - asin((r / L) / sqrt(1 + 1 / (4 mu^2))).
+    const double q = 1 / (2 * mu), limit = std::atan(q) - std::asin(r / length / std::sqrt(1 + q * q));
+    for (const double off : {1e-4, -1e-4})
+        for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
+        {
+            CAPTURE(off);
+            CAPTURE(manager);
+            const double theta = limit + off, c = std::cos(theta), sn = std::sin(theta);
+            // The capsule's axis is z, tilted towards +x, where the wall is.
+            const std::string turn = "axis 0 1 0 " + number((1.5707963267948966 - theta) * 57.295779513082321) + " deg";
+            const std::string ladder =
+                "<component id=\"wall\" type=\"State/Static\" shape=\"floor\" orientation=\"axis 0 1 0 -90 deg\" position=\"" +
+                vector({0.5 * length * c + r, 0, 0}) + "\" material=\"ice\"/><component id=\"rod\" type=\"Shape/Capsule\" radius=\"" +
+                number(r) + "\" length=\"" + number(length) +
+                "\"/><component id=\"ladder\" type=\"State/RigidBody\" shape=\"rod\" mass=\"3\" material=\"wood\" orientation=\"" + turn +
+                "\" position=\"" + vector({0, 0, 0.5 * length * sn + r}) +
+                "\"/><component id=\"smooth\" type=\"Material/Pair\" a=\"ice\" b=\"wood\" friction=\"0\" restitution=\"0\"/>";
+            Scene s(kGround + ladder + gravity("ladder") + contact("ladder ground wall", manager, mu), "dt=\"1/240\"");
+            REQUIRE_MESSAGE(s.loaded(), s.error());
+            const Vec3 before = s.vec("ladder", "position");
+            s.run(1);
+            const double moved = distance(s.vec("ladder", "position"), before);
+            const bool holds = off > 0;
+            const double k = std::sqrt(kG * (mu * length * c + 0.5 * length * sn) / (length * length * (1.0 / 12 + 0.25 * sn * sn)));
+            const double slid = 0.5 * length * -off * (std::cosh(k) - 1);
+            // Sub-steps give way, and slide 2 cm in a second this near to the edge.
+            if (manager == std::string("SoftStep"))
+                CHECK(moved < 0.05);
+            else if (holds)
+                CHECK(moved < (manager == std::string("Direct") ? 1e-11 : 1e-4));
+            else
+                CHECK(std::fabs(moved / slid - 1) < 0.02);
+        }
+}

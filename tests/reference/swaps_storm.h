@@ -1,0 +1,158 @@
+/// H8: a storm of seeded swaps over balls that bounce (C4), a chain of joints (E5), a gear line (F2) and stacks on both kinds of
+/// contact.
+#pragma once
+
+#include "plab/random.h"
+#include "swaps.h"
+
+namespace plab::test
+{
+
+inline std::string storm_scene()
+{
+    std::string parts = gravity() + solver_is("RungeKutta4");
+    // Balls over a floor of their own.
+    std::string balls;
+    for (int i = 0; i < 6; ++i)
+    {
+        const std::string id = "ball" + std::to_string(i);
+        parts += solid(id, "Sphere' radius='0.1'", 10, {0.5 * i, 0, 0.5 + 0.3 * i}, "solver='solver'");
+        balls += id + " ";
+    }
+    parts +=
+        "<component id='floor' type='Shape/Plane'/><component id='ground' type='State/Static' shape='floor'/>"
+        "<component id='contact' type='CDetection/ODE' between='" +
+        balls + "' against='ground' resolution='Resolution/LocalBisection' response='Response/Impulse' response.restitution='1'/>";
+    // A stack of two boxes.
+    parts += solid("low", "Box' half_extents='0.2 0.2 0.1'", 2, {0, 10, 0.1}, "solver='solver'") +
+             solid("high", "Box' half_extents='0.1 0.1 0.1'", 1, {0.02, 10.03, 0.3}, "solver='solver'") +
+             "<component id='stack' type='CDetection/ODE' between='low high' against='ground' resolution='Resolution/None' "
+             "response='Response/Rows' response.friction='0.5'/>";
+    // A chain of four links.
+    for (int i = 0; i < 4; ++i)
+    {
+        const std::string id = "link" + std::to_string(i);
+        parts += body(id, 1, {0.01, 0.01, 0.01}, {0.5 + i, 20, 5}, "solver='solver'");
+        parts += joint("joint" + std::to_string(i), "Ball", i == 0 ? "" : "link" + std::to_string(i - 1), id,
+                       "anchor='" + text(Vec3{1.0 * i, 20, 5}) + "'");
+    }
+    // F2: seven shafts, 10:1 each.
+    for (int i = 0; i < 7; ++i)
+        parts += "<component id='shaft" + std::to_string(i) + "' type='State/Shaft' inertia='1e-3' solver='solver'" +
+                 (i == 0 ? " angular_velocity='10'" : "") + "/>";
+    for (int i = 0; i < 6; ++i)
+        parts += "<component id='gear" + std::to_string(i) + "' type='Constraint/AngularVelocity/Graph' driver='shaft" + std::to_string(i) +
+                 "' driven='shaft" + std::to_string(i + 1) + "' velocity_factor='-0.1'/>";
+    return parts;
+}
+
+struct StormResult
+{
+    std::uint64_t hash = 0;
+    int done = 0, refused = 0;
+    double worst_ledger = 0;  ///< J, of what kinetic energy, work and the start leave unexplained in one step
+    double highest = 0;       ///< m, of the balls
+    double gear_error = 0;    ///< rad/s
+    double chain_error = 0;   ///< m
+    double sunk = 0;          ///< m, of the stack into the floor
+    bool finite = true;
+};
+
+inline void check_storm(Scene& s, StormResult& out)
+{
+    for (int i = 0; i < 6; ++i)
+    {
+        const Vec3 p = s.vec("ball" + std::to_string(i), "position");
+        out.finite = out.finite && is_finite(p);
+        out.highest = std::max(out.highest, p.z);
+        out.gear_error = std::max(out.gear_error, std::fabs(s.real("gear" + std::to_string(i), "velocity_error")));
+    }
+    for (int i = 0; i < 4; ++i) out.chain_error = std::max(out.chain_error, s.real("joint" + std::to_string(i), "position_error"));
+    for (const char* id : {"low", "high"})
+    {
+        const Vec3 p = s.vec(id, "position");
+        out.finite = out.finite && is_finite(p);
+        out.sunk = std::max(out.sunk, 0.1 - p.z);
+    }
+}
+
+/// `swaps` that are done, with 0 to 3 steps in between. What is swapped is always one of the algorithms.
+inline StormResult storm(int swaps, std::uint64_t seed, int threads = 1)
+{
+    Scene s(storm_scene(), dt(240), threads);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = true;
+    const std::vector<std::string> joints{"Ball", "Hinge", "Fixed"}, gears{"Graph", "Impulse"};
+    const auto any = [&](const std::vector<std::string>& list) { return list[next_random(seed) % list.size()]; };
+    StormResult out;
+    double unexplained = 0;
+    while (out.done < swaps)
+    {
+        std::string id, type;
+        switch (next_random(seed) % 8)
+        {
+            case 0:
+                id = "solver", type = "Solver/" + any(solvers());
+                break;
+            case 1:
+                id = "contact.resolution", type = "Resolution/" + any(resolutions());
+                break;
+            case 2:
+                id = "contact.response", type = "Response/" + any({"Impulse", "Rows", "Penalty", "HuntCrossley"});
+                break;
+            case 3:
+                id = "stack.response", type = "Response/" + any({"Impulse", "Rows", "Penalty", "HuntCrossley"});
+                break;
+            case 4:
+                id = "stack.response.manager", type = "Manager/" + any(managers());
+                break;
+            case 5:
+                id = "stack.resolution", type = "Resolution/" + any(resolutions());
+                break;
+            case 6:
+                id = "joint" + std::to_string(next_random(seed) % 4), type = "Constraint/" + any(joints);
+                break;
+            default:
+                id = "gear" + std::to_string(next_random(seed) % 6), type = "Constraint/AngularVelocity/" + any(gears);
+                break;
+        }
+        const std::uint64_t before = s.hash();
+        // Soft ones that a step of 1/240 s is not cut to pieces for.
+        std::vector<simulation::NamedValue> values;
+        if (type == "Response/Penalty")
+            values = {{"stiffness", std::string("1e4")}, {"steps_per_contact", std::string("10")}, {"restitution", std::string("0.5")}};
+        if (type == "Response/HuntCrossley")
+            values = {{"stiffness", std::string("1e5")}, {"steps_per_contact", std::string("10")}, {"restitution", std::string("0.5")}};
+        const simulation::Reply reply = swap(s, id, type, values);
+        ++(reply.done ? out.done : out.refused);
+        if (!reply.done) CHECK_MESSAGE(s.hash() == before, first_error(reply.errors));
+        for (std::uint64_t n = next_random(seed) % 4; n > 0; --n)
+        {
+            s.step();
+            const simulation::Totals t = s.simulation().totals();
+            const double now = t.kinetic - s.simulation().kinetic_at_start() - t.work;
+            out.worst_ledger = std::max(out.worst_ledger, std::fabs(now - unexplained));
+            unexplained = now;
+        }
+        check_storm(s, out);
+        if (!out.finite) break;
+    }
+    out.hash = s.hash();
+    return out;
+}
+
+/// What must hold after any storm.
+inline void check_result(const StormResult& r, double most_sunk)
+{
+    CHECK(r.finite);
+    CHECK(r.refused < r.done / 4);
+    // The highest ball began at 2 m, and no law gives back more than came in.
+    CHECK(r.highest <= 2.0 + 1e-3);
+    CHECK(r.gear_error <= 1e-12);
+    CHECK(r.chain_error <= 1e-9);
+    CHECK(r.sunk <= most_sunk);
+    // Of about 1 kJ: springs that an explicit method of order 1 cuts in ten pieces per contact book their work to a hundredth.
+    CHECK(r.worst_ledger <= 15);
+}
+
+}  // namespace plab::test

@@ -1,0 +1,117 @@
+// Events that tell of lost motion while its numbers are finite, and silence where nothing is wrong.
+#include "support/scene.h"
+
+using namespace plab;
+using plab::test::Scene;
+
+namespace
+{
+
+/// 1 kg on a spring, pulled by 0.1 m.
+std::string oscillator(const std::string& stiffness)
+{
+    return "<component id=\"mass\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"1.1 0 0\"/>"
+           "<component id=\"spring\" type=\"Constraint/SpringDamper\" b=\"mass\" anchor_a=\"0 0 0\" anchor_b=\"0 0 0\" length=\"1\" "
+           "stiffness=\"" +
+           stiffness + "\"/>";
+}
+std::string script(const std::string& force)
+{
+    return "<component id=\"mass\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" linear_velocity=\"1 0 0\"/>"
+           "<component id=\"push\" type=\"Script/Lua\" driven=\"mass\"><param name=\"code\">function force(t, state) driven:add_force(" +
+           force + ") end</param></component>";
+}
+std::string flight(const std::string& resolution, const std::string& at)
+{
+    return "<component id=\"wall.shape\" type=\"Shape/Box\" half_extents=\"0.005 1 1\"/><component id=\"wall\" type=\"State/Static\" "
+           "shape=\"wall.shape\"/><component id=\"ball.shape\" type=\"Shape/Sphere\" radius=\"0.05\"/>"
+           "<component id=\"ball\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball.shape\" linear_velocity=\"1000 0 0\" position=\"" +
+           at + "\"/><component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" resolution=\"Resolution/" + resolution +
+           "\" response=\"Response/Impulse\" response.restitution=\"1\"/>";
+}
+
+const std::string kEuler = "dt=\"1/60\" solver=\"Solver/SemiImplicitEuler\"";
+
+}  // namespace
+
+TEST_CASE("a spring beyond its solver's step is reported once, with the energy that it made")
+{
+    Scene s(oscillator("20000"), kEuler);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = s.keep_events = true;
+    s.run(1);
+    REQUIRE(s.count("motion.diverged") == 1);
+    for (const Event& e : s.events)
+        if (e.kind == "motion.diverged")
+        {
+            REQUIRE(e.values.size() == 3);
+            CHECK(s.simulation().world().id_of(e.component) == "mass");
+            CHECK(e.values[1] == doctest::Approx(0.5 * 20000 * 0.01));  // J, what was there
+            CHECK(e.values[0] > 10 * e.values[1]);
+            CHECK(e.severity == Severity::Warning);
+        }
+}
+
+TEST_CASE("within its step, and however large its error, it is not")
+{
+    for (const char* k : {"100", "10000", "14000"})  // h w = 0.17, 1.7, 1.97
+    {
+        Scene s(oscillator(k), kEuler);
+        s.run(10);
+        CHECK(std::fabs(s.vec("mass", "position").x - 1) < 1);
+    }
+}
+
+TEST_CASE("a speed that doubles every few steps is reported; one that grows by a steady force, or slowly, is not")
+{
+    Scene away(script("50 * driven.velocity"), kEuler);
+    away.warnings_expected = away.keep_events = true;
+    away.run(1);
+    CHECK(away.count("motion.diverged") == 1);
+    Scene(script("vec(1e6, 0, 0)"), kEuler).run(10);
+    Scene(script("driven.velocity"), kEuler).run(10);
+}
+
+TEST_CASE("a request that puts energy in is no divergence")
+{
+    Scene s(oscillator("100"), kEuler);
+    s.run(1);
+    REQUIRE(s.ask(simulation::SetOperation{"mass", "linear_velocity", std::string("1e5 0 0")}).done);
+    s.run(2);
+    REQUIRE(s.ask(simulation::SetOperation{"mass", "position", std::string("1e4 0 0")}).done);
+    s.run(3);
+}
+
+TEST_CASE("a ball that flies through a wall between two looks is reported; one that bounces or flies past is not")
+{
+    Scene through(flight("None", "-50.3 0 0"), "dt=\"1/60\"");
+    through.warnings_expected = through.keep_events = true;
+    through.run(0.1);
+    CHECK(through.count("contact.missed") == 1);
+    Scene bounces(flight("LocalRoot", "-50.3 0 0"), "dt=\"1/60\"");
+    bounces.run(0.1);
+    CHECK(bounces.vec("ball", "linear_velocity").x == doctest::Approx(-1000));
+    Scene past(flight("None", "-50.3 1.2 0"), "dt=\"1/60\"");
+    past.run(0.1);
+}
+
+TEST_CASE("bodies that stay sunk into one another are reported; an overlap that is taken away is not")
+{
+    const auto pair = [](const std::string& mass, const std::string& manager)
+    {
+        return "<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
+               "<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.5 0.5 0.5\"/>"
+               "<component id=\"low\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"0 0 0.45\"/>"
+               "<component id=\"high\" type=\"State/RigidBody\" mass=\"" +
+               mass +
+               "\" shape=\"cube\" position=\"0 0 1.45\"/><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>"
+               "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" response=\"Response/Rows\" response.manager=\"Manager/" +
+               manager + "\" resolution=\"Resolution/None\"/>";
+    };
+    Scene sinks(pair("1e6", "SequentialImpulse"), "dt=\"1/60\"");
+    sinks.warnings_expected = sinks.keep_events = true;
+    sinks.run(1);
+    CHECK(sinks.count("contact.deep") >= 1);
+    CHECK(sinks.count("contact.deep") <= 2);
+    Scene(pair("1e6", "Direct"), "dt=\"1/60\"").run(1);
+}

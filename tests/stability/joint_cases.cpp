@@ -1,0 +1,170 @@
+// Gears of extreme ratio, and joints and gears that contradict one another.
+#include "case.h"
+#include "pieces.h"
+#include "trial.h"
+
+namespace plab::stability
+{
+
+namespace
+{
+
+std::string shaft(const std::string& id, double speed = 0, const std::string& more = "")
+{
+    return component(id, "State/Shaft", attribute("inertia", 1) + attribute("angular_velocity", speed) + " " + more);
+}
+/// A wheel of 1 kg m^2 on a hinge.
+std::string wheel(const std::string& id, double x, double speed = 0)
+{
+    return body(id, 1, {1, 1, 1}, {x, 0, 0}, attribute("angular_velocity", Vec3{0, 0, speed})) +
+           component("bearing." + id, "Constraint/Hinge",
+                     attribute("b", id) + attribute("anchor", Vec3{x, 0, 0}) + attribute("axis", Vec3{0, 0, 1}));
+}
+std::string coupling(const std::string& id, const std::string& type, const std::string& a, const std::string& b, double factor)
+{
+    return component(id, "Constraint/" + type, attribute("driver", a) + attribute("driven", b) + attribute("velocity_factor", factor));
+}
+
+struct Coupling
+{
+    const char* name;
+    const char* type;
+    bool bodies = false, one_way = false;
+};
+const std::vector<Coupling>& couplings()
+{
+    static const std::vector<Coupling> all{{"Assign", "AngularVelocity/Assign", false, true},
+                                           {"Impulse", "AngularVelocity/Impulse"},
+                                           {"Graph", "AngularVelocity/Graph"},
+                                           {"Gear, shafts", "Gear"},
+                                           {"Gear, bodies in hinges", "Gear", true}};
+    return all;
+}
+std::vector<std::string> coupling_names()
+{
+    std::vector<std::string> out;
+    for (const Coupling& c : couplings()) out.emplace_back(c.name);
+    return out;
+}
+
+Case ratios()
+{
+    const std::vector<double> factors{1e-6, 1e-4, 1, 1e4, 1e6};
+    Case c{"gear_ratio",
+           "Gear ratios",
+           "Two wheels of 1 kg m^2, a torque of 6 N m on the driver; 1 s at 1/60 s. Error: the larger of the driver's speed against that "
+           "with the "
+           "reflected inertia (with Assign it feels none, as it should), and of the driven's against factor times the driver's, both "
+           "relative. Stable "
+           "to 1e-9, bounded to 1.",
+           "coupling",
+           "factor",
+           coupling_names(),
+           brief(factors),
+           {},
+           {}};
+    c.run = [factors](std::size_t r, std::size_t v)
+    {
+        const Coupling& rung = couplings()[r];
+        const double f = factors[v];
+        const std::string code =
+            "<component id=\"torque\" type=\"Script/Lua\" driven=\"a\"><param name=\"code\">function force(t, state) driven:add_torque(" +
+            std::string(rung.bodies ? "vec(0, 0, 6)" : "6") + ") end</param></component>";
+        Trial t((rung.bodies ? wheel("a", 0) + wheel("b", 3) : shaft("a") + shaft("b")) + coupling("gear", rung.type, "a", "b", f) + code,
+                dt(1.0 / 60));
+        t.run(1);
+        if (!t.loaded()) return t.judge(0, {});
+        const auto speed = [&](const char* id) { return rung.bodies ? t.vec(id, "angular_velocity").z : t.real(id, "angular_velocity"); };
+        const double exact = rung.one_way ? 6 : 6 / (1 + f * f), a = speed("a"), b = speed("b");
+        return t.judge(std::fmax(std::fabs(a / exact - 1), std::fabs(b / (f * a) - 1)), {1e-9, 1});
+    };
+    c.quick = [](std::size_t, std::size_t v) { return v == 0 || v == 4; };
+    return c;
+}
+
+Case bad_gears()
+{
+    Case c{"gear_contradiction",
+           "Gears that contradict one another",
+           "Wheels of 1 kg m^2 that turn with 10 rad/s at first: three in a loop whose factors multiply to 1.2, two joined by two factors, "
+           "and two whose "
+           "speeds are both prescribed, otherwise than their gear asks. 1 s at 1/60 s. Error: largest speed at the end, relative to 10 "
+           "rad/s. Stable to 1 (at rest is the "
+           "only answer of a loop), bounded to 10.",
+           "coupling",
+           "contradiction",
+           coupling_names(),
+           {"loop of three", "two on a pair", "both prescribed"},
+           {},
+           {}};
+    c.run = [](std::size_t r, std::size_t v)
+    {
+        const Coupling& rung = couplings()[r];
+        const auto wheel_of = [&](const char* id, double x)
+        { return rung.bodies ? wheel(id, x, 10) : shaft(id, 10, v == 2 ? attribute("prescribed", std::string("true")) : ""); };
+        std::string parts =
+            wheel_of("a", 0) + wheel_of("b", 3) + wheel_of("c", 6) + coupling("g1", rung.type, "a", "b", v == 0 ? 2.0 : 3.0);
+        if (v == 0) parts += coupling("g2", rung.type, "b", "c", 3) + coupling("g3", rung.type, "a", "c", 5);
+        if (v == 1) parts += coupling("g2", rung.type, "a", "b", -2);
+        if (v == 2 && rung.bodies)
+            for (const char* id : {"a", "b"})
+                parts += component(std::string("motor.") + id, "Constraint/Motor",
+                                   attribute("b", std::string(id)) + attribute("axis", Vec3{0, 0, 1}) + attribute("speed", 10));
+        Trial t(parts, dt(1.0 / 60));
+        t.run(1);
+        if (!t.loaded()) return t.judge(0, {});
+        double worst = 0;
+        for (const char* id : {"a", "b", "c"})
+            worst = std::fmax(worst, std::fabs(rung.bodies ? t.vec(id, "angular_velocity").z : t.real(id, "angular_velocity")) / 10);
+        return t.judge(worst, {1, 10});
+    };
+    c.quick = [](std::size_t, std::size_t) { return true; };
+    return c;
+}
+
+Case bad_joints()
+{
+    const auto solvers = rungs_of("Solver");
+    Case c{"joint_contradiction",
+           "Joints that contradict one another",
+           "A body of 1 kg under its weight, held by rods of 1 m to two points 3 m apart; in two hinges askew (it is locked, and five rows "
+           "are "
+           "redundant); by two motors of 1 and 2 rad/s in a hinge; by a hinge that gravity turns through a rod at its dead centre. 1 s at "
+           "1/240 s. Error: "
+           "largest distance from the start, m. Stable to 2.1, bounded to 10.",
+           "solver",
+           "contradiction",
+           solvers,
+           {"rods too short", "hinges askew", "two motors", "dead centre"},
+           {},
+           {}};
+    c.run = [solvers](std::size_t r, std::size_t v)
+    {
+        std::string parts = gravity() + body("body", 1, {0.1, 0.1, 0.1}, {1, 0, 0});
+        const auto joint = [&](const char* id, const char* type, const std::string& more)
+        { parts += component(id, std::string("Constraint/") + type, attribute("b", std::string("body")) + more); };
+        const std::string foot = attribute("anchor", Vec3{}), y = attribute("axis", Vec3{0, 1, 0});
+        if (v == 0)
+            for (const double x : {0.0, 3.0})
+                joint(x > 0 ? "far" : "near", "Distance",
+                      attribute("anchor_a", Vec3{x, 0, 0}) + attribute("anchor_b", Vec3{}) + attribute("length", 1));
+        if (v >= 1) joint("hinge", "Hinge", foot + y);
+        if (v == 1) joint("askew", "Hinge", foot + attribute("axis", Vec3{0, 1, 1}));
+        if (v == 2)
+            for (const double speed : {1.0, 2.0}) joint(speed > 1 ? "fast" : "slow", "Motor", foot + y + attribute("speed", speed));
+        if (v == 3)
+            joint("rod", "Distance", attribute("anchor_a", Vec3{-2, 0, 0}) + attribute("anchor_b", Vec3{}) + attribute("length", 3));
+        Trial t(parts, dt(1.0 / 240) + attribute("solver", "Solver/" + solvers[r]));
+        double worst = 0;
+        t.run(1, [&] { worst = std::fmax(worst, length(t.vec("body", "position") - Vec3{1, 0, 0})); });
+        return t.judge(worst, {2.1, 10});
+    };
+    c.quick = [solvers](std::size_t r, std::size_t) { return solvers[r] == "RungeKutta4"; };
+    return c;
+}
+
+}  // namespace
+
+std::vector<Case> joint_cases() { return {ratios(), bad_gears(), bad_joints()}; }
+
+}  // namespace plab::stability

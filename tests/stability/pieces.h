@@ -1,0 +1,111 @@
+/// Pieces of blueprints, and contacts with each way to answer them.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "plab/vector.h"
+
+namespace plab::stability
+{
+
+inline constexpr double kG = 9.81;  // m/s^2
+
+inline std::string number(double x)
+{
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", x);
+    return text;
+}
+/// For headings.
+inline std::string brief(double x)
+{
+    char text[40];
+    std::snprintf(text, sizeof text, "%.3g", x);
+    return text;
+}
+inline std::string vector(const Vec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
+inline std::string dt(double h) { return "dt=\"" + number(h) + "\""; }
+
+inline std::string component(const std::string& id, const std::string& type, const std::string& more = "")
+{
+    return "<component id=\"" + id + "\" type=\"" + type + "\" " + more + "/>";
+}
+inline std::string attribute(const std::string& name, const std::string& value) { return " " + name + "=\"" + value + "\""; }
+inline std::string attribute(const std::string& name, double value) { return attribute(name, number(value)); }
+inline std::string attribute(const std::string& name, const Vec3& value) { return attribute(name, vector(value)); }
+
+inline std::string body(const std::string& id, double mass, const Vec3& inertia, const Vec3& at, const std::string& more = "")
+{
+    return component(id, "State/RigidBody",
+                     attribute("mass", mass) + attribute("inertia", inertia) + attribute("position", at) + " " + more);
+}
+inline std::string ball(const std::string& id, double radius, double mass, const Vec3& at, const std::string& more = "")
+{
+    return component(id + ".shape", "Shape/Sphere", attribute("radius", radius)) +
+           component(id, "State/RigidBody",
+                     attribute("shape", id + ".shape") + attribute("mass", mass) + attribute("position", at) + " " + more);
+}
+inline std::string box(const std::string& id, const Vec3& half, double mass, const Vec3& at, const std::string& more = "")
+{
+    return component(id + ".shape", "Shape/Box", attribute("half_extents", half)) +
+           component(id, "State/RigidBody",
+                     attribute("shape", id + ".shape") + attribute("mass", mass) + attribute("position", at) + " " + more);
+}
+inline std::string ground()
+{
+    return component("ground.shape", "Shape/Plane") + component("ground", "State/Static", attribute("shape", "ground.shape"));
+}
+inline std::string gravity(double g = kG)
+{
+    return component("weight", "Field/Gravity", attribute("between", "*") + attribute("acceleration", Vec3{0, 0, -g}));
+}
+
+/// A way to answer contacts.
+struct ContactRung
+{
+    std::string name, response, resolution, manager;
+    bool spring() const { return response == "Penalty" || response == "HuntCrossley"; }
+};
+
+/// Each response with the resolution that suits it, rows with each manager.
+inline const std::vector<ContactRung>& contact_rungs()
+{
+    static const std::vector<ContactRung> rungs{
+        {"Penalty", "Penalty", "", ""},
+        {"HuntCrossley", "HuntCrossley", "", ""},
+        {"Impulse, LocalRoot", "Impulse", "LocalRoot", ""},
+        {"Rows, Direct", "Rows", "None", "Direct"},
+        {"Rows, SequentialImpulse", "Rows", "None", "SequentialImpulse"},
+        {"Rows, SoftStep", "Rows", "None", "SoftStep"},
+    };
+    return rungs;
+}
+
+inline std::vector<std::string> names_of(const std::vector<ContactRung>& rungs)
+{
+    std::vector<std::string> out;
+    for (const ContactRung& r : rungs) out.push_back(r.name);
+    return out;
+}
+
+/// `response_more`: further attributes, as response.friction="..".
+inline std::string contact(const ContactRung& rung, const std::string& response_more = "")
+{
+    return component("contact", "CDetection/ODE",
+                     attribute("between", "*") + attribute("response", "Response/" + rung.response) +
+                         (rung.resolution.empty() ? "" : attribute("resolution", "Resolution/" + rung.resolution)) +
+                         (rung.manager.empty() ? "" : attribute("response.manager", "Manager/" + rung.manager)) + " " + response_more);
+}
+
+inline std::string solver(const std::string& name) { return component("solver", "Solver/" + name); }
+
+inline std::vector<std::string> brief(const std::vector<double>& values)
+{
+    std::vector<std::string> out;
+    for (const double v : values) out.push_back(brief(v));
+    return out;
+}
+
+}  // namespace plab::stability

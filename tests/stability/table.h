@@ -1,0 +1,29 @@
+/// The verdicts that are expected, as they stand in expected.txt: one line per cell.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "case.h"
+
+namespace plab::stability
+{
+
+/// "case | rung | value"
+std::string key_of(const Case& which, std::size_t rung, std::size_t value);
+
+class Table
+{
+public:
+    static Table read(const std::string& file);
+    const Outcome* find(const std::string& key) const;
+    void set(const std::string& key, const Outcome& outcome) { cells_[key] = outcome; }
+    /// In the order of the cases; cells that no case has any more are left out.
+    bool write(const std::string& file, const std::vector<Case>& cases) const;
+
+private:
+    std::map<std::string, Outcome> cells_;
+};
+
+}  // namespace plab::stability

@@ -1,0 +1,117 @@
+#include "trial.h"
+
+#include "blueprint/reader.h"
+#include "model/compile.h"
+#include "plugins/library.h"
+
+namespace plab::stability
+{
+
+namespace
+{
+
+plugins::PluginLibrary& library()
+{
+    static plugins::PluginLibrary instance({PLAB_BINARY_DIR "/lib/plab"});
+    return instance;
+}
+
+Result<std::unique_ptr<simulation::Simulation>> load(const std::string& text)
+{
+    const auto blueprint = blueprint::read_blueprint(text, "case.xml");
+    if (!blueprint) return blueprint.errors();
+    const auto scene = model::compile(*blueprint, library());
+    if (!scene) return scene.errors();
+    auto simulation = std::make_unique<simulation::Simulation>(library());
+    if (auto loaded = simulation->load(*scene); !loaded) return loaded.errors();
+    return simulation;
+}
+
+/// The place in a text that nobody sees is left out.
+std::string without_place(const std::string& message)
+{
+    const std::size_t end = message.find(": ");
+    return message.rfind("case.xml", 0) == 0 && end != std::string::npos ? message.substr(end + 2) : message;
+}
+
+}  // namespace
+
+Trial::Trial(const std::string& body, const std::string& settings, std::uint64_t most_evaluations) : most_evaluations_(most_evaluations)
+{
+    auto loaded = load("<plab version=\"1\"><scene " + settings + "/>" + body + "</plab>");
+    if (loaded)
+        simulation_ = std::move(*loaded);
+    else
+        refusal_ = without_place(loaded.error().text());
+}
+
+void Trial::step()
+{
+    simulation_->step();
+    evaluations_ += std::max<std::uint64_t>(simulation_->stepper().report().evaluations, 1);
+    for (const Event& e : simulation_->events())
+    {
+        ++counts_[e.kind];
+        if (e.severity != Severity::Info) ++troubles_[e.kind];
+    }
+}
+
+double Trial::real(const std::string& id, const std::string& field) const
+{
+    const auto& world = simulation_->world();
+    return std::get<double>(world.get(world.find(id), field));
+}
+Vec3 Trial::vec(const std::string& id, const std::string& field) const
+{
+    const auto& world = simulation_->world();
+    return std::get<Vec3>(world.get(world.find(id), field));
+}
+Quat Trial::quat(const std::string& id, const std::string& field) const
+{
+    const auto& world = simulation_->world();
+    return std::get<Quat>(world.get(world.find(id), field));
+}
+
+std::size_t Trial::count(const std::string& kind) const
+{
+    const auto found = counts_.find(kind);
+    return found == counts_.end() ? 0 : found->second;
+}
+
+std::string Trial::how() const
+{
+    std::string out;
+    for (const auto& [kind, n] : troubles_) out += (out.empty() ? "" : ", ") + kind;
+    if (finished_) return out;
+    char text[64];
+    std::snprintf(text, sizeof text, "%sslow: %.0f %% of the time", out.empty() ? "" : ", ", 100 * simulation_->time() / until_);
+    return out + text;
+}
+
+Outcome Trial::judge(double error, Bounds bounds) const
+{
+    if (refusal_.find(".so") != std::string::npos) return {Verdict::Silent, 0, "not run: a plugin is not there"};
+    if (!loaded()) return {Verdict::Refused, 0, refusal_};
+    if (count("state.not_finite") > 0) return {Verdict::Diverged, error, how()};
+    if (std::isfinite(error) && error <= bounds.bounded)
+        return {error <= bounds.stable && !warned() && finished_ ? Verdict::Stable : Verdict::Degraded, error, how()};
+    if (warned()) return {Verdict::Diverged, error, how()};
+    // An event for information that says as much.
+    if (count("manager.not_converged") > 0) return {Verdict::Diverged, error, "manager.not_converged"};
+    return {Verdict::Silent, error, how()};
+}
+
+std::vector<std::string> rungs_of(const std::string& family)
+{
+    std::vector<std::string> out;
+    for (const std::string& name : library().names())
+        if (name.rfind(family + "/", 0) == 0) out.push_back(name.substr(family.size() + 1));
+    return out;
+}
+
+void load_plugins()
+{
+    for (const std::string& name : library().names()) (void)library().require(name);
+}
+
+}  // namespace plab::stability

@@ -1,0 +1,92 @@
+// Each joint's rows against finite differences: J is the derivative of the error, and bias that of -J at constant speeds.
+#include "rows.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+const std::string kBodies = body("a", 2, {.2, .3, .4}, {.3, .1, -.2}, "orientation='0.8 0.4 0.2 0.4'") +
+                            body("b", 3, {.5, .6, .7}, {1, .4, .5}, "orientation='0.1 0.5 -0.7 0.5'") +
+                            body("c", 1, {.2, .2, .3}, {-1, .2, .1}, "orientation='0.5 0.5 0.5 -0.5'") +
+                            "<component id='s' type='State/Shaft' inertia='2'/><component id='t' type='State/Shaft' inertia='3'/>";
+
+struct Case
+{
+    const char *type, *more;
+    bool inside = true;  ///< an action on two bodies, and its reaction
+};
+const Case kCases[] = {
+    {"Ball", "a='a' b='b' anchor='0.7 0.2 0.1'"},
+    {"Ball", "b='b' anchor='0.7 0.2 0.1'", false},
+    {"Hinge", "a='a' b='b' anchor='0.7 0.2 0.1' axis='0.6 0 0.8'"},
+    {"Slider", "a='a' b='b' anchor='0.7 0.2 0.1' axis='0 0.6 0.8'"},
+    {"Fixed", "a='a' b='b' anchor='0.7 0.2 0.1'"},
+    {"Distance", "a='a' b='b' anchor_a='0.1 0.2 0.3' anchor_b='-0.2 0.1 0.4'"},
+    {"Motor", "a='a' b='b' axis='0.6 0 0.8' mode='servo' target='1' speed='inf' gain='3'"},
+    {"Motor", "a='a' b='b' along='slide' anchor_a='0.1 0.2 0.3' anchor_b='-0.2 0.1 0.4' axis='0.6 0 0.8' speed='2'"},
+    {"Gear", "driver='a' driven='b' carrier='c' velocity_factor='-2.5' driver_axis='0.6 0 0.8' driven_axis='0 0.6 0.8'"},
+    {"Gear", "driver='a' driven='s' velocity_factor='3' driver_axis='0 0 1'", false},
+    {"Planetary", "sun='a' ring='s' carrier='t' sun_teeth='20' ring_teeth='80' sun_axis='0.6 0.8 0'", false},
+    {"Rolling", "a='a' b='b' semi_axes='0.3 0.2 0.1' centre='0.02 0.01 -0.03' normal='0.6 0 0.8'"},
+    {"Rolling", "b='b' semi_axes='0.3 0.2 0.1' axes='0.8 0 0.6 0'", false},
+};
+
+}  // namespace
+
+TEST_CASE("rows: J and bias agree with central differences, error with the rate of its row")
+{
+    for (const Case& c : kCases)
+    {
+        CAPTURE(std::string(c.type));
+        CAPTURE(std::string(c.more));
+        RowProbe probe(kBodies + "<component id='j' type='Constraint/" + c.type + "' " + c.more + "/>");
+        probe.throw_about(1);
+        constexpr double h = 1e-4;
+        const auto at = probe.rows();
+        std::vector<std::vector<ConstraintRow>> around;
+        std::vector<std::vector<double>> speeds;
+        probe.move(-2 * h);
+        for (int i = -2; i <= 2; ++i, probe.move(h))
+        {
+            around.push_back(probe.rows());
+            speeds.emplace_back();
+            for (const ConstraintRow& row : around.back()) speeds.back().push_back(probe.speed(row) - row.rate);
+        }
+        REQUIRE(!at.empty());
+        for (std::size_t r = 0; r < at.size(); ++r)
+        {
+            CAPTURE(r);
+            const auto slope = [&](auto value) { return (value(0) - 8 * value(1) + 8 * value(3) - value(4)) / (12 * h); };
+            const double bias = -slope([&](std::size_t i) { return speeds[i][r]; });
+            CAPTURE(at[r].bias);
+            CAPTURE(bias);
+            CHECK(near(at[r].bias, bias, 1e-8));
+            if (at[r].kind != RowKind::Equality) continue;
+            const double rate = slope([&](std::size_t i) { return around[i][r].error; });
+            CHECK(near(speeds[2][r], rate, 1e-8));
+        }
+    }
+}
+
+TEST_CASE("rows between bodies are action and reaction: no force and no moment is left over")
+{
+    for (const Case& c : kCases)
+    {
+        if (!c.inside) continue;
+        CAPTURE(std::string(c.type));
+        RowProbe probe(kBodies + "<component id='j' type='Constraint/" + c.type + "' " + c.more + "/>");
+        for (const ConstraintRow& row : probe.rows())
+        {
+            Vec3 force, moment;
+            for (std::uint32_t k = 0; k < row.count; ++k)
+            {
+                const RowBlock& b = row.blocks[k];
+                force += b.linear, moment += cross(probe.host().bodies.position[b.who.index], b.linear) + b.angular;
+            }
+            CHECK(length(force) < 1e-15);
+            CHECK(length(moment) < 1e-15);
+        }
+    }
+}

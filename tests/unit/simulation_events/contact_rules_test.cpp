@@ -1,0 +1,69 @@
+// Which resolution goes with which response, and what is said of parameters that nobody uses.
+#include "simulation/contact_rules.h"
+#include "support/scene.h"
+
+using namespace plab;
+using plab::test::Scene;
+
+namespace
+{
+
+std::string scene(const std::string& resolution, const std::string& response)
+{
+    return "<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
+           "<component id=\"ball\" type=\"Shape/Sphere\" radius=\"1\"/>"
+           "<component id=\"a\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" position=\"0 0 3\"/>"
+           "<component id=\"contact\" type=\"CDetection/ODE\" between=\"a ground\" resolution=\"Resolution/" +
+           resolution + "\" response=\"Response/" + response + "\"/>";
+}
+
+std::vector<std::string> unused(const Scene& s)
+{
+    return simulation::unused_in_contacts(s.simulation().world(), s.simulation().stepper().detectors());
+}
+
+}  // namespace
+
+TEST_CASE("a resolution that speculates needs a response by rows")
+{
+    for (const char* response : {"Impulse", "None", "Penalty", "HuntCrossley"})
+    {
+        CAPTURE(response);
+        const Scene s(scene("Speculative", response));
+        CHECK(s.error().find("contact (CDetection/ODE)") != std::string::npos);
+        CHECK(s.error().find("it needs a response by rows, like Response/Rows") != std::string::npos);
+    }
+    CHECK(Scene(scene("Speculative", "Rows")).loaded());
+}
+
+TEST_CASE("every other resolution goes with every response")
+{
+    for (const char* resolution : {"None", "Bisection", "LocalBisection", "ConservativeAdvancement", "LocalRoot"})
+        for (const char* response : {"Impulse", "Rows", "None", "Penalty", "HuntCrossley"})
+        {
+            CAPTURE(resolution);
+            CAPTURE(response);
+            const Scene s(scene(resolution, response));
+            CHECK_MESSAGE(s.loaded(), s.error());
+        }
+}
+
+TEST_CASE("an exchange that would make nonsense is refused, and nothing changes")
+{
+    Scene s(scene("LocalRoot", "Impulse"));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    CHECK_FALSE(s.ask(simulation::SwapOperation{"contact.resolution", "Resolution/Speculative", {}}).done);
+    s.step();
+    CHECK(s.ask(simulation::SwapOperation{"contact.response", "Response/Rows", {}}).done);
+    CHECK(s.ask(simulation::SwapOperation{"contact.resolution", "Resolution/Speculative", {}}).done);
+}
+
+TEST_CASE("a resolution that finds times is not used where contacts are forces, and --explain has a sentence on it")
+{
+    const Scene force(scene("LocalRoot", "Penalty"));
+    REQUIRE_MESSAGE(force.loaded(), force.error());
+    REQUIRE(unused(force).size() == 1);
+    CHECK(unused(force)[0].find("contact: Resolution/LocalRoot is not used, as contacts of Response/Penalty are forces") == 0);
+    CHECK(unused(Scene(scene("None", "Penalty"))).empty());
+    CHECK(unused(Scene(scene("LocalRoot", "Impulse"))).empty());
+}
