@@ -16,7 +16,7 @@ struct Solved
     double value = 0;
 };
 
-/// What both laws ask of the surface and of the host (server/simulation/contact_forces.h reads the last two by name).
+/// What both laws ask of the surface and of the host (server/simulation/contact_forces/contact_forces.h reads the last two by name).
 struct SurfaceColumns
 {
     Column<double> friction, restitution;       // 1

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bus/wire_view.h"
-#include "simulation/request_words.h"
+#include "simulation/requests/request_words.h"
 
 namespace plab::bus
 {

@@ -3,7 +3,7 @@
 
 #include "model/type_registry.h"
 #include "publish/records.h"
-#include "simulation/requests.h"
+#include "simulation/requests/requests.h"
 
 namespace plab::control
 {

@@ -3,8 +3,8 @@
 #include <map>
 
 #include "publish/figures.h"
-#include "simulation/contact_rules.h"
-#include "simulation/step_tree.h"
+#include "simulation/contacts/contact_rules.h"
+#include "simulation/step/step_tree.h"
 
 namespace plab::daemon
 {

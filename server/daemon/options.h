@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "plab/result.h"
-#include "simulation/requests.h"
+#include "simulation/requests/requests.h"
 
 namespace plab::daemon
 {

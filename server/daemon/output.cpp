@@ -101,7 +101,8 @@ void append_pair(std::string& out, const simulation::Simulation& s, const Pair& 
 std::string contacts_json(const simulation::Simulation& s)
 {
     std::string out;
-    for (const simulation::PairState& pair : s.stepper().contacts().pairs()) append_pair(out, s, pair, pair.resting);
+    for (const simulation::PairState& pair : s.stepper().contacts().pairs())
+        if (!pair.ahead) append_pair(out, s, pair, pair.resting);
     for (const simulation::ForcePair& pair : s.stepper().contacts().force_pairs()) append_pair(out, s, pair, false);
     return out;
 }

@@ -3,7 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "simulation/clock.h"
-#include "simulation/request_words.h"
+#include "simulation/requests/request_words.h"
 
 namespace plab::daemon
 {

@@ -11,7 +11,7 @@
 #include "model/type_summary.h"
 #include "plab/context.h"
 #include "plab/vector.h"
-#include "simulation/requests.h"
+#include "simulation/requests/requests.h"
 
 namespace plab::publish
 {

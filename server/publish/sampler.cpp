@@ -1,5 +1,7 @@
 #include "publish/sampler.h"
 
+#include <algorithm>
+
 #include "publish/entries.h"
 #include "publish/figures.h"
 
@@ -64,7 +66,9 @@ Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
     fill_ledger(s, out);
     out.residual = s.stepper().report().worst_residual, out.deepest = s.stepper().report().deepest;
     const simulation::ContactCache& contacts = s.stepper().contacts();
-    out.contacts = static_cast<std::uint32_t>(contacts.pairs().size() + contacts.force_pairs().size());
+    const auto touches = [](const simulation::PairState& p) { return !p.ahead; };
+    out.contacts = static_cast<std::uint32_t>(
+        static_cast<std::size_t>(std::count_if(contacts.pairs().begin(), contacts.pairs().end(), touches)) + contacts.force_pairs().size());
     std::vector<std::string> resolved = resolved_algorithms(s);
     for (const std::uint32_t i : s.world().in_id_order())
     {

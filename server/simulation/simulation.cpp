@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/divergence_watch.h"
-#include "simulation/field_change.h"
-#include "simulation/transaction.h"
+#include "simulation/watch/divergence_watch.h"
+#include "simulation/requests/field_change.h"
+#include "simulation/requests/transaction.h"
 
 namespace plab::simulation
 {

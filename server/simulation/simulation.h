@@ -5,8 +5,8 @@
 #include <memory>
 #include <set>
 
-#include "simulation/requests.h"
-#include "simulation/stepper.h"
+#include "simulation/requests/requests.h"
+#include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {

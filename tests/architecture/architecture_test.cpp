@@ -75,7 +75,7 @@ TEST_CASE("what breaks the table is seen, layer by layer")
     CHECK(breaks("server/sdk/plab/a.h", "#include <math.h>"));
     CHECK(breaks("server/model/a.cpp", "#include \"world/world.h\""));
     CHECK(breaks("server/model/a.cpp", "#include <expat.h>"));
-    CHECK(breaks("server/world/a.cpp", "#include \"simulation/stepper.h\""));
+    CHECK(breaks("server/world/a.cpp", "#include \"simulation/step/stepper.h\""));
     CHECK(breaks("server/blueprint/a.cpp", "#include \"world/world.h\""));
     CHECK(breaks("server/blueprint/a.h", "#include <expat.h>"));
     CHECK(breaks("server/plugins/a.cpp", "#include \"blueprint/tree.h\""));

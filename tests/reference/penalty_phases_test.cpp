@@ -70,7 +70,7 @@ TEST_CASE("within a contact too, kinetic and stored energy are what came in")
     for (const char* response : {"Penalty response.stiffness='1e4'", "HuntCrossley response.stiffness='1e6'"})
     {
         CAPTURE(response);
-        Scene s(falling(1e-3, 1, response), dt(1000));
+        Scene s(falling(1e-3, 1, response) + "<component id='solver' type='Solver/RungeKutta4'/>", dt(1000));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         double most = 0;
         for (int i = 0; i < 60; ++i)

@@ -165,7 +165,8 @@ TEST_CASE("Hertz: two balls part after 2.9432 (x_m / v), and have pushed as deep
     const double k = 1e8, m = 0.5, v = 2, deepest = std::pow(1.25 * m * v * v / k, 0.4), time = 2.9432749960 * deepest / v;
     Scene s(ball("a", "mass=\"1\" position=\"-0.101 0 0\" linear_velocity=\"1 0 0\"") +
                 ball("b", "mass=\"1\" position=\"0.101 0 0\" linear_velocity=\"-1 0 0\"") +
-                contact("a b", "HuntCrossley\" response.stiffness=\"" + number(k) + "\""),
+                contact("a b", "HuntCrossley\" response.stiffness=\"" + number(k) + "\"") +
+                "<component id=\"solver\" type=\"Solver/RungeKutta4\"/>",
             "dt=\"1/100\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;

@@ -67,6 +67,8 @@ inline void check_storm(Scene& s, StormResult& out)
         out.highest = std::max(out.highest, p.z);
         out.gear_error = std::max(out.gear_error, std::fabs(s.real("gear" + std::to_string(i), "velocity_error")));
     }
+    for (int i = 0; i < 4; ++i) out.finite = out.finite && is_finite(s.vec("link" + std::to_string(i), "linear_velocity"));
+    for (int i = 0; i < 7; ++i) out.finite = out.finite && std::isfinite(s.spin("shaft" + std::to_string(i)));
     for (int i = 0; i < 4; ++i) out.chain_error = std::max(out.chain_error, s.real("joint" + std::to_string(i), "position_error"));
     for (const char* id : {"low", "high"})
     {
@@ -131,6 +133,8 @@ inline StormResult storm(int swaps, std::uint64_t seed, int threads = 1)
             s.step();
             const simulation::Totals t = s.simulation().totals();
             const double now = t.kinetic - s.simulation().kinetic_at_start() - t.work;
+            // A comparison with what is not a number is false: it has to be asked for.
+            out.finite = out.finite && std::isfinite(now) && std::isfinite(t.stored);
             out.worst_ledger = std::max(out.worst_ledger, std::fabs(now - unexplained));
             unexplained = now;
         }

@@ -17,9 +17,7 @@ Case overlap()
            "A ball of 0.5 m radius and 1 kg starts the given depth in the floor, and in a second ball beside it; 2 s at 1/60 s, springs of "
            "1e4 N/m "
            "with restitution 0.2. Error: the largest kinetic energy relative to what a fall from twice its size would give (a spring gives "
-           "back "
-           "what the overlap stored, and motion.diverged says that nobody put it in). Stable to 1, bounded to 1e3; through the floor is "
-           "beyond all bounds.",
+           "back what the overlap stored). Stable to 1, bounded to 1e3; through the floor is beyond all bounds.",
            "contact",
            "depth, m",
            names_of(contact_rungs()),

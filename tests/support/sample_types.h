@@ -187,6 +187,7 @@ inline void register_sample_objects(Registrar& r)
     shape(r.component<SampleMesh>("Shape/Mesh", "triangles"));
     solver(r.component<SampleSolver>("Solver/RungeKutta4", "order 4"));
     solver(r.component<SampleSolver>("Solver/SemiImplicitEuler", "order 1"));
+    solver(r.component<SampleSolver>("Solver/Automatic", "chooses"));
 }
 
 inline void register_sample_interactions(Registrar& r)

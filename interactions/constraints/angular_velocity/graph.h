@@ -2,7 +2,7 @@
 ///
 ///   J_root = sum rho_i^2 J_i,  alpha_root = sum rho_i tau_i / J_root,  speed_i = rho_i speed_root
 /// Ratios to the root are products of exact rationals; loops are compared exactly
-/// (server/simulation/constraint_graph.h).
+/// (server/simulation/shafts/constraint_graph.h).
 #pragma once
 
 #include "angular_velocity/coupling_rows.h"

@@ -17,7 +17,7 @@ enum class Stage : std::uint8_t
     Deinit,
 };
 
-/// When the host calls a command. The order is the order of the step (server/simulation/step_tree.h holds the tree).
+/// When the host calls a command. The order is the order of the step (server/simulation/step/step_tree.h holds the tree).
 enum class Phase : std::uint8_t
 {
     Measure,    ///< Init: mass properties of a shape

@@ -131,7 +131,7 @@ TEST_CASE("generated components, defaults of roles and commands are written out"
         text,
         "<component id=\"contact\" type=\"CDetection/ODE\" between=\"ball floor\" resolution=\"contact.resolution\" "
         "response=\"contact.response\">"));
-    CHECK(contains(text, "<component id=\"solver\" type=\"Solver/RungeKutta4\">"));
+    CHECK(contains(text, "<component id=\"solver\" type=\"Solver/Automatic\">"));
     CHECK(contains(text, "<param name=\"position\">0.1 -0 "));
     CHECK(contains(text, "<param name=\"radius\">0.05</param>"));
     CHECK(contains(text,

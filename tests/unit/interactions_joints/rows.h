@@ -2,7 +2,7 @@
 #pragma once
 
 #include "plab/rotation.h"
-#include "simulation/row_system.h"
+#include "simulation/rows/row_system.h"
 #include "support/joints.h"
 
 namespace plab::test

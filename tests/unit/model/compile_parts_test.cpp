@@ -37,7 +37,7 @@ TEST_CASE("parts that are left out are made with stable ids")
     CHECK(s.find("c.response")->parent == "c");
     CHECK(s.find("c.response")->generated);
     CHECK(s.find("c.response")->where.line == 9);
-    CHECK(s.find("solver")->type == "Solver/RungeKutta4");
+    CHECK(s.find("solver")->type == "Solver/Automatic");
     CHECK(s.find("solver")->parent.empty());
     CHECK(role_of(s, "a", "solver") == "solver");
 }
@@ -185,7 +185,7 @@ TEST_CASE("long and short form say the same")
                   component("c.resolution", "Resolution/Bisection", {{"tolerance", "1e-6"}})};
     c.children[0].parameters = {text("restitution", "1/2")};
     const model::SceneSpec longer =
-        compiled(scene({body("a"), body("b"), c, component("solver", "Solver/RungeKutta4")}));
+        compiled(scene({body("a"), body("b"), c, component("solver", "Solver/Automatic")}));
     const model::SceneSpec shorter =
         compiled(scene(collision({{"response.restitution", "0.5"}, {"resolution.tolerance", "1 us"}})));
     for (const model::ComponentSpec& spec : shorter.components)

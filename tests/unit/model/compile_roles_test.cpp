@@ -188,7 +188,7 @@ TEST_CASE("participants of a scene that is there already")
     CHECK(model::resolve_participant(s, types, "axl", role).error().reason ==
           "role driver: no component has the id 'axl', did you mean 'axle'?");
     CHECK(model::resolve_participant(s, types, "solver", role).error().reason ==
-          "role driver needs a shaft, but 'solver' is Solver/RungeKutta4");
+          "role driver needs a shaft, but 'solver' is Solver/Automatic");
 }
 
 TEST_CASE("a fragment sees the scene that it joins")

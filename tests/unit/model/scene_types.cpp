@@ -170,6 +170,7 @@ void register_objects(Registrar& r)
         .host_command(Phase::Draw, "Shape/Draw", "");
     r.component<MeshRows>("Shape/Mesh", "triangles").facet(Facet::Shape).host_command(Phase::Draw, "Shape/Draw", "");
     r.component<PlacedRows>("Shape/Placed", "a shape once more").facet(Facet::Shape);
+    r.component<SolverRows>("Solver/Automatic", "").host_command(Phase::Advance, "Solver/Advance", "");
     r.component<SolverRows>("Solver/RungeKutta4", "").host_command(Phase::Advance, "Solver/Advance", "");
     r.component<SolverRows>("Solver/SemiImplicitEuler", "").host_command(Phase::Advance, "Solver/Advance", "");
 }

@@ -202,7 +202,8 @@ TEST_CASE("metrics: figures of the run, and who does the work")
     CHECK(contact->resolved == "CDetection/ODE: Resolution/Bisection (rewinds the whole world), Response/Impulse");
     CHECK(contact->cost_ns > 0);
     CHECK(contact->cost_ns < m.step_ns);
-    CHECK(find_entry(m.interactions, "solver")->resolved == "Solver/RungeKutta4: 1 group, 1 object");
+    CHECK(find_entry(m.interactions, "solver")->resolved ==
+          "Solver/Automatic: 1 group, 1 object, by Exact (last choice: Exact: forces are uniform and no joints hold)");
     const auto* gravity = find_entry(m.interactions, "gravity");
     CHECK(gravity->resolved == "Field/Gravity");
     CHECK(gravity->work == scene.simulation().stepper().work()[scene.simulation().world().find("gravity")]);
@@ -241,6 +242,7 @@ TEST_CASE("metrics in turn, at once after a request, for newcomers")
 TEST_CASE("solvers: what they advance, mixtures, and those without work")
 {
     Scene scene(R"(
+      <component id="solver" type="Solver/RungeKutta4"/>
       <component id="euler" type="Solver/SemiImplicitEuler"/>
       <component id="idle" type="Solver/SemiImplicitEuler"/>
       <component id="a" type="State/Shaft" inertia="1" solver="euler"/>

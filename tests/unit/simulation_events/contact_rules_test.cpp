@@ -1,5 +1,5 @@
 // Which resolution goes with which response, and what is said of parameters that nobody uses.
-#include "simulation/contact_rules.h"
+#include "simulation/contacts/contact_rules.h"
 #include "support/scene.h"
 
 using namespace plab;

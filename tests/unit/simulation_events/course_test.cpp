@@ -6,7 +6,7 @@
 
 #include "plab/random.h"
 #include "plab/rotation.h"
-#include "simulation/course.h"
+#include "simulation/events/course.h"
 
 using namespace plab;
 using namespace plab::simulation;

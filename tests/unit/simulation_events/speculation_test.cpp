@@ -1,12 +1,12 @@
 // How far gaps are looked for: nothing that can close within the step lies beyond.
-#include "simulation/speculation.h"
+#include "simulation/events/speculation.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "simulation/paradox.h"
+#include "simulation/contacts/paradox.h"
 
 using namespace plab;
 using namespace plab::simulation;

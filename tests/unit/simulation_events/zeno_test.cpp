@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "simulation/zeno.h"
+#include "simulation/events/zeno.h"
 
 using namespace plab;
 using namespace plab::simulation;

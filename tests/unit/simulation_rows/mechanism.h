@@ -9,7 +9,7 @@
 
 #include "joints/sides.h"
 #include "plab/rotation.h"
-#include "simulation/row_system.h"
+#include "simulation/rows/row_system.h"
 
 namespace plab::test
 {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "plab/plugin.h"
-#include "simulation/constraint_graph.h"
-#include "simulation/shaft_coupling.h"
-#include "simulation/shaft_reactions.h"
+#include "simulation/shafts/constraint_graph.h"
+#include "simulation/shafts/shaft_coupling.h"
+#include "simulation/shafts/shaft_reactions.h"
 
 extern "C" void plab_plugin_register(plab::Registrar& registrar);
 

@@ -1,0 +1,301 @@
+// An island of groups that may touch by force, in pieces of the step.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "simulation/contact_forces/contact_forces.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+namespace
+{
+/// Beginnings and ends of contacts in one step of one island that are located; later ones come at the ends of pieces.
+constexpr int kMostEvents = 20000;
+/// Fewest pieces per contact, however stiff: far from where explicit methods blow up (rate * h < 2 for the weakest).
+constexpr double kFewestPerContact = 4;
+/// The same for one that rests.
+constexpr double kFewestAtRest = 8;
+constexpr int kMostTrials = 100;
+constexpr int kMostPieces = 10'000'000;
+}  // namespace
+
+void ContactForces::save(const GroupSystem& system)
+{
+    const world::HostTables& host = s_->world_.host();
+    for (const std::uint32_t b : system.bodies()) memento_.save_body(host, b);
+    for (const std::uint32_t s : system.shafts()) memento_.save_shaft(host, s);
+    for (const std::uint32_t q : system.quantities()) memento_.save_quantities(host, q);
+    before_ = live_;
+}
+
+void ContactForces::restore(const GroupSystem& system)
+{
+    world::HostTables& host = s_->world_.host();
+    for (const std::uint32_t b : system.bodies()) memento_.restore_body(host, b);
+    for (const std::uint32_t s : system.shafts()) memento_.restore_shaft(host, s);
+    for (const std::uint32_t q : system.quantities()) memento_.restore_quantities(host, q);
+    live_ = before_;
+}
+
+bool ContactForces::run(Piece& piece, double to, WorkBook book, bool trial)
+{
+    piece.system->set_extra_forces(pushing_.empty() ? nullptr : this);
+    const bool finite = s_->run_solver(*piece.system, piece.solver, piece.t, to, book, s_->sink_for(trial));
+    piece.system->set_extra_forces(nullptr);
+    return finite;
+}
+
+double ContactForces::number(std::uint32_t response, const char* name, double otherwise) const
+{
+    const Field* field = s_->world_.table_of(response).schema().find_field(name);
+    const Row row = s_->world_.component(response).row;
+    if (field)
+        if (const auto* column = dynamic_cast<const Column<std::int64_t>*>(field->column)) return static_cast<double>((*column)[row]);
+    return otherwise;
+}
+
+/// m/s: no two points of the pair come together faster.
+double ContactForces::closing_bound(const NearPair& p) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const auto turning = [&](Ref r) { return speed_of(r) - length(bodies.velocity[r.index]); };
+    return length(bodies.velocity[p.a.index] - bodies.velocity[p.b.index]) + turning(p.a) + turning(p.b);
+}
+
+double ContactForces::margin_for(double h) const
+{
+    double margin = 1e-9;
+    for (const NearPair& p : pairs_)
+    {
+        const double way = 2 * closing_bound(p) * h;
+        if (std::isfinite(way)) margin = std::max(margin, way);
+    }
+    // A spring that took over from a hard contact reaches beyond the surface.
+    double open = 0;
+    for (const Pushing& p : pushing_) open = std::max(open, -live_.pairs[p.pair].contacts[p.contact].open_depth);
+    return margin + 2 * open;
+}
+
+/// s: as far as nobody can pass through anybody unseen.
+double ContactForces::free_time(double most) const
+{
+    double time = most;
+    for (const NearPair& p : pairs_)
+    {
+        const double size = std::min(s_->radius_of_body_[p.a.index], s_->radius_of_body_[p.b.index]);
+        const double speed = closing_bound(p);
+        if (!std::isfinite(speed) || !(size > 0) || !std::isfinite(size) || speed * most <= 0.25 * size) continue;
+        double gap = margin_;
+        for (const Seen& s : at_start_)
+            if (s.found.contact.a == p.a && s.found.contact.b == p.b) gap = std::min(gap, -s.found.contact.depth);
+        time = std::min(time, std::max(gap, 0.25 * size) / speed);
+    }
+    return time;
+}
+
+/// rad/s: of the contacts that push, together. By Gershgorin: the squares of the frequencies of M^-1 J^T k J are no more than
+/// the largest of, over the contacts, the sums over all contacts of its two bodies.
+double ContactForces::fastest_rate()
+{
+    for (const std::uint32_t b : bodies_)
+        for (auto& sums : sums_) sums[b] = 0;
+    const auto parts = [](const ForceContact& c) { return std::array{c.rates.normal, c.rates.tangential, c.rates.damping}; };
+    for (const Pushing& p : pushing_)
+    {
+        const ForcePair& pair = live_.pairs[p.pair];
+        const auto part = parts(pair.contacts[p.contact]);
+        const double of_a = pair.contacts[p.contact].rates.share_a;
+        for (std::size_t i = 0; i < 3; ++i) sums_[i][pair.a.index] += of_a * part[i], sums_[i][pair.b.index] += (1 - of_a) * part[i];
+    }
+    std::array<double, 3> most{};
+    for (const Pushing& p : pushing_)
+    {
+        const ForcePair& pair = live_.pairs[p.pair];
+        for (std::size_t i = 0; i < 3; ++i) most[i] = std::max(most[i], sums_[i][pair.a.index] + sums_[i][pair.b.index]);
+    }
+    const double swing = std::sqrt(std::max(most[0], most[1]));
+    return most[2] > 2 * swing ? most[2] : swing;
+}
+
+double ContactForces::spin_rate() const
+{
+    double rate = 0;
+    for (const Pushing& p : pushing_)
+        for (const Ref r : {live_.pairs[p.pair].a, live_.pairs[p.pair].b})
+            rate = std::max(rate, length(s_->world_.host().bodies.angular_velocity[r.index]));
+    return rate;
+}
+
+/// The error of a swing is its speed times pieces^-order: as it dies, fewer do for the same error.
+double ContactForces::pieces_per_contact(const ForceContact& contact, double wanted) const
+{
+    if (!(contact.lively < contact.liveliest)) return wanted;
+    return std::clamp(wanted * std::pow(contact.lively / contact.liveliest, 1.0 / order_), std::min(kFewestAtRest, wanted), wanted);
+}
+
+/// s: length of a piece while something pushes. Half of the pieces that a step may have are as short as was asked for, so
+/// that a short contact gets them all; the others share what is left.
+double ContactForces::contact_time(double left, int used)
+{
+    double per_contact = 0, most = kMostPieces, wanted_pieces = 0;
+    std::uint32_t response = kNoIndex, detector = kNoIndex;
+    for (const Pushing& p : pushing_)
+    {
+        const ForcePair& pair = live_.pairs[p.pair];
+        if (std::exchange(detector, pair.detector) != pair.detector)
+        {
+            const auto is_it = [&](const Detector& d) { return d.component == pair.detector; };
+            response = std::find_if(s_->detectors_.begin(), s_->detectors_.end(), is_it)->response;
+            wanted_pieces = number(response, "steps_per_contact", 200);
+            most = std::min(most, number(response, "max_substeps", 20000));
+        }
+        per_contact = std::max(per_contact, pieces_per_contact(pair.contacts[p.contact], wanted_pieces));
+    }
+    const double rate = fastest_rate();
+    // A stiction spring's turn is known up to half a turn.
+    const double turn = spin_rate();
+    const double longest = turn > 0 ? std::min(left, 1 / turn) : left;
+    if (!(rate > 0)) return longest;
+    const double wanted = std::numbers::pi / (rate * per_contact);
+    if (used < 0.5 * most || left / wanted <= most - used) return std::min(longest, wanted);
+    if (left / wanted + used > pieces_needed_) pieces_needed_ = left / wanted + used, stiff_ = response;
+    const double fewest = std::numbers::pi / (rate * kFewestPerContact);
+    const double share = left / std::max(most - used, 1.0);
+    return std::min(longest, share < fewest ? std::max(share, wanted) : share);
+}
+
+double ContactForces::next_time(const Piece& piece)
+{
+    const double left = piece.end - piece.t;
+    const double h = pushing_.empty() ? free_time(left) : contact_time(left, piece.pieces);
+    const double n = std::ceil(left / h - 1e-9);
+    return n <= 1 ? piece.end : piece.t + left / n;
+}
+
+/// The time of the first switch in (t, high], which is known to hold one.
+double ContactForces::locate(Piece& piece, double high)
+{
+    double low = piece.t, width = 2 * (high - low);
+    at_low_ = at_start_, at_high_ = at_end_;
+    for (int i = 0; i < kMostTrials; ++i)
+    {
+        double next = guess(low, high, at_low_, at_high_);
+        // Where guesses creep up from one side, halve.
+        if (i % 3 == 2 && high - low > 0.25 * width) next = low + 0.5 * (high - low);
+        if (i % 3 == 2) width = high - low;
+        if (!(next > low && next < high) || high - low <= 0x1p-51 * high) break;
+        restore(*piece.system);
+        (void)run(piece, next, {}, true);
+        ++s_->report_.trials;
+        inspect(margin_, at_trial_);
+        const bool beyond = has_switched(at_trial_);
+        if (beyond) at_high_ = at_trial_;
+        if (!any_slack_change() && is_there(at_trial_, at_high_)) return next;
+        if (!beyond) std::swap(at_low_, at_trial_);
+        (beyond ? high : low) = next;
+    }
+    return high;
+}
+
+void ContactForces::one_piece(Piece& piece)
+{
+    const double before = margin_;
+    const double left = piece.end - piece.t;
+    const double wanted = margin_for(pushing_.empty() ? left : std::min(left, contact_time(left, piece.pieces)));
+    margin_ = before >= wanted && before <= 4 * wanted ? before : 2 * wanted;
+    if (margin_ == before && piece.pieces > 0)
+        std::swap(at_start_, at_end_);
+    else
+        inspect(margin_, at_start_);
+    double to = next_time(piece);
+    save(*piece.system);
+    piece.finite = run(piece, to, piece.book, piece.trial);
+    inspect(margin_, at_end_);
+    const bool switched = has_switched(at_end_);
+    if (switched && piece.finite && piece.events < kMostEvents)
+    {
+        ++piece.events, ++s_->report_.events;
+        restore(*piece.system);
+        if (piece.book.work) (void)run(piece, to, {piece.book.work, -piece.book.sign}, true);
+        to = locate(piece, to);
+        restore(*piece.system);
+        piece.finite = run(piece, to, piece.book, piece.trial);
+        inspect(margin_, at_end_);
+        evaluate_laws();
+    }
+    const double from = std::exchange(piece.t, to);
+    ++piece.pieces;
+    commit(to, to - from);
+    switch_contacts(at_end_, to);
+}
+
+void ContactForces::attach(GroupSystem& system, std::span<const std::uint32_t> groups)
+{
+    bind(groups);
+    anchor();
+    margin_ = margin_for(0);
+    if (!pushing_.empty()) system.set_extra_forces(this);
+}
+
+void ContactForces::start(double from)
+{
+    anchor();
+    margin_ = margin_for(1e-9 * s_->frame_.step);
+    inspect(margin_, at_end_);
+    switch_contacts(at_end_, from);
+    if (from > 0) return;
+    // How deep it will get is asked anew in each step: what hit hard may have come to rest.
+    for (const Seen& s : at_end_)
+        if (ForceContact* known = find_pushing(s.found); known && known->asked != s_->frame_.tick)
+            known->asked = s_->frame_.tick, expect(*known, s.found, std::fabs(s.parting));
+}
+
+void ContactForces::advance_island(const Island& island, double from, double to, WorkBook book, bool trial)
+{
+    Piece piece;
+    piece.system = &s_->system_for(island.groups, island.shadows);
+    piece.solver = solver_of(island);
+    piece.begin = piece.t = from, piece.end = to;
+    piece.book = book, piece.trial = trial;
+    // Whoever moves as told is where it is at `from`.
+    piece.system->begin(from, from, {}, nullptr);
+    piece.system->move_prescribed();
+    order_ = std::max(1, s_->world_.type_of(piece.solver)->info.order);
+    start(from);
+    // Free flight and switches come on top of what contacts may have.
+    while (piece.t < to && piece.finite && piece.pieces < kMostPieces) one_piece(piece);
+    if (piece.t < to && piece.finite) piece.finite = run(piece, to, book, trial);
+    s_->finish_advance(*piece.system, piece.finite, to, trial);
+}
+
+/// Standing hard contacts and springs in one island: the hard ones' time stepping, cut as the springs need it. Springs are
+/// taken half a piece ahead of the speeds, which makes kick and mean move together symplectic:
+///   v1 = v0 - h w^2 (x0 + h v0 / 2),  x1 = x0 + h (v0 + v1) / 2   =>   det = 1.
+void ContactForces::advance_mixed(const Island& island, double from, double to, WorkBook book, bool trial)
+{
+    order_ = 2;
+    start(from);
+    int pieces = 0;
+    for (double t = from; t < to && pieces < kMostPieces; ++pieces)
+    {
+        const double left = to - t;
+        const double h = pushing_.empty() ? free_time(left) : contact_time(left, pieces);
+        const double n = std::ceil(left / h - 1e-9);
+        const double next = n <= 1 ? to : t + left / n;
+        margin_ = margin_for(next - t);
+        lead_ = 0.5 * (next - t), taken_ = false;
+        s_->extra_ = this;
+        s_->advance_contacts(island.groups, island.shadows, t, next, book, trial);
+        s_->extra_ = nullptr;
+        lead_ = 0;
+        const double gone = next - std::exchange(t, next);
+        inspect(margin_, at_end_);
+        evaluate_laws();
+        commit(t, gone);
+        switch_contacts(at_end_, t);
+    }
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,94 @@
+// What is told of contacts that are forces when a step is over.
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "simulation/contact_forces/contact_forces.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+
+/// The reported impulse of a contact that is a force is that of its present force over the step.
+void ContactForces::report(std::vector<FoundContact>& found)
+{
+    for (FoundContact& f : found)
+    {
+        if (!by_force_[f.detector]) continue;
+        const ForceContact* known = find_known(f);
+        if (!known) continue;
+        f.contact.id = known->id, f.contact.impulse = known->force * s_->frame_.step;
+        f.contact.stretch = known->stretch;
+    }
+}
+
+/// Each law sees all of its contacts once more, together: its outputs are those of the whole scene at the end of the step.
+void ContactForces::run_outputs(std::vector<FoundContact>& found)
+{
+    StepContext context;
+    context.time = s_->frame_.start_time + s_->frame_.step, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+    for (std::uint32_t d = 0; d < by_force_.size(); ++d)
+    {
+        const std::uint32_t response = s_->detectors_[d].response;
+        const auto answers = [&](const Detector& other) { return other.by_force && other.response == response; };
+        const auto first = std::find_if(s_->detectors_.begin(), s_->detectors_.end(), answers);
+        if (!by_force_[d] || first - s_->detectors_.begin() != static_cast<std::ptrdiff_t>(d)) continue;
+        law_contacts_.clear();
+        for (const FoundContact& f : found)
+        {
+            const ForceContact* known = answers(s_->detectors_[f.detector]) ? find_pushing(f) : nullptr;
+            if (!known) continue;
+            FoundContact own = f;
+            s_->fill_material(own);
+            Contact& c = own.contact;
+            c.stretch = known->stretch, c.rest_depth = known->rest_depth, c.preload = known->preload, c.approach = known->approach;
+            law_contacts_.push_back(c);
+        }
+        run_touch(s_->world_, response, context, law_contacts_, s_->world_.host().bodies, scratch_);
+        for (const Contact& c : law_contacts_)
+            for (const Ref r : {c.a, c.b}) scratch_.force[r.index] = scratch_.torque[r.index] = {};
+    }
+}
+
+void ContactForces::emit_happenings()
+{
+    const world::World& world = s_->world_;
+    const auto key = [&](const ForceHappening& h)
+    { return std::tuple(h.time, world.rank(h.detector), world.rank(h.a), world.rank(h.b), h.kind); };
+    std::stable_sort(live_.happenings.begin(), live_.happenings.end(),
+                     [&](const ForceHappening& x, const ForceHappening& y) { return key(x) < key(y); });
+    for (const ForceHappening& h : live_.happenings)
+    {
+        constexpr const char* kNames[] = {"contact.begin", "contact.impact", "contact.end"};
+        Event e;
+        e.time = h.time, e.kind = kNames[static_cast<int>(h.kind)], e.component = h.detector, e.a = h.a, e.b = h.b;
+        if (h.kind != ForceHappening::Kind::End)
+            e.values = {h.point.x,  h.point.y,   h.point.z,   h.normal.x,  h.normal.y,
+                        h.normal.z, h.impulse.x, h.impulse.y, h.impulse.z, h.depth};
+        s_->emit(std::move(e));
+    }
+    live_.happenings.clear();
+}
+
+void ContactForces::emit_stiff()
+{
+    const bool told = std::exchange(stiff_told_, stiff_ != kNoIndex);
+    if (stiff_ == kNoIndex || told) return;
+    Event e;
+    e.time = s_->frame_.start_time, e.kind = "contact.stiff", e.severity = Severity::Warning, e.component = stiff_;
+    e.message = "steps_per_contact asks for " + std::to_string(static_cast<long long>(std::ceil(std::min(pieces_needed_, 1e18)))) +
+                " pieces of a step, more than max_substeps; contacts are cut less finely";
+    e.values = {pieces_needed_};
+    s_->emit(std::move(e));
+}
+
+void ContactForces::finish_step(std::vector<FoundContact>& found)
+{
+    report(found);
+    run_outputs(found);
+    emit_happenings();
+    emit_stiff();
+    s_->cache_.force_pairs() = live_.pairs;
+}
+
+}  // namespace plab::simulation

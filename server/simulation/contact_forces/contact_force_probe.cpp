@@ -1,0 +1,155 @@
+#include "simulation/contact_forces/contact_force_probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::simulation
+{
+namespace
+{
+
+double mobility_of(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n)
+{
+    if (!bodies.dynamic(b)) return 0;
+    const Vec3 lever = cross(p - bodies.position[b], n);
+    return bodies.inverse_mass[b] + dot(lever, bodies.inverse_inertia_W(b) * lever);
+}
+
+void fit(Bodies& out)
+{
+    out.motion.resize(2), out.position.resize(2), out.orientation.resize(2), out.velocity.resize(2), out.angular_velocity.resize(2);
+    out.angular_momentum.resize(2), out.mass.resize(2), out.inverse_mass.resize(2), out.needle.resize(2), out.inertia_B.resize(2);
+    out.inverse_inertia_B.resize(2), out.center_B.resize(2), out.material.resize(2), out.shapes.resize(2);
+}
+
+void copy(const Bodies& from, std::uint32_t i, Bodies& to, std::uint32_t k)
+{
+    to.motion[k] = from.motion[i], to.position[k] = from.position[i], to.orientation[k] = from.orientation[i];
+    to.mass[k] = from.mass[i], to.inverse_mass[k] = from.inverse_mass[i], to.needle[k] = from.needle[i];
+    to.inertia_B[k] = from.inertia_B[i], to.inverse_inertia_B[k] = from.inverse_inertia_B[i], to.center_B[k] = from.center_B[i];
+    to.material[k] = from.material[i];
+}
+
+}  // namespace
+
+void run_touch(world::World& world, std::uint32_t response, StepContext& context, std::span<Contact> contacts, Bodies& bodies,
+               Wrenches& wrenches)
+{
+    const world::Component& c = world.component(response);
+    world::Table& table = *world.tables()[c.table];
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    Impact impact;
+    impact.dt = 1, impact.contacts = contacts;
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&c.row, 1);
+    call.bodies = &bodies, call.wrenches = &wrenches, call.impact = &impact;
+    for (const CommandInfo& command : table.type().info.commands)
+        if (command.phase == Phase::Touch && command.run) (void)command.run(call, table.rows());
+}
+
+void ForceProbe::take(const Bodies& bodies, const Contact& contact)
+{
+    contact_ = contact;
+    axes_[0] = any_perpendicular(contact.normal), axes_[1] = cross(contact.normal, axes_[0]), axes_[2] = contact.normal;
+    double of_a = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        of_a = mobility_of(bodies, contact.a.index, contact.point, axes_[i]);
+        mobility_[i] = of_a + mobility_of(bodies, contact.b.index, contact.point, axes_[i]);
+    }
+    share_a_ = mobility_[2] > 0 ? of_a / mobility_[2] : 0;
+    size_ = 1 + length(bodies.position[contact.a.index]) + length(bodies.position[contact.b.index]);
+    fit(bodies_);
+    copy(bodies, contact.a.index, bodies_, 0), copy(bodies, contact.b.index, bodies_, 1);
+    contact_.a = {Facet::Body, 0}, contact_.b = {Facet::Body, 1};
+    wrenches_.bind(bodies_, shafts_);
+    wrenches_.force.assign(2, {}), wrenches_.torque.assign(2, {});
+}
+
+Vec3 ForceProbe::force(world::World& world, std::uint32_t response, double depth, const Vec3& stretch, const Vec3& velocity)
+{
+    // All relative velocity is b's; what the law makes of masses and arms does not ask for more.
+    for (std::size_t k = 0; k < 2; ++k)
+    {
+        bodies_.velocity[k] = k == 1 ? velocity : Vec3{};
+        bodies_.angular_velocity[k] = bodies_.angular_momentum[k] = {};
+        wrenches_.force[k] = wrenches_.torque[k] = {};
+    }
+    Contact c = contact_;
+    c.depth = depth, c.stretch = stretch;
+    StepContext context;
+    run_touch(world, response, context, std::span(&c, 1), bodies_, wrenches_);
+    return c.impulse;
+}
+
+double ForceProbe::normal_force(world::World& world, std::uint32_t response, double depth, double closing)
+{
+    return dot(force(world, response, depth, {}, contact_.normal * -closing), contact_.normal);
+}
+
+double ForceProbe::open_depth(world::World& world, std::uint32_t response)
+{
+    if (contact_.preload == 0 && contact_.rest_depth == 0) return 0;
+    // The static force rises with depth: bracket downwards, then halve.
+    const auto pushes = [&](double depth) { return normal_force(world, response, depth, 0) > 0; };
+    double high = std::max(contact_.depth, contact_.rest_depth), step = 1e-12 * size_;
+    double low = high - step;
+    for (int i = 0; i < 100 && pushes(low); ++i) step *= 4, high = low, low = high - step;
+    for (int i = 0; i < 200; ++i)
+    {
+        const double middle = 0.5 * (low + high);
+        if (!(middle > low && middle < high)) break;
+        (pushes(middle) ? high : low) = middle;
+    }
+    return low;
+}
+
+double ForceProbe::peak_depth(world::World& world, std::uint32_t response, double open_depth, double closing)
+{
+    if (!(closing > 0) || !(mobility_[2] > 0)) return open_depth;
+    // f(x) x = m v^2: for a linear spring exactly the amplitude, for other powers near it. To a few per cent.
+    const double energy = closing * closing / mobility_[2];
+    const auto share = [&](double x) { return normal_force(world, response, open_depth + x, 0) * x / energy; };
+    const double small = 1e-9 * size_;
+    double x = small * std::sqrt(1 / std::max(share(small), 1e-40));
+    const double first = share(x);
+    if (std::fabs(first - 1) < 0.05) return open_depth + x;
+    double low = x, high = x;
+    for (int i = 0; i < 100 && share(low) > 1; ++i) low /= 4;
+    for (int i = 0; i < 100 && share(high) < 1; ++i) high *= 4;
+    for (int i = 0; i < 6; ++i)
+    {
+        x = std::sqrt(low * high);
+        (share(x) < 1 ? low : high) = x;
+    }
+    return open_depth + high;
+}
+
+ContactRates ForceProbe::rates(world::World& world, std::uint32_t response, double depth)
+{
+    ContactRates out;
+    const double step = std::max(1e-6 * std::fabs(depth - contact_.rest_depth), 1e-12 * size_);
+    const double at_rest = normal_force(world, response, depth, 0);
+    out.normal = std::fabs(normal_force(world, response, depth + step, 0) - at_rest) / step * mobility_[2];
+    const double speed = 1e-6;
+    out.damping = std::fabs(normal_force(world, response, depth, speed) - at_rest) / speed * mobility_[2];
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+        const auto along = [&](const Vec3& stretch, const Vec3& velocity)
+        { return std::fabs(dot(force(world, response, depth, stretch, velocity), axes_[i])); };
+        // Small enough to stay within Coulomb's cone wherever there is a force to speak of.
+        const double small = 1e-3 * step;
+        out.tangential = std::max(out.tangential, along(axes_[i] * small, {}) / small * mobility_[i]);
+        out.damping = std::max(out.damping, along({}, axes_[i] * (1e-3 * speed)) / (1e-3 * speed) * mobility_[i]);
+    }
+    out.mobility = mobility_[2], out.share_a = share_a_;
+    return out;
+}
+
+double ForceProbe::stiction(world::World& world, std::uint32_t response, double depth)
+{
+    const double small = 1e-9 * std::max(std::fabs(depth - contact_.rest_depth), 1e-12 * size_);
+    return std::fabs(dot(force(world, response, depth, axes_[0] * small, {}), axes_[0])) / small;
+}
+
+}  // namespace plab::simulation

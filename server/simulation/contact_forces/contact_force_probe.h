@@ -1,0 +1,49 @@
+/// What the law of a contact force says of one contact by itself: stiffness, damping, how deep it will get.
+///
+/// The law belongs to a plugin; it is asked on two bodies of the probe's own, so that nothing of the scene moves.
+#pragma once
+
+#include <array>
+
+#include "simulation/contact_forces/contact_force_pair.h"
+#include "world/world.h"
+
+namespace plab::simulation
+{
+
+/// Runs the Phase::Touch commands of a response. Contact::impulse comes out as the force on b, N.
+void run_touch(world::World& world, std::uint32_t response, StepContext& context, std::span<Contact> contacts, Bodies& bodies,
+               Wrenches& wrenches);
+
+class ForceProbe
+{
+public:
+    /// The two bodies of `contact` as they stand, at rest.
+    void take(const Bodies& bodies, const Contact& contact);
+    /// Force on b along the normal, N, at a depth (m) and a closing speed (m/s).
+    double normal_force(world::World& world, std::uint32_t response, double depth, double closing);
+    /// The depth at which the spring gives no force, near the one of the contact.
+    double open_depth(world::World& world, std::uint32_t response);
+    /// The depth at which the spring has taken up an approach at `closing`, from the depth at which it opens.
+    double peak_depth(world::World& world, std::uint32_t response, double open_depth, double closing);
+    /// At a depth.
+    ContactRates rates(world::World& world, std::uint32_t response, double depth);
+    /// N/m of the stiction spring at a depth; 0 without friction.
+    double stiction(world::World& world, std::uint32_t response, double depth);
+    /// 1/kg along the normal.
+    double mobility() const { return mobility_[2]; }
+
+private:
+    Vec3 force(world::World& world, std::uint32_t response, double depth, const Vec3& stretch, const Vec3& velocity);
+
+    Contact contact_;
+    std::array<Vec3, 3> axes_;  // two along the surface, then the normal
+    std::array<double, 3> mobility_{};
+    double share_a_ = 0;
+    double size_ = 0;  // m, over which rounding of positions counts
+    Bodies bodies_;
+    Shafts shafts_;
+    Wrenches wrenches_;
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,293 @@
+// Contacts that are forces, at a solver stage: found anew, matched with what is known of them, and handed to the laws.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "plab/rotation.h"
+#include "simulation/contact_forces/contact_forces.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+
+void ContactForces::bind(std::span<const std::uint32_t> groups)
+{
+    const auto inside = [&](Ref r)
+    {
+        const std::uint32_t g = s_->groups_.of(r);
+        return g != kNoIndex && dynamic(r) && std::binary_search(groups.begin(), groups.end(), g);
+    };
+    pairs_.clear(), bodies_.clear();
+    for (const NearPair& p : near_)
+    {
+        if (!inside(p.a) && !inside(p.b)) continue;
+        pairs_.push_back(p);
+        bodies_.push_back(p.a.index), bodies_.push_back(p.b.index);
+    }
+    std::sort(bodies_.begin(), bodies_.end());
+    bodies_.erase(std::unique(bodies_.begin(), bodies_.end()), bodies_.end());
+    list_pushing();
+}
+
+std::vector<ForcePair>::iterator ContactForces::place_of(std::uint32_t detector, Ref a, Ref b)
+{
+    const world::World& world = s_->world_;
+    const auto key = [&](std::uint32_t d, Ref x, Ref y) { return std::tuple(world.rank(d), world.rank(x), world.rank(y)); };
+    return std::lower_bound(live_.pairs.begin(), live_.pairs.end(), key(detector, a, b),
+                            [&](const ForcePair& p, const auto& k) { return key(p.detector, p.a, p.b) < k; });
+}
+
+ForcePair* ContactForces::find_pair(std::uint32_t detector, Ref a, Ref b)
+{
+    const auto is_it = [&](std::size_t i)
+    {
+        if (i >= live_.pairs.size()) return false;
+        const ForcePair& p = live_.pairs[i];
+        return p.detector == detector && p.a == a && p.b == b;
+    };
+    if (is_it(last_pair_)) return &live_.pairs[last_pair_];
+    if (is_it(last_pair_ + 1)) return &live_.pairs[++last_pair_];
+    const auto at = static_cast<std::size_t>(place_of(detector, a, b) - live_.pairs.begin());
+    if (!is_it(at)) return nullptr;
+    last_pair_ = at;
+    return &live_.pairs[at];
+}
+
+void ContactForces::list_pushing()
+{
+    pushing_.clear();
+    for (const NearPair& n : pairs_)
+    {
+        const ForcePair* pair = find_pair(s_->detectors_[n.detector].component, n.a, n.b);
+        if (!pair) continue;
+        const auto i = static_cast<std::uint32_t>(pair - live_.pairs.data());
+        for (std::uint32_t k = 0; k < pair->count; ++k)
+            if (!pair->contacts[k].dormant) pushing_.push_back({i, k});
+    }
+}
+
+ForceContact* ContactForces::find_known(const FoundContact& f)
+{
+    ForcePair* pair = find_pair(s_->detectors_[f.detector].component, f.contact.a, f.contact.b);
+    return pair ? pair->find(f.contact.feature) : nullptr;
+}
+
+ForceContact* ContactForces::find_pushing(const FoundContact& f)
+{
+    ForceContact* known = find_known(f);
+    return known && !known->dormant ? known : nullptr;
+}
+
+void ContactForces::anchor()
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    for (const std::uint32_t b : bodies_) anchors_[b] = {bodies.position[b], bodies.orientation[b]};
+}
+
+void ContactForces::detect(std::uint32_t index, std::span<const StandingPair> pairs, double margin, std::vector<FoundContact>& out)
+{
+    const Detector& detector = s_->detectors_[index];
+    world::Table& table = *s_->world_.tables()[detector.table];
+    StepContext context;
+    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    ContactCollector sink(s_->world_, out);
+    sink.look_for(index, pairs, true, margin);
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&detector.row, 1);
+    call.bodies = &s_->world_.host().bodies, call.shafts = &s_->world_.host().shafts, call.shapes = &s_->world_.host().shapes;
+    call.contacts = &sink;
+    (void)detector.command->run(call, table.rows());  // what fails fails in the look at the end of the step, which tells it
+}
+
+void ContactForces::fill_surface(FoundContact& f) const
+{
+    const world::HostTables& host = s_->world_.host();
+    const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
+    const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
+    const SurfaceLaw& law = own ? *own : surfaces_[f.detector];
+    f.contact.friction = law.friction, f.contact.restitution = law.restitution;
+}
+
+void ContactForces::inspect(double margin, std::vector<Seen>& out)
+{
+    found_.clear();
+    for (std::size_t i = 0; i < pairs_.size();)
+    {
+        standing_.clear();
+        const std::uint32_t d = pairs_[i].detector;
+        for (; i < pairs_.size() && pairs_[i].detector == d; ++i) standing_.push_back({pairs_[i].a, pairs_[i].b, {}});
+        detect(d, standing_, margin, found_);
+    }
+    sort_contacts(found_, s_->world_);
+    out.clear();
+    for (FoundContact& f : found_)
+    {
+        fill_surface(f);
+        out.push_back({f, s_->normal_velocity(f.contact)});
+    }
+}
+
+/// How far b's surface has moved along a's since the piece began: to third order in the turn where the contact point is
+/// a corner; where it stays below the centre only the first term counts, and a ball that rolls has not moved at all.
+Vec3 ContactForces::moved_along(const FoundContact& f) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const auto displacement = [&](std::uint32_t b)
+    {
+        const Anchor& start = anchors_[b];
+        const Vec3 turn = log_rotation(bodies.orientation[b] * conjugate(start.orientation));
+        const Vec3 arm = f.contact.point - bodies.position[b];
+        return (bodies.position[b] - start.position) + cross(turn, arm) - 0.5 * cross(turn, cross(turn, arm));
+    };
+    return displacement(f.contact.b.index) - displacement(f.contact.a.index);
+}
+
+/// Of the contact points that push: their places and what is known of them.
+void ContactForces::gather(bool lead)
+{
+    found_.clear(), matched_.clear();
+    for (std::size_t i = 0; i < pushing_.size();)
+    {
+        const std::uint32_t component = live_.pairs[pushing_[i].pair].detector;
+        std::uint32_t d = 0;
+        while (s_->detectors_[d].component != component) ++d;
+        standing_.clear();
+        for (; i < pushing_.size() && live_.pairs[pushing_[i].pair].detector == component; ++i)
+            if (i == 0 || pushing_[i].pair != pushing_[i - 1].pair)
+                standing_.push_back({live_.pairs[pushing_[i].pair].a, live_.pairs[pushing_[i].pair].b, {}});
+        detect(d, standing_, margin_, found_);
+    }
+    sort_contacts(found_, s_->world_);
+    for (std::size_t i = 0; i < found_.size(); ++i)
+    {
+        FoundContact& f = found_[i];
+        ForceContact* known = find_pushing(f);
+        if (!known) continue;
+        Contact& c = f.contact;
+        fill_surface(f);
+        c.id = known->id, c.approach = known->approach, c.rest_depth = known->rest_depth, c.preload = known->preload;
+        Vec3 stretch = known->stretch + moved_along(f);
+        if (lead)
+        {
+            const Bodies& bodies = s_->world_.host().bodies;
+            const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
+            c.depth -= lead_ * dot(u, c.normal);
+            stretch += u * lead_;
+        }
+        c.stretch = stretch - c.normal * dot(stretch, c.normal);
+        matched_.push_back({i, known});
+    }
+}
+
+void ContactForces::run_laws(const StepContext& context, Wrenches& wrenches)
+{
+    StepContext own = context;
+    for (std::size_t i = 0; i < matched_.size();)
+    {
+        const std::size_t first = i;
+        const std::uint32_t d = found_[matched_[i].first].detector;
+        law_contacts_.clear();
+        for (; i < matched_.size() && found_[matched_[i].first].detector == d; ++i)
+            law_contacts_.push_back(found_[matched_[i].first].contact);
+        run_touch(s_->world_, s_->detectors_[d].response, own, law_contacts_, s_->world_.host().bodies, wrenches);
+        for (std::size_t k = first; k < i; ++k) found_[matched_[k].first].contact = law_contacts_[k - first];
+    }
+}
+
+void ContactForces::add(const StepContext& context, Wrenches& wrenches)
+{
+    if (lead_ == 0)
+    {
+        gather(false);
+        run_laws(context, wrenches);
+        return;
+    }
+    // Time stepping takes forces once, and books them at other speeds: they stay what they were.
+    if (!std::exchange(taken_, true))
+    {
+        gather(true);
+        run_laws(context, scratch_);
+        clear_scratch();
+    }
+    for (const auto& [i, known] : matched_)
+    {
+        const Contact& c = found_[i].contact;
+        if (!is_advanced(context, c)) continue;
+        wrenches.begin(s_->detectors_[found_[i].detector].response);
+        if (dynamic(c.a)) wrenches.add_force_at(c.a, -c.impulse, c.point);
+        if (dynamic(c.b)) wrenches.add_force_at(c.b, c.impulse, c.point);
+    }
+}
+
+bool ContactForces::is_advanced(const StepContext& context, const Contact& c) const
+{
+    return (dynamic(c.a) && context.active(c.a)) || (dynamic(c.b) && context.active(c.b));
+}
+
+void ContactForces::clear_scratch()
+{
+    for (const auto& match : matched_)
+        for (const Ref r : {found_[match.first].contact.a, found_[match.first].contact.b})
+            scratch_.force[r.index] = scratch_.torque[r.index] = {};
+}
+
+void ContactForces::book(const StepContext& context, std::vector<double>& work, std::vector<double>& power, double share)
+{
+    for (std::size_t k = 0; k < matched_.size(); ++k)
+    {
+        const FoundContact& f = found_[matched_[k].first];
+        if (!is_advanced(context, f.contact)) continue;
+        const std::uint32_t response = s_->detectors_[f.detector].response;
+        work[response] += share * power[response];
+        power[response] = 0;
+        matched_[k].second->impulse += f.contact.impulse * share;
+    }
+}
+
+/// At the present state, for whoever asks in between stages.
+void ContactForces::evaluate_laws()
+{
+    gather(false);
+    StepContext context;
+    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+    run_laws(context, scratch_);
+    clear_scratch();
+}
+
+bool ContactForces::any_slack_change() const
+{
+    const auto changed = [&](const auto& match)
+    {
+        const Contact& c = found_[match.first].contact;
+        return match.second->slack != (c.impulse == Vec3{} && c.depth > match.second->open_depth + rounding(c));
+    };
+    return std::any_of(matched_.begin(), matched_.end(), changed);
+}
+
+/// A piece is finished, and evaluate_laws was called at its end: history changes here and nowhere else.
+void ContactForces::commit(double t, double h)
+{
+    const double time = s_->frame_.start_time + t;
+    for (const auto& [i, known] : matched_)
+    {
+        const Contact& c = found_[i].contact;
+        // Of a swing at w, force times mobility changes by w^2 times its speed; the estimate fades within half a turn.
+        const double rate = std::numbers::pi / known->half_period;
+        const double speed = h > 0 ? length(c.impulse - known->force) * known->rates.mobility / (h * rate * rate) : 0.0;
+        known->lively = std::max(speed, known->lively * (1 - std::min(0.5, h / known->half_period)));
+        // What counts as much: the touch, or a swing as wide as the force's static give.
+        known->liveliest = std::max({known->liveliest, known->lively, length(c.impulse) * known->rates.mobility / rate});
+        known->stretch = c.stretch, known->force = c.impulse, known->depth = c.depth;
+        if (c.depth > 1.05 * known->peak) expect(*known, found_[i], 0);
+        known->slack = c.impulse == Vec3{} && c.depth > known->open_depth + rounding(c);
+        ForcePair* pair = find_pair(s_->detectors_[found_[i].detector].component, c.a, c.b);
+        pair->normal = c.normal;
+        if (time - known->begin > 2 * known->half_period) tell_impact_once(*pair, *known, c, time);
+    }
+    anchor();
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,249 @@
+// When contact points begin and cease to push.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "simulation/contact_forces/contact_forces.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+
+const ContactForces::Seen* ContactForces::find_seen(const std::vector<Seen>& list, const FoundContact& f) const
+{
+    for (const Seen& s : list)
+        if (s.found.contact.feature == f.contact.feature && Stepper::same_pair(s.found, f)) return &s;
+    return nullptr;
+}
+
+/// m: what positions cannot tell apart.
+double ContactForces::rounding(const Contact& c) const { return 1e-15 * (1 + positions_of(c.a, c.b)); }
+
+/// Whether a contact has begun or ceased to push since `before`.
+bool ContactForces::switches(const Seen& seen, const std::vector<Seen>& before)
+{
+    const Contact& c = seen.found.contact;
+    if (const ForceContact* known = find_pushing(seen.found)) return c.depth < known->open_depth && seen.parting > 0;
+    if (c.depth <= rounding(c)) return false;
+    if (const Seen* then = find_seen(before, seen.found)) return then->found.contact.depth <= rounding(c);
+    // A new corner of bodies that touch anyway comes at the end of the piece: its depth has no beginning to be found.
+    return !find_pair(s_->detectors_[seen.found.detector].component, c.a, c.b);
+}
+
+/// The present state against where the piece began. Leaves the laws evaluated.
+bool ContactForces::has_switched(const std::vector<Seen>& now)
+{
+    evaluate_laws();
+    return any_slack_change() || any_switch(at_start_, now);
+}
+
+bool ContactForces::any_switch(const std::vector<Seen>& before, const std::vector<Seen>& after)
+{
+    return std::any_of(after.begin(), after.end(), [&](const Seen& s) { return switches(s, before); });
+}
+
+/// The first time in (low, high) at which one of those that have switched at `high` seems to do so: the depth's time as a
+/// cubic of the depth, from depths and speeds at both ends; where that cannot be, the middle.
+double ContactForces::guess(double low, double high, const std::vector<Seen>& at_low, const std::vector<Seen>& at_high)
+{
+    const double h = high - low;
+    double first = low + 0.5 * h;
+    bool none = true;
+    for (const Seen& s : at_high)
+    {
+        if (!switches(s, at_start_)) continue;
+        const Seen* then = find_seen(at_low, s.found);
+        const ForceContact* known = find_pushing(s.found);
+        double t = 0.5 * h;
+        if (then)
+        {
+            const double open = known ? known->open_depth : 0.0;
+            const double d0 = then->found.contact.depth - open, d1 = s.found.contact.depth - open, way = d1 - d0;
+            const double u = -d0 / way;
+            t = u * h;
+            const double slow0 = way / -then->parting, slow1 = way / -s.parting;  // s per whole way
+            if (slow0 > 0 && slow1 > 0 && slow0 < 3 * h && slow1 < 3 * h)
+                t = u * (1 - u) * (1 - u) * slow0 + u * u * (3 - 2 * u) * h + u * u * (u - 1) * slow1;
+        }
+        if (!(t > 0 && t < h)) t = 0.5 * h;
+        first = std::exchange(none, false) ? low + t : std::min(first, low + t);
+    }
+    return first;
+}
+
+/// Whether those that switch beyond are, at the present state, where they switch.
+bool ContactForces::is_there(const std::vector<Seen>& now, const std::vector<Seen>& beyond)
+{
+    for (const Seen& s : beyond)
+    {
+        if (!switches(s, at_start_)) continue;
+        const Seen* here = find_seen(now, s.found);
+        const ForceContact* known = find_pushing(s.found);
+        if (here && std::fabs(here->found.contact.depth - (known ? known->open_depth : 0.0)) <= rounding(s.found.contact)) return true;
+    }
+    return false;
+}
+
+void ContactForces::expect(ForceContact& known, const FoundContact& at, double closing)
+{
+    const std::uint32_t response = s_->detectors_[at.detector].response;
+    FoundContact asked = at;
+    asked.contact.rest_depth = known.rest_depth, asked.contact.preload = known.preload, asked.contact.approach = known.approach;
+    const double depth = at.contact.depth;
+    probe_.take(s_->world_.host().bodies, asked.contact);
+    known.peak = std::max(depth, probe_.peak_depth(s_->world_, response, std::max(known.open_depth, depth), closing));
+    known.rates = probe_.rates(s_->world_, response, known.peak);
+    const double swing = std::sqrt(std::max(known.rates.normal, known.rates.tangential));
+    known.half_period = std::numbers::pi / std::max({swing, known.rates.damping, 1e-300});
+}
+
+void ContactForces::begin_contact(const Seen& seen, double time)
+{
+    const Contact& c = seen.found.contact;
+    const std::uint32_t detector = s_->detectors_[seen.found.detector].component;
+    ForcePair* pair = find_pair(detector, c.a, c.b);
+    const bool fresh = pair == nullptr;
+    if (fresh)
+    {
+        ForcePair p;
+        p.detector = detector, p.a = c.a, p.b = c.b, p.since = s_->frame_.tick;
+        pair = &*live_.pairs.insert(place_of(detector, c.a, c.b), p);
+    }
+    if (fresh) pair->law_type = laws_[seen.found.detector].type, pair->law = laws_[seen.found.detector].values;
+    ForceContact* old = pair->find(c.feature);
+    if (!old && pair->count == ForcePair::kMostContacts) return;
+    // Where a swap has let an overlap be, a corner that comes to it begins without force as well.
+    const auto eases = [](const ForceContact& other) { return other.rest_depth > 0; };
+    const bool overlap_is_old = std::any_of(pair->all().begin(), pair->all().end(), eases);
+    pair->normal = c.normal;
+    ForceContact known;
+    known.asked = s_->frame_.tick;
+    known.feature = c.feature, known.id = old ? old->id : s_->cache_.new_id();
+    known.begin = time, known.depth = c.depth, known.approach = std::max(0.0, -seen.parting);
+    known.lively = known.liveliest = known.approach;
+    if (overlap_is_old && c.depth > 0) known.rest_depth = known.open_depth = c.depth;
+    expect(known, seen.found, known.approach);
+    (old ? *old : pair->contacts[pair->count++]) = known;
+    if (fresh) tell(ForceHappening::Kind::Begin, *pair, c, {}, time);
+}
+
+/// A point whose force is over. One that still overlaps, as a swap had left it, waits.
+void ContactForces::let_go(const Seen& seen, ForcePair& pair, double time)
+{
+    const Contact& c = seen.found.contact;
+    ForceContact& known = *pair.find(c.feature);
+    if (!(known.rest_depth > 0) || c.depth <= 1e3 * rounding(c)) return end_contact(pair, c, time);
+    tell_impact_once(pair, known, c, time);
+    known.dormant = true, known.depth = c.depth;
+    known.force = known.stretch = {};
+}
+
+void ContactForces::follow_dormant(const Seen& seen, ForceContact& known, double time)
+{
+    known.depth = seen.found.contact.depth;
+    if (known.depth > 0 && seen.parting < 0) begin_contact(seen, time);
+}
+
+/// Points that had let go and do not overlap any more, or are not there any more.
+void ContactForces::drop_dormant(const std::vector<Seen>& seen)
+{
+    const auto overlaps = [&](const ForcePair& pair, const ForceContact& known)
+    {
+        const auto is_it = [&](const Seen& s)
+        {
+            return s_->detectors_[s.found.detector].component == pair.detector && s.found.contact.a == pair.a &&
+                   s.found.contact.b == pair.b && s.found.contact.feature == known.feature;
+        };
+        const auto at = std::find_if(seen.begin(), seen.end(), is_it);
+        return at != seen.end() && at->found.contact.depth > 0;
+    };
+    for (const NearPair& near : pairs_)
+    {
+        ForcePair* pair = find_pair(s_->detectors_[near.detector].component, near.a, near.b);
+        for (std::uint32_t k = pair ? pair->count : 0; k-- > 0;)
+            if (pair->contacts[k].dormant && !overlaps(*pair, pair->contacts[k])) pair->contacts[k] = pair->contacts[--pair->count];
+    }
+}
+
+void ContactForces::end_contact(ForcePair& pair, const Contact& at, double time)
+{
+    ForceContact* known = pair.find(at.feature);
+    tell_impact_once(pair, *known, at, time);
+    *known = pair.contacts[--pair.count];
+}
+
+void ContactForces::tell(ForceHappening::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time)
+{
+    live_.happenings.push_back({kind, time, pair.detector, pair.a, pair.b, at.point, at.normal, impulse, at.depth});
+}
+
+void ContactForces::tell_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time)
+{
+    if (std::exchange(contact.told, true)) return;
+    tell(ForceHappening::Kind::Impact, pair, at, contact.impulse, time);
+}
+
+void ContactForces::drop_ended(double time)
+{
+    const auto over = [&](const ForcePair& p)
+    {
+        if (p.count > 0) return false;
+        Contact at;
+        at.normal = p.normal;
+        tell(ForceHappening::Kind::End, p, at, {}, time);
+        return true;
+    };
+    std::erase_if(live_.pairs, over);
+}
+
+/// Corners that are not there any more, though their gap is not wide: they have become others.
+void ContactForces::list_gone(const std::vector<Seen>& seen)
+{
+    there_.clear(), gone_.clear();
+    for (const Seen& s : seen)
+        if (const ForceContact* known = find_pushing(s.found)) there_.push_back(known->id);
+    std::sort(there_.begin(), there_.end());
+    for (const Pushing& p : pushing_)
+        if (const std::uint64_t id = live_.pairs[p.pair].contacts[p.contact].id; !std::binary_search(there_.begin(), there_.end(), id))
+            gone_.push_back(id);
+}
+
+/// At the end of a piece: who pushes in the next one.
+void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t)
+{
+    const double time = s_->frame_.start_time + t;
+    // What would switch within this time does so now: a face's corners come down together.
+    const double instant = 1e-12 * s_->frame_.step;
+    list_gone(seen);
+    for (const Seen& s : seen)
+    {
+        const Contact& c = s.found.contact;
+        ForceContact* known = find_known(s.found);
+        const double soon = std::fabs(s.parting) * instant + rounding(c);
+        if (known && known->dormant)
+            follow_dormant(s, *known, time);
+        else if (known && s.parting > 0 && c.depth <= known->open_depth + soon)
+            let_go(s, *find_pair(s_->detectors_[s.found.detector].component, c.a, c.b), time);
+        else if (!known && (s.parting < 0 ? c.depth >= -soon : c.depth > 1e3 * rounding(c)))
+            begin_contact(s, time);
+    }
+    if (!gone_.empty()) end_gone(time);
+    drop_dormant(seen);
+    drop_ended(time);
+    list_pushing();
+}
+
+void ContactForces::end_gone(double time)
+{
+    for (ForcePair& pair : live_.pairs)
+        for (std::uint32_t k = pair.count; k-- > 0;)
+        {
+            if (std::find(gone_.begin(), gone_.end(), pair.contacts[k].id) == gone_.end()) continue;
+            Contact at;
+            at.feature = pair.contacts[k].feature, at.normal = pair.normal;
+            end_contact(pair, at, time);
+        }
+}
+
+}  // namespace plab::simulation

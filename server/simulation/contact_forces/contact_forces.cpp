@@ -1,0 +1,278 @@
+// Who may meet by force within a step, and who advances together because of it.
+#include "simulation/contact_forces/contact_forces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+
+void ContactForces::rebuild()
+{
+    const world::World& world = s_->world_;
+    by_force_.clear();
+    for (const Detector& d : s_->detectors_) by_force_.push_back(d.by_force ? 1 : 0);
+    any_ = std::find(by_force_.begin(), by_force_.end(), 1) != by_force_.end();
+    near_.clear();
+    live_ = {}, segment_ = {}, end_ = {};
+    convert_contacts();
+    if (!any_) return;
+    const world::HostTables& host = world.host();
+    memento_.save(host), shadow_memento_.save(host);
+    anchors_.resize(host.bodies.size());
+    scratch_.bind(host.bodies, host.shafts);
+    scratch_.force.assign(host.bodies.size(), {}), scratch_.torque.assign(host.bodies.size(), {});
+    for (auto& sums : sums_) sums.assign(host.bodies.size(), 0.0);
+}
+
+bool ContactForces::dynamic(Ref r) const { return s_->world_.host().bodies.dynamic(r.index); }
+
+double ContactForces::speed_of(Ref r) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const double spin = length(bodies.angular_velocity[r.index]), radius = s_->radius_of_body_[r.index];
+    return length(bodies.velocity[r.index]) + (spin > 0 ? spin * radius : 0.0);
+}
+
+double ContactForces::positions_of(Ref a, Ref b) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    return length(bodies.position[a.index]) + length(bodies.position[b.index]);
+}
+
+bool ContactForces::touches(Ref a, Ref b, std::uint32_t group) const { return s_->groups_.of(a) == group || s_->groups_.of(b) == group; }
+
+void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32_t group)
+{
+    const auto here = [&](const auto& x) { return touches(x.a, x.b, group); };
+    if (from.pairs.empty() && to.pairs.empty() && from.happenings.empty() && to.happenings.empty()) return;
+    std::erase_if(to.pairs, here), std::erase_if(to.happenings, here);
+    std::copy_if(from.pairs.begin(), from.pairs.end(), std::back_inserter(to.pairs), here);
+    std::copy_if(from.happenings.begin(), from.happenings.end(), std::back_inserter(to.happenings), here);
+    const world::World& world = s_->world_;
+    const auto key = [&](const ForcePair& p) { return std::tuple(world.rank(p.detector), world.rank(p.a), world.rank(p.b)); };
+    std::sort(to.pairs.begin(), to.pairs.end(), [&](const ForcePair& x, const ForcePair& y) { return key(x) < key(y); });
+}
+
+void ContactForces::begin_step()
+{
+    live_.pairs = s_->cache_.force_pairs();
+    live_.happenings.clear();
+    near_.clear();
+    pieces_needed_ = 0, stiff_ = kNoIndex;
+    surfaces_.clear();
+    for (std::uint32_t d = 0; d < by_force_.size(); ++d) surfaces_.push_back(by_force_[d] ? s_->response_law(d) : SurfaceLaw{});
+    reach_.assign(s_->world_.host().bodies.size(), 0.0);
+    fill_reach(s_->frame_.step);
+    look_near(s_->frame_.step);
+    segment_ = live_;
+}
+
+void ContactForces::fill_reach(double h)
+{
+    // Speeds, and what the forces of now would do; half as much again for what they do later.
+    GroupSystem& system = s_->system_for(s_->island_all_, {});
+    system.begin(0, h, {}, nullptr);
+    system.evaluate(0, 0);
+    const auto members = system.bodies();
+    for (std::size_t i = 0; i < members.size(); ++i) reach_[members[i]] = 0.75 * h * h * length(system.acceleration(i));
+    const Bodies& bodies = s_->world_.host().bodies;
+    for (std::uint32_t b = 0; b < reach_.size(); ++b)
+    {
+        if (bodies.motion[b] == Motion::Static) continue;
+        const double way = speed_of({Facet::Body, b}) * h;
+        reach_[b] += bodies.dynamic(b) ? 1.5 * way : way;
+    }
+}
+
+void ContactForces::add_near(std::uint32_t detector, Ref a, Ref b)
+{
+    if (dynamic(a) || dynamic(b)) near_.push_back({detector, a, b});
+}
+
+void ContactForces::look_near(double h)
+{
+    const world::World& world = s_->world_;
+    for (std::uint32_t d = 0; d < by_force_.size(); ++d)
+    {
+        if (!by_force_[d]) continue;
+        const Detector& detector = s_->detectors_[d];
+        world::Table& table = *s_->world_.tables()[detector.table];
+        StepContext context;
+        context.time = s_->frame_.start_time, context.dt = h, context.tick = s_->frame_.tick, context.events = s_;
+        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+        near_found_.clear();
+        NearCollector sink(world, reach_, near_found_);
+        PhaseCall call;
+        call.context = &context, call.rows = Rows(&detector.row, 1);
+        call.bodies = &s_->world_.host().bodies, call.shafts = &s_->world_.host().shafts, call.shapes = &s_->world_.host().shapes;
+        call.contacts = &sink;
+        if (auto done = detector.command->run(call, table.rows()); !done)
+            context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
+        for (const NearCollector::Pair& p : near_found_) add_near(d, p.a, p.b);
+        for (const ForcePair& p : live_.pairs)
+            if (p.detector == detector.component) add_near(d, p.a, p.b);
+    }
+    const auto key = [&](const NearPair& p) { return std::tuple(p.detector, world.rank(p.a), world.rank(p.b)); };
+    std::sort(near_.begin(), near_.end(), [&](const NearPair& x, const NearPair& y) { return key(x) < key(y); });
+    near_.erase(std::unique(near_.begin(), near_.end(), [&](const NearPair& x, const NearPair& y) { return key(x) == key(y); }),
+                near_.end());
+}
+
+bool ContactForces::within_reach(std::span<const std::uint32_t> groups, double h) const
+{
+    for (const std::uint32_t g : groups)
+        for (const std::uint32_t b : s_->groups_.all[g].bodies)
+            if (speed_of({Facet::Body, b}) * h > reach_[b]) return false;
+    return true;
+}
+
+void ContactForces::join(DisjointSets& sets) const
+{
+    for (const NearPair& p : near_)
+        if (dynamic(p.a) && dynamic(p.b)) sets.join(s_->groups_.of(p.a), s_->groups_.of(p.b));
+}
+
+void ContactForces::flag_near(std::vector<std::uint8_t>& groups) const
+{
+    for (const NearPair& p : near_)
+        if (dynamic(p.a) && dynamic(p.b)) groups[s_->groups_.of(p.a)] = groups[s_->groups_.of(p.b)] = 1;
+}
+
+bool ContactForces::close_over(std::vector<std::uint8_t>& in_scope) const
+{
+    bool grown = false;
+    for (const NearPair& p : near_)
+    {
+        if (!dynamic(p.a) || !dynamic(p.b)) continue;
+        std::uint8_t &a = in_scope[s_->groups_.of(p.a)], &b = in_scope[s_->groups_.of(p.b)];
+        grown = grown || a != b;
+        a = b = a | b;
+    }
+    return grown;
+}
+
+void ContactForces::make_islands(std::span<const std::uint32_t> groups)
+{
+    const std::size_t count = s_->groups_.all.size();
+    member_.assign(count, 0), bound_.assign(count, 0);
+    for (const std::uint32_t g : groups) member_[g] = 1;
+    sets_.reset(count);
+    const auto link = [&](Ref a, Ref b)
+    {
+        if (dynamic(a) && dynamic(b) && member_[s_->groups_.of(a)] && member_[s_->groups_.of(b)])
+            sets_.join(s_->groups_.of(a), s_->groups_.of(b));
+    };
+    for (const NearPair& p : near_) link(p.a, p.b);
+    for (const PairState& p : s_->cache_.pairs())
+        if (p.resting) link(p.a, p.b);
+    for (const NearPair& p : near_)
+        for (const Ref r : {p.a, p.b})
+            if (dynamic(r) && member_[s_->groups_.of(r)]) bound_[sets_.find(s_->groups_.of(r))] = 1;
+}
+
+void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std::uint32_t>& smooth, std::vector<std::uint32_t>& in_contact,
+                         double from, double to)
+{
+    island_count_ = 0;
+    if (!within_reach(groups, to - from))
+    {
+        // An impact within the step made somebody faster than anybody could know.
+        for (const std::uint32_t g : groups)
+            for (const std::uint32_t b : s_->groups_.all[g].bodies)
+                reach_[b] = std::max(reach_[b], 2 * speed_of({Facet::Body, b}) * (to - from));
+        look_near(to - from);
+    }
+    if (near_.empty()) return;
+    make_islands(groups);
+    const auto claimed = [&](std::uint32_t g) { return bound_[sets_.find(g)] && s_->groups_.all[g].solver != kNoIndex; };
+    for (const std::uint32_t first : groups)
+    {
+        if (!claimed(first) || !member_[first]) continue;
+        if (islands_.size() == island_count_) islands_.emplace_back();
+        Island& island = islands_[island_count_++];
+        island.groups.clear(), island.mixed = false;
+        for (const std::uint32_t g : groups)
+        {
+            if (!member_[g] || !claimed(g) || sets_.find(g) != sets_.find(first)) continue;
+            member_[g] = 0;
+            island.groups.push_back(g);
+            island.mixed = island.mixed || std::binary_search(in_contact.begin(), in_contact.end(), g);
+        }
+        std::sort(island.groups.begin(), island.groups.end());
+    }
+    std::erase_if(smooth, claimed), std::erase_if(in_contact, claimed);
+}
+
+void ContactForces::collect_shadows(Island& island, std::span<const std::uint32_t> shadows)
+{
+    // Whom the forces of the island read, and who is moved as told and may be touched.
+    bound_.assign(s_->groups_.all.size(), 0);
+    for (const std::uint32_t g : island.groups) bound_[g] = 1;
+    island.shadows.assign(shadows.begin(), shadows.end());
+    for (const std::uint32_t g : shadows) bound_[g] = 1;
+    const auto want = [&](std::uint32_t g)
+    {
+        if (g != kNoIndex && !bound_[g]) bound_[g] = 1, island.shadows.push_back(g);
+    };
+    for (const std::uint32_t g : island.groups)
+        for (const std::uint32_t up : s_->groups_.all[g].upstream) want(up);
+    for (std::size_t i = 0; i < island.shadows.size(); ++i)
+        for (const std::uint32_t up : s_->groups_.all[island.shadows[i]].upstream) want(up);
+    for (const NearPair& p : pairs_)
+        for (const Ref r : {p.a, p.b})
+            if (!dynamic(r)) want(s_->groups_.of(r));
+    std::sort(island.shadows.begin(), island.shadows.end());
+}
+
+std::uint32_t ContactForces::solver_of(const Island& island) const
+{
+    // As for a group: the highest order, then the first by id.
+    std::uint32_t best = kNoIndex;
+    const world::World& world = s_->world_;
+    for (const std::uint32_t g : island.groups)
+    {
+        const std::uint32_t solver = s_->groups_.all[g].solver;
+        if (best == kNoIndex || solver == best)
+        {
+            best = solver;
+            continue;
+        }
+        const int old = world.type_of(best)->info.order, fresh = world.type_of(solver)->info.order;
+        if (fresh > old || (fresh == old && world.rank(solver) < world.rank(best))) best = solver;
+    }
+    return best;
+}
+
+void ContactForces::advance(std::span<const std::uint32_t> shadows, double from, double to, WorkBook book, bool trial)
+{
+    for (std::size_t i = 0; i < island_count_; ++i)
+    {
+        Island& island = islands_[i];
+        bind(island.groups);
+        collect_shadows(island, shadows);
+        world::HostTables& host = s_->world_.host();
+        const auto each = [&](auto body, auto shaft, auto quantities)
+        {
+            for (const std::uint32_t g : island.shadows)
+            {
+                for (const std::uint32_t b : s_->groups_.all[g].bodies) body(b);
+                for (const std::uint32_t s : s_->groups_.all[g].shafts) shaft(s);
+                for (const std::uint32_t q : s_->groups_.all[g].quantities) quantities(q);
+            }
+        };
+        each([&](auto b) { shadow_memento_.save_body(host, b); }, [&](auto s) { shadow_memento_.save_shaft(host, s); },
+             [&](auto q) { shadow_memento_.save_quantities(host, q); });
+        if (island.mixed)
+            advance_mixed(island, from, to, book, trial);
+        else
+            advance_island(island, from, to, book, trial);
+        each([&](auto b) { shadow_memento_.restore_body(host, b); }, [&](auto s) { shadow_memento_.restore_shaft(host, s); },
+             [&](auto q) { shadow_memento_.restore_quantities(host, q); });
+    }
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,353 @@
+// Contacts inside a step: looking for them, standing contacts as time stepping, impulses.
+#include <algorithm>
+#include <cmath>
+
+#include "plab/rotation.h"
+#include "simulation/clock.h"
+#include "simulation/contacts/island_step.h"
+#include "simulation/contacts/paradox.h"
+#include "simulation/events/speculation.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// Slower than this nothing meets, m/s.
+constexpr double kNoApproach = 1e-9;
+
+}  // namespace
+
+void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
+                     std::vector<FoundContact>& out, double margin)
+{
+    world::Table& table = *world_.tables()[detector.table];
+    StepContext context;
+    context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick, context.events = this;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    ContactCollector sink(world_, out);
+    sink.look_for(index, standing, only_standing, margin);
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&detector.row, 1);
+    call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
+    call.contacts = &sink;
+    const std::uint64_t before = now_ns();
+    const auto done = detector.command->run(call, table.rows());
+    if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
+    cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
+}
+
+void Stepper::detect_all(std::vector<FoundContact>& out)
+{
+    out.clear();
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        if (detectors_[d].by_rows && detectors_[d].persists())
+        {
+            detect_with_gaps(d, out);
+            continue;
+        }
+        standing_.clear();
+        for (const PairState& p : cache_.pairs())
+            if (p.resting && p.detector == detectors_[d].component) standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
+        detect(detectors_[d], d, standing_, false, out);
+    }
+    sort_contacts(out, world_);
+}
+
+/// Contacts of pairs that stand as soon as they touch: with the gaps that count as touching, or may close within the step. A
+/// function of poses (and speeds, where it speculates) alone, whatever was known before.
+void Stepper::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
+{
+    const Detector& detector = detectors_[index];
+    const Bodies& bodies = world_.host().bodies;
+    double margin = kOverlapTolerance;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+        if (bodies.dynamic(b) && std::isfinite(radius_of_body_[b])) margin = std::max(margin, kStandingShare * radius_of_body_[b]);
+    const double acceleration = detector.speculates ? speculative_acceleration(detector) : 0.0;
+    if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, frame_.step));
+    const std::size_t first = out.size();
+    detect(detector, index, {}, false, out, margin);
+    const auto far = [&](const FoundContact& f)
+    {
+        if (f.contact.depth > -standing_margin(f.contact.a, f.contact.b)) return false;
+        return !detector.speculates || !may_close(bodies, radius_of_body_, f.contact, acceleration, frame_.step);
+    };
+    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
+}
+
+double Stepper::speculative_acceleration(const Detector& detector) const
+{
+    const Field* field = world_.table_of(detector.resolution).schema().find_field("acceleration");
+    const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
+    return column ? (*column)[world_.component(detector.resolution).row] : 0.0;
+}
+
+/// What is remembered of a contact of a known pair.
+KnownContact& Stepper::known_contact(const FoundContact& f)
+{
+    return cache_.contact_of(*cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_), f.contact.feature);
+}
+
+/// m: gaps of a standing pair up to this may close within h: corners that come round are held before they are through.
+double Stepper::gap_margin(const PairState& pair, double h) const
+{
+    const double margin = closing_margin(world_.host().bodies, radius_of_body_, pair.a, pair.b, pair.normal, h);
+    return margin > standing_margin(pair) ? margin : 0.0;
+}
+
+/// One look has one margin: drops what was seen beyond that of its own pair.
+void Stepper::drop_far(std::vector<FoundContact>& out, double h) const
+{
+    const Bodies& bodies = world_.host().bodies;
+    const auto far = [&](const FoundContact& f)
+    { return f.contact.depth <= -standing_margin(f.contact.a, f.contact.b) && !may_close(bodies, radius_of_body_, f.contact, 0, h); };
+    out.erase(std::remove_if(out.begin(), out.end(), far), out.end());
+}
+
+/// Of standing pairs with a member in `groups`, with the gaps that may close within `h` (s).
+void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h)
+{
+    const auto member = [&](Ref r)
+    {
+        const std::uint32_t g = groups_.of(r);
+        return g != kNoIndex && std::binary_search(groups.begin(), groups.end(), g);
+    };
+    double widest = 0;
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        standing_.clear();
+        double margin = 0;
+        for (const PairState& p : cache_.pairs())
+        {
+            if (!p.resting || p.detector != detectors_[d].component || !(member(p.a) || member(p.b))) continue;
+            standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
+            margin = std::max(margin, gap_margin(p, h));
+        }
+        if (!standing_.empty()) detect(detectors_[d], d, standing_, true, out, margin);
+        widest = std::max(widest, margin);
+    }
+    if (widest > 0) drop_far(out, h);
+    sort_contacts(out, world_);
+    for (FoundContact& f : out)
+    {
+        f.contact.resting = true;
+        const PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_);
+        const KnownContact& known = known_contact(f);
+        f.contact.id = known.id, f.contact.impulse = known.impulse;
+        f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
+        // Seen with b moved towards a: half of the way back is where the two surfaces meet.
+        f.contact.point += pair->normal * (0.5 * standing_margin(*pair));
+        fill_material(f);
+    }
+}
+
+void Stepper::fill_material(FoundContact& f) const
+{
+    const world::HostTables& host = world_.host();
+    const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
+    if (const SurfaceLaw* law = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr)
+    {
+        f.contact.friction = law->friction, f.contact.restitution = law->restitution;
+        return;
+    }
+    const SurfaceLaw law = response_law(f.detector);
+    f.contact.friction = law.friction, f.contact.restitution = law.restitution;
+}
+
+/// Where no Material/Pair says otherwise.
+SurfaceLaw Stepper::response_law(std::uint32_t detector) const
+{
+    const std::uint32_t response = detectors_[detector].response;
+    if (response == kNoIndex) return {};
+    const Row row = world_.component(response).row;
+    const auto number = [&](const char* name)
+    {
+        const Field* field = world_.table_of(response).schema().find_field(name);
+        const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
+        return column ? (*column)[row] : 0.0;
+    };
+    return {number("friction"), number("restitution")};
+}
+
+double Stepper::standing_margin(const PairState& pair) const { return standing_margin(pair.a, pair.b); }
+
+double Stepper::standing_margin(Ref a, Ref b) const
+{
+    const double radius = std::min(radius_of_body_[a.index], radius_of_body_[b.index]);
+    return std::max(kOverlapTolerance, std::isfinite(radius) ? kStandingShare * radius : 0.0);
+}
+
+double Stepper::normal_velocity(const Contact& c) const
+{
+    const Bodies& bodies = world_.host().bodies;
+    return dot(bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point), c.normal);
+}
+
+double Stepper::kinetic_energy(const std::vector<FoundContact>& contacts) const
+{
+    const Bodies& bodies = world_.host().bodies;
+    counted_.clear();
+    for (const FoundContact& f : contacts) counted_.push_back(f.contact.a.index), counted_.push_back(f.contact.b.index);
+    std::sort(counted_.begin(), counted_.end());
+    counted_.erase(std::unique(counted_.begin(), counted_.end()), counted_.end());
+    double sum = 0;
+    for (const std::uint32_t b : counted_) sum += bodies.kinetic_energy(b);
+    return sum;
+}
+
+void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book)
+{
+    // Each detector's own response answers for its contacts. Several detectors are answered in id order.
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        if (!detectors_[d].responds) continue;
+        impact_contacts_.clear();
+        for (const FoundContact& f : contacts)
+            if (f.detector == d) impact_contacts_.push_back(f.contact);
+        if (impact_contacts_.empty()) continue;
+        const std::uint32_t response = detectors_[d].response;
+        world::Table& table = world_.table_of(response);
+        const world::Component& c = world_.component(response);
+        StepContext context;
+        context.time = frame_.start_time, context.dt = dt, context.tick = frame_.tick, context.events = this;
+        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+        Impact impact;
+        impact.mode = mode, impact.dt = dt, impact.contacts = impact_contacts_;
+        PhaseCall call;
+        call.context = &context, call.rows = Rows(&c.row, 1);
+        call.bodies = &world_.host().bodies, call.impact = &impact;
+        const double before = book.work ? kinetic_energy(contacts) : 0.0;
+        const std::uint64_t started = now_ns();
+        for (const CommandInfo& command : table.type().info.commands)
+            if (command.phase == Phase::Respond && command.run) (void)command.run(call, table.rows());
+        cost_.by_table[c.table][static_cast<std::size_t>(Phase::Respond)] += now_ns() - started;
+        if (book.work) (*book.work)[response] += book.sign * (kinetic_energy(contacts) - before);
+        report_.worst_residual = std::max(report_.worst_residual, impact.residual);
+        std::size_t next = 0;
+        for (FoundContact& f : contacts)
+            if (f.detector == d) f.contact = impact_contacts_[next++];
+    }
+}
+
+void Stepper::advance_contacts(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+                               WorkBook book, bool trial)
+{
+    islands_.reset(groups_.all.size());
+    for (const PairState& p : cache_.pairs())
+        if (p.resting && world_.host().bodies.dynamic(p.a.index) && world_.host().bodies.dynamic(p.b.index))
+            islands_.join(groups_.of(p.a), groups_.of(p.b));
+    if (extra_) forces_.join(islands_);
+    contact_groups_.assign(groups.begin(), groups.end());
+    held_->take(contact_groups_, islands_);
+    if (held_->holds_any()) held_->advance(shadows, islands_, from, to, book, trial);
+    // Islands in the order of their first group; members keep their order.
+    done_.assign(groups_.all.size(), 0);
+    for (const std::uint32_t first : contact_groups_)
+    {
+        if (done_[first]) continue;
+        island_.clear();
+        for (const std::uint32_t g : contact_groups_)
+            if (!done_[g] && islands_.find(g) == islands_.find(first)) done_[g] = 1, island_.push_back(g);
+        std::sort(island_.begin(), island_.end());
+        advance_island(island_, shadows, from, to, book, trial);
+    }
+}
+
+/// Corners of a standing pair that reach the other body within the step, faster than forces alone would take them there,
+/// meet it without bounce, ahead of the step: a mean of the speeds before and after would carry them through. Says whether
+/// there were any.
+bool Stepper::arrest(const GroupSystem& system, double h, WorkBook book)
+{
+    double given = 0;
+    for (std::size_t i = 0; i < system.bodies().size(); ++i) given = std::max(given, length(system.acceleration(i)) * h);
+    const auto meets = [&](const FoundContact& f)
+    {
+        const double closing = -normal_velocity(f.contact);
+        return closing > std::max(kNoApproach, 2 * given) && closing * h > -f.contact.depth;
+    };
+    if (std::none_of(touching_.begin(), touching_.end(), meets)) return false;
+    for (FoundContact& f : touching_) f.contact.impulse = {};
+    respond(touching_, ImpactMode::Rest, h, book);
+    // What a blow took does not tell how hard the contact will press; the last step's impulse does.
+    for (FoundContact& f : touching_) f.contact.impulse = known_contact(f).impulse;
+    return true;
+}
+
+/// Whether two bodies that touch slide so that pressing harder would close them faster.
+bool Stepper::is_paradox(const Contact& contact) const
+{
+    return contact.depth >= -kOverlapTolerance && pressing_share(world_.host().bodies, contact) <= 0;
+}
+
+/// Told where it begins: what follows is one of several answers, an impulse that ends the slip.
+void Stepper::tell_paradox(const Contact& contact, PairState& pair, double time)
+{
+    const bool goes_on = pair.paradox_tick >= frame_.tick - 1;
+    pair.paradox_tick = frame_.tick;
+    if (goes_on) return;
+    Event e = contact_event("contact.paradox", pair, time);
+    e.severity = Severity::Warning;
+    e.message = "Painleve's paradox: friction of " + std::to_string(contact.friction) +
+                " on this lever leaves sliding without an answer; an impulse ends the slip. Less friction, or a less slender body, has one";
+    e.values = {contact.point.x, contact.point.y, contact.point.z, contact.normal.x, contact.normal.y, contact.normal.z};
+    emit(std::move(e));
+}
+
+/// Time stepping with one-sided contacts: speeds first, impulses that keep contacts from closing, then positions with
+/// the mean of old and new speeds, so that a body that slides at constant deceleration is exact.
+void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
+                             WorkBook book, bool trial)
+{
+    const double h = to - from;
+    Bodies& bodies = world_.host().bodies;
+    Shafts& shafts = world_.host().shafts;
+    GroupSystem& system = system_for(island, shadows);
+    touching_.clear();
+    touching_pairs_of(island, touching_, h);
+    system.begin(from, to, book, trial ? nullptr : this);
+    system.evaluate_here();
+    if (!trial)
+        for (const FoundContact& f : touching_)
+            if (is_paradox(f.contact))
+                tell_paradox(f.contact, *cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_),
+                             frame_.start_time + from);
+    if (arrest(system, h, book)) system.join();
+
+    old_velocity_.clear(), old_spin_.clear();
+    const auto members = system.bodies();
+    for (std::size_t i = 0; i < members.size(); ++i)
+    {
+        const std::uint32_t b = members[i];
+        old_velocity_.push_back(bodies.velocity[b]), old_spin_.push_back(bodies.angular_velocity[b]);
+        system.kick(i, h);
+    }
+    respond(touching_, ImpactMode::Rest, h, book);
+    if (!trial) keep_impulses(touching_);
+    system.join();  // an impulse knows nothing of joints
+    for (std::size_t i = 0; i < members.size(); ++i)
+    {
+        const std::uint32_t b = members[i];
+        bodies.position[b] += (old_velocity_[i] + bodies.velocity[b]) * (0.5 * h);
+        const Vec3 turn_W = (old_spin_[i] + bodies.angular_velocity[b]) * (0.5 * h);
+        bodies.orientation[b] = normalized(exp_rotation(turn_W) * bodies.orientation[b]);
+        bodies.refresh_spin(b);
+    }
+    system.move_shafts(h, shafts);
+    system.move_prescribed();
+    system.project();
+    finish_advance(system, system.all_finite(), to, trial);
+}
+
+void Stepper::keep_impulses(const std::vector<FoundContact>& contacts)
+{
+    for (const FoundContact& f : contacts)
+        if (PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_))
+        {
+            cache_.contact_of(*pair, f.contact.feature).impulse = f.contact.impulse;
+            pair->normal = f.contact.normal;
+        }
+}
+
+}  // namespace plab::simulation

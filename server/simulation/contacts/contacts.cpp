@@ -1,0 +1,226 @@
+#include "simulation/contacts/contacts.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace plab::simulation
+{
+namespace
+{
+
+auto key_of(const world::World& world, std::uint32_t detector, Ref a, Ref b)
+{
+    return std::tuple(world.rank(detector), world.rank(a), world.rank(b));
+}
+
+auto key_of(const world::World& world, const PairState& p) { return key_of(world, p.detector, p.a, p.b); }
+
+std::vector<PairState>::iterator position_of(std::vector<PairState>& pairs, const world::World& world, std::uint32_t detector, Ref a, Ref b)
+{
+    const auto key = key_of(world, detector, a, b);
+    return std::lower_bound(pairs.begin(), pairs.end(), key, [&](const PairState& p, const auto& k) { return key_of(world, p) < k; });
+}
+
+}  // namespace
+
+PairState* ContactCache::find(std::uint32_t detector, Ref a, Ref b, const world::World& world)
+{
+    const auto at = position_of(pairs_, world, detector, a, b);
+    return at != pairs_.end() && at->detector == detector && at->a == a && at->b == b ? &*at : nullptr;
+}
+
+PairState& ContactCache::get_or_add(std::uint32_t detector, Ref a, Ref b, const world::World& world, Tick now, bool& added)
+{
+    auto at = position_of(pairs_, world, detector, a, b);
+    added = !(at != pairs_.end() && at->detector == detector && at->a == a && at->b == b);
+    if (!added) return *at;
+    PairState fresh;
+    fresh.detector = detector, fresh.a = a, fresh.b = b, fresh.since = now;
+    return *pairs_.insert(at, fresh);
+}
+
+void ContactCache::add_sorted(std::span<const PairState> fresh, const world::World& world)
+{
+    if (fresh.empty()) return;
+    // Merged from the back, so that each pair moves once.
+    std::size_t old = pairs_.size(), at = old + fresh.size();
+    pairs_.resize(at);
+    for (std::size_t next = fresh.size(); next > 0;)
+    {
+        const bool old_is_later = old > 0 && key_of(world, fresh[next - 1]) < key_of(world, pairs_[old - 1]);
+        pairs_[--at] = old_is_later ? pairs_[--old] : fresh[--next];
+    }
+}
+
+KnownContact& ContactCache::contact_of(PairState& pair, std::uint32_t feature)
+{
+    for (std::uint32_t i = 0; i < pair.count; ++i)
+        if (pair.contacts[i].feature == feature) return pair.contacts[i];
+    // A full manifold gives its last place away: ids beyond it are of no use to
+    // anybody.
+    const std::uint32_t place = std::min<std::uint32_t>(pair.count, PairState::kMostContacts - 1);
+    pair.count = place + 1;
+    pair.contacts[place] = {};
+    pair.contacts[place].feature = feature, pair.contacts[place].id = next_id_++;
+    return pair.contacts[place];
+}
+
+void ContactCache::refresh(const world::World& world, const std::vector<Detector>& detectors)
+{
+    const auto gone = [&](const PairState& p)
+    {
+        const bool has_detector =
+            std::any_of(detectors.begin(), detectors.end(), [&](const Detector& d) { return d.component == p.detector; });
+        const auto lives = [&](Ref r) { return world.host().component_of(r) != kNoIndex; };
+        return !has_detector || !lives(p.a) || !lives(p.b);
+    };
+    const auto foreseen_by_nobody = [&](const PairState& p)
+    {
+        return p.ahead && std::none_of(detectors.begin(), detectors.end(),
+                                       [&](const Detector& d) { return d.component == p.detector && d.speculates; });
+    };
+    std::erase_if(pairs_, gone);
+    std::erase_if(pairs_, foreseen_by_nobody);
+    for (PairState& p : pairs_)
+    {
+        // Where nobody responds any more nothing stands: a sensor holds no body up.
+        const bool answered =
+            std::any_of(detectors.begin(), detectors.end(),
+                        [&](const Detector& d) { return d.component == p.detector && (d.responds || d.by_rows || d.by_force); });
+        if (answered) continue;
+        p.resting = false;
+        p.bounces = {};
+        for (KnownContact& k : p.contacts) k.impulse = {};
+    }
+    std::sort(pairs_.begin(), pairs_.end(), [&](const PairState& x, const PairState& y) { return key_of(world, x) < key_of(world, y); });
+}
+
+void ContactCache::save(const world::World& world, ByteWriter& out) const
+{
+    for (const PairState& p : pairs_)
+    {
+        write(out, world.rank(p.a));
+        write(out, world.rank(p.b));
+        write(out, p.resting);
+        if (p.ahead) write(out, p.ahead);
+        write(out, p.overlapping);
+        write(out, p.normal);
+        for (std::uint32_t i = 0; i < p.count; ++i)
+        {
+            write(out, p.contacts[i].feature);
+            write(out, p.contacts[i].id);
+            write(out, p.contacts[i].impulse);
+            // Only where somebody remembers: contacts that do not keep the bytes that
+            // they always had.
+            const KnownContact& k = p.contacts[i];
+            if (k.stretch == Vec3{} && k.rest_depth == 0 && k.preload == 0) continue;
+            write(out, k.stretch);
+            write(out, k.rest_depth);
+            write(out, k.preload);
+        }
+        if (p.bounces == BounceHistory{}) continue;
+        write(out, p.bounces.time);
+        write(out, p.bounces.interval);
+        write(out, p.bounces.previous);
+    }
+    save_force_pairs(world, out);
+}
+
+void ContactCache::save_force_pairs(const world::World& world, ByteWriter& out) const
+{
+    for (const ForcePair& p : force_pairs_)
+    {
+        // By name: who else there is in the scene is no part of their state.
+        write(out, world.id_of(p.a));
+        write(out, world.id_of(p.b));
+        for (const ForceContact& c : p.all())
+        {
+            write(out, c.feature);
+            write(out, c.id);
+            for (const Vec3& v : {c.stretch, c.impulse, c.force}) write(out, v);
+            for (const double x :
+                 {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.lively, c.liveliest})
+                write(out, x);
+            write(out, static_cast<std::uint8_t>((c.told ? 1 : 0) + (c.dormant ? 2 : 0)));
+        }
+    }
+}
+
+namespace
+{
+
+/// The first command of a phase that takes part; null if there is none.
+const CommandInfo* find_command(const world::World& world, std::uint32_t component, Phase phase)
+{
+    if (component == kNoIndex || world.component(component).quarantined) return nullptr;
+    const auto& c = world.component(component);
+    const auto& commands = world.type_of(component)->info.commands;
+    for (std::size_t k = 0; k < commands.size(); ++k)
+        if (commands[k].phase == phase && commands[k].run && (c.commands & (1ull << k))) return &commands[k];
+    return nullptr;
+}
+
+std::uint32_t manager_of(const world::World& world, std::uint32_t response)
+{
+    for (const Role& role : world.table_of(response).schema().roles())
+        if (role.name == "manager" && role.one) return (*role.one)[world.component(response).row].index;
+    return kNoIndex;
+}
+
+/// What the detector's resolution and response say of themselves.
+void describe(Detector& d, const world::World& world)
+{
+    d.responds = find_command(world, d.response, Phase::Respond) != nullptr;
+    // A gap is measured wherever there is a resolution that needs it, whatever
+    // the stage lists select.
+    for (const CommandInfo& command : world.type_of(d.component)->info.commands)
+        if (command.phase == Phase::Gap && command.run) d.gap = &command;
+    if (d.response != kNoIndex && !world.component(d.response).quarantined)
+    {
+        const TypeInfo& response = world.type_of(d.response)->info;
+        d.by_rows = response.by_rows, d.by_force = response.by_force;
+        if (d.by_rows) d.manager = manager_of(world, d.response);
+    }
+    if (!find_command(world, d.resolution, Phase::Locate)) return;
+    const TypeInfo& resolution = world.type_of(d.resolution)->info;
+    d.speculates = resolution.speculates;
+    d.locates = resolution.locates && !d.by_force;
+    d.local = d.locates && resolution.local;
+    d.certifies = d.local && resolution.certifies && d.gap;
+}
+
+}  // namespace
+
+std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule)
+{
+    std::vector<Detector> out;
+    for (const Block& block : schedule.of(Phase::Detect))
+        for (const Row row : block.rows)
+        {
+            const world::Table& table = *world.tables()[block.table];
+            Detector d;
+            d.component = table.component_of_row()[row], d.table = block.table, d.row = row, d.command = block.command;
+            for (const Role& role : table.schema().roles())
+            {
+                if (role.name == "resolution" && role.one) d.resolution = (*role.one)[row].index;
+                if (role.name == "response" && role.one) d.response = (*role.one)[row].index;
+            }
+            describe(d, world);
+            out.push_back(d);
+        }
+    std::sort(out.begin(), out.end(),
+              [&](const Detector& x, const Detector& y) { return world.rank(x.component) < world.rank(y.component); });
+    return out;
+}
+
+void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world)
+{
+    const auto key = [&](const FoundContact& f)
+    { return std::tuple(f.detector, world.rank(f.contact.a), world.rank(f.contact.b), f.contact.feature); };
+    // Detectors mostly deliver in this order already.
+    const auto before = [&](const FoundContact& x, const FoundContact& y) { return key(x) < key(y); };
+    if (std::is_sorted(contacts.begin(), contacts.end(), before)) return;
+    std::sort(contacts.begin(), contacts.end(), before);
+}
+
+}  // namespace plab::simulation

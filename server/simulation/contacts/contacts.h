@@ -1,0 +1,187 @@
+/// Contacts over time: who touches since when, under stable ids, whatever
+/// detection library found them.
+///
+/// A pair is known from the step in which it first touches until its gap opens.
+/// What the next step depends on (resting, overlap at the start, impulses for
+/// warm starts) is state: it is saved, restored and hashed with the scene.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "simulation/contact_forces/contact_force_pair.h"
+#include "simulation/groups/group_system.h"
+
+namespace plab::simulation
+{
+
+/// A detection component with the algorithms that answer for what it finds.
+struct Detector
+{
+    std::uint32_t component = kNoIndex;
+    std::uint32_t table = 0;
+    Row row = 0;
+    const CommandInfo* command = nullptr;
+    std::uint32_t resolution = kNoIndex;  ///< component
+    std::uint32_t response = kNoIndex;    ///< component
+    std::uint32_t manager = kNoIndex;     ///< component; of a response by rows
+    const CommandInfo* gap = nullptr;     ///< measures how far two bodies are apart; null: it cannot
+    bool locates = false, local = false;
+    bool certifies = false;   ///< the resolution looks inside the step
+    bool speculates = false;  ///< gaps that may close within the step are
+                              ///< contacts, with depth < 0
+    bool responds = false;    ///< the response has a command for impacts and takes part
+    bool by_rows = false;     ///< the response leaves contacts to a manager
+    bool by_force = false;    ///< the response is a force
+    /// Contacts are no events: a touching pair is a standing pair at once, and a
+    /// manager or a force answers it.
+    bool persists() const { return by_force || (by_rows && !locates); }
+};
+
+/// A contact as found now, with the index of its detector.
+struct FoundContact
+{
+    Contact contact;
+    std::uint32_t detector = 0;
+};
+
+struct KnownContact
+{
+    std::uint32_t feature = 0;
+    std::uint64_t id = 0;
+    Vec3 impulse;           ///< N s per step on b, for warm starts
+    Vec3 stretch;           ///< m, as in Contact: what contacts that are forces remember
+    double rest_depth = 0;  ///< m
+    double preload = 0;     ///< N
+};
+
+/// The last impacts of a pair, to see where a sequence of bounces ends.
+struct BounceHistory
+{
+    double time = 0;      ///< s, of the last impact
+    double interval = 0;  ///< s, between the last two; 0: none yet
+    double previous = 0;  ///< s, the interval before
+    friend bool operator==(const BounceHistory&, const BounceHistory&) = default;
+};
+
+struct PairState
+{
+    static constexpr std::size_t kMostContacts = 16;
+
+    std::uint32_t detector = kNoIndex;  ///< component
+    Ref a, b;
+    Tick since = 0;
+    bool resting = false;
+    bool ahead = false;        ///< does not touch: a gap that may close within the step
+                               ///< (Resolution/Speculative), held and told to nobody
+    bool overlapping = false;  ///< at the end of the last advance: it cannot be
+                               ///< bracketed from there
+    Vec3 normal;               ///< of the last contact seen, a to b
+    std::uint32_t count = 0;
+    std::array<KnownContact, kMostContacts> contacts;
+    BounceHistory bounces;
+    std::uint32_t impacts = 0;  ///< in the step `impacts_tick`; not saved: a step begins with none
+    Tick impacts_tick = -1;
+    Tick paradox_tick = -2;  ///< last step in which pressing harder would have
+                             ///< closed it faster; not saved either
+};
+
+/// All known pairs, sorted by detector, a and b in id order.
+class ContactCache
+{
+public:
+    PairState* find(std::uint32_t detector, Ref a, Ref b, const world::World& world);
+    PairState& get_or_add(std::uint32_t detector, Ref a, Ref b, const world::World& world, Tick now, bool& added);
+    /// Adds pairs that are not known yet, in one pass. `fresh` is sorted as
+    /// pairs() are.
+    void add_sorted(std::span<const PairState> fresh, const world::World& world);
+    std::vector<PairState>& pairs() { return pairs_; }
+    const std::vector<PairState>& pairs() const { return pairs_; }
+    /// The id under which a feature of the pair is known; a new one if it is new.
+    KnownContact& contact_of(PairState& pair, std::uint32_t feature);
+    /// Drops pairs whose detector or bodies are gone and sorts the rest anew,
+    /// after a structural change.
+    void refresh(const world::World& world, const std::vector<Detector>& detectors);
+    void clear() { *this = {}; }
+    std::uint64_t new_id() { return next_id_++; }
+    /// Pairs whose contacts are forces, in the same order.
+    std::vector<ForcePair>& force_pairs() { return force_pairs_; }
+    const std::vector<ForcePair>& force_pairs() const { return force_pairs_; }
+    /// Pairs as they were before a swap made other ones of them at the present
+    /// boundary: swapping back brings them back.
+    std::vector<PairState>& parked_pairs() { return parked_pairs_; }
+    std::vector<ForcePair>& parked_force_pairs() { return parked_force_pairs_; }
+    void forget_parked() { parked_pairs_.clear(), parked_force_pairs_.clear(); }
+    void save(const world::World& world, ByteWriter& out) const;
+
+private:
+    void save_force_pairs(const world::World& world, ByteWriter& out) const;
+
+    std::vector<PairState> pairs_, parked_pairs_;
+    std::vector<ForcePair> force_pairs_, parked_force_pairs_;
+    std::uint64_t next_id_ = 1;
+};
+
+/// Detectors of a scene, in id order.
+std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule);
+
+/// Collects what one detector finds.
+class ContactCollector final : public ContactSink
+{
+public:
+    ContactCollector(const world::World& world, std::vector<FoundContact>& out) : world_(&world), out_(&out) {}
+    void look_for(std::uint32_t detector, std::span<const StandingPair> standing, bool only_standing, double margin = 0)
+    {
+        detector_ = detector, standing_ = standing, only_standing_ = only_standing, margin_ = margin;
+    }
+    std::span<const StandingPair> standing() const override { return standing_; }
+    bool only_standing() const override { return only_standing_; }
+    double margin() const override { return margin_; }
+    void add(const Contact& contact) override { out_->push_back({contact, detector_}); }
+    bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
+
+private:
+    const world::World* world_;
+    std::vector<FoundContact>* out_;
+    std::uint32_t detector_ = 0;
+    std::span<const StandingPair> standing_;
+    bool only_standing_ = false;
+    double margin_ = 0;
+};
+
+/// Collects the pairs that may meet, given how far each body may get.
+class NearCollector final : public ContactSink
+{
+public:
+    struct Pair
+    {
+        Ref a, b;
+    };
+    NearCollector(const world::World& world, std::span<const double> reach, std::vector<Pair>& out)
+        : world_(&world), reach_(reach), out_(&out)
+    {
+    }
+    std::span<const StandingPair> standing() const override { return {}; }
+    std::span<const double> reach() const override { return reach_; }
+    void near(Ref a, Ref b) override { out_->push_back({a, b}); }
+    void add(const Contact&) override {}
+    bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
+
+private:
+    const world::World* world_;
+    std::span<const double> reach_;
+    std::vector<Pair>* out_;
+};
+
+/// By detector, bodies in id order, feature: no library's order reaches the
+/// state.
+void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world);
+
+/// Overlap that is left alone, m.
+inline constexpr double kOverlapTolerance = 1e-9;
+/// A standing pair is looked at as if it were this share of its smaller body's
+/// radius closer: corners that are about to touch are contacts too, with their
+/// gap, and a gap below this does not end the contact.
+inline constexpr double kStandingShare = 1e-4;
+
+}  // namespace plab::simulation

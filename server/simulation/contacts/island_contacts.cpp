@@ -1,0 +1,220 @@
+// Contacts of islands that managers hold: which of them are known, who begins
+// to stand, and what the next step remembers.
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/contacts/island_step.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// Slower than this nothing meets, m/s.
+constexpr double kNoApproach = 1e-9;
+
+}  // namespace
+
+// Who knows what
+// ------------------------------------------------------------------------------------------------------
+
+void HeldIslands::note_state()
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    known_positions_ = bodies.position, known_orientations_ = bodies.orientation;
+    known_velocities_ = bodies.velocity, known_spins_ = bodies.angular_velocity;
+    known_ = true;
+}
+
+bool HeldIslands::is_current() const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    if (!known_ || known_positions_ != bodies.position || known_orientations_ != bodies.orientation) return false;
+    // How far gaps are looked for depends on speeds where they speculate.
+    const bool speculates = std::any_of(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.speculates; });
+    return !speculates || (known_velocities_ == bodies.velocity && known_spins_ == bodies.angular_velocity);
+}
+
+void HeldIslands::begin_step()
+{
+    look_for_yielding_rows();
+    const bool stands =
+        std::any_of(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.by_rows && d.persists(); });
+    if (!stands || is_current()) return;
+    s_->detect_all(s_->found_);
+    adopt(s_->found_, s_->frame_.start_time);
+    note_state();
+}
+
+void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
+{
+    fresh_.clear(), first_found_.clear();
+    for (std::size_t i = 0; i < found.size();)
+    {
+        const FoundContact& first = found[i];
+        double deepest = first.contact.depth;
+        std::size_t end = i;
+        for (; end < found.size() && Stepper::same_pair(found[end], first); ++end) deepest = std::max(deepest, found[end].contact.depth);
+        const Detector& d = s_->detectors_[first.detector];
+        if (d.by_rows && d.persists() && !s_->cache_.find(d.component, first.contact.a, first.contact.b, s_->world_))
+        {
+            PairState& pair = fresh_.emplace_back();
+            pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = s_->frame_.tick;
+            pair.resting = true, pair.normal = first.contact.normal;
+            pair.ahead = deepest <= -s_->standing_margin(pair);
+            if (pair.ahead && !d.speculates)
+                fresh_.pop_back();
+            else
+                first_found_.push_back(i);
+        }
+        i = end;
+    }
+    if (fresh_.empty()) return;
+    s_->cache_.add_sorted(fresh_, s_->world_);
+    for (std::size_t k = 0; k < fresh_.size(); ++k)
+        if (!fresh_[k].ahead) tell_begin(fresh_[k], found[first_found_[k]].contact, time);
+}
+
+void HeldIslands::tell_begin(const PairState& pair, const Contact& c, double time) const
+{
+    Event begin = s_->contact_event("contact.begin", pair, time);
+    begin.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, 0, 0, 0, c.depth};
+    s_->emit(std::move(begin));
+}
+
+bool HeldIslands::keeps_ahead(PairState& pair, bool touches, std::span<const FoundContact> found, double time) const
+{
+    if (touches && pair.ahead) pair.ahead = false, pair.since = s_->frame_.tick, tell_begin(pair, found.front().contact, time);
+    return !touches && !found.empty() && s_->detectors_[found.front().detector].speculates;
+}
+
+void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const FoundContact> found) const
+{
+    if (!any_ || known >= pair.count || manager_of(pair) == kNoIndex) return;
+    const auto seen = [&](const KnownContact& k)
+    { return std::any_of(found.begin(), found.end(), [&](const FoundContact& f) { return f.contact.feature == k.feature; }); };
+    Vec3 left;
+    for (std::uint32_t i = 0; i < known; ++i)
+        if (!seen(pair.contacts[i])) left += pair.contacts[i].impulse;
+    const double share = 1.0 / (pair.count - known);
+    for (std::uint32_t i = known; i < pair.count; ++i) pair.contacts[i].impulse = left * share;
+}
+
+// Contacts
+// ------------------------------------------------------------------------------------------------------------
+
+void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law)
+{
+    const world::HostTables& host = s_->world_.host();
+    const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
+    const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
+    f.contact.friction = (own ? own : &law)->friction, f.contact.restitution = (own ? own : &law)->restitution;
+    const KnownContact& known = s_->cache_.contact_of(pair, f.contact.feature);
+    f.contact.id = known.id, f.contact.impulse = known.impulse;
+    f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
+    f.contact.resting = true;
+}
+
+/// Contacts of the held groups at the present state. Those of persisting pairs
+/// are known if nothing moved since; the others depend on who stands since
+/// when, so they are looked for anew: a function of the state, whatever
+/// happened before it.
+void HeldIslands::collect_contacts(double from, double h)
+{
+    touching_.clear(), pair_of_contact_.clear();
+    const auto& detectors = s_->detectors_;
+    const bool known = from == 0 && is_current();
+    const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); });
+    if (!known || locates) s_->touching_pairs_of(held_, touching_, h);
+    if (!known || !std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
+    {
+        for (const FoundContact& f : touching_)
+            pair_of_contact_.push_back(s_->cache_.find(detectors[f.detector].component, f.contact.a, f.contact.b, s_->world_));
+        return;
+    }
+    std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
+    for (const FoundContact& f : touching_)
+        pair_of_contact_.push_back(s_->cache_.find(detectors[f.detector].component, f.contact.a, f.contact.b, s_->world_));
+    add_known_contacts();
+}
+
+/// What the last look found of persisting pairs. Both lists stand in the order
+/// of detector, a, b.
+void HeldIslands::add_known_contacts()
+{
+    std::size_t at = 0;
+    std::uint32_t law_detector = kNoIndex;
+    SurfaceLaw law;
+    for (PairState& pair : s_->cache_.pairs())
+    {
+        at = s_->first_of_pair(pair, at);
+        for (; at < s_->found_.size() && s_->is_of_pair(s_->found_[at], pair); ++at)
+        {
+            if (!pair.resting || !s_->detectors_[s_->found_[at].detector].persists()) continue;
+            FoundContact& f = touching_.emplace_back(s_->found_[at]);
+            if (f.detector != law_detector) law = s_->response_law(f.detector), law_detector = f.detector;
+            fill(f, pair, law);
+            pair_of_contact_.push_back(&pair);
+        }
+    }
+}
+
+void HeldIslands::share_contacts()
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    for (std::uint32_t i = 0; i < touching_.size(); ++i)
+    {
+        const Contact& c = touching_[i].contact;
+        std::uint32_t number = kNoIndex;
+        for (const Ref r : {c.a, c.b})
+            if (bodies.dynamic(r.index) && s_->groups_.of(r) != kNoIndex && number == kNoIndex) number = isle_of_group_[s_->groups_.of(r)];
+        if (number == kNoIndex) continue;
+        isles_[number]->contacts.push_back(c);
+        isles_[number]->places.push_back(i);
+    }
+}
+
+/// Closing speed of what begins: a contact that held nothing in the last step
+/// and closes faster than half of what forces would give it in this one, or
+/// held something and is hit. Below that it trembles, or comes to rest.
+void HeldIslands::set_approach(Isle& isle, const GroupSystem& system, double h)
+{
+    for (std::size_t k = 0; k < isle.members.size(); ++k) given_speed_[isle.bodies[k]] = length(system.acceleration(isle.members[k])) * h;
+    for (Contact& c : isle.contacts)
+    {
+        const double speed = s_->normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
+        const double share = c.impulse == Vec3{} ? 0.5 : 2;
+        c.approach = speed < -std::max(kNoApproach, share * given) ? -speed : 0.0;
+    }
+    for (const std::uint32_t b : isle.bodies) given_speed_[b] = 0;
+}
+
+void HeldIslands::keep(const Isle& isle)
+{
+    for (std::size_t i = 0; i < isle.contacts.size(); ++i)
+    {
+        const Contact& c = isle.contacts[i];
+        PairState& pair = *pair_of_contact_[isle.places[i]];
+        // What an impact took does not tell how hard the contact will press.
+        s_->cache_.contact_of(pair, c.feature).impulse = c.approach > 0 ? Vec3{} : c.impulse;
+        pair.normal = c.normal;
+    }
+}
+
+void HeldIslands::tell_impacts(const Isle& isle, double time)
+{
+    for (std::size_t i = 0; i < isle.contacts.size(); ++i)
+    {
+        const Contact& c = isle.contacts[i];
+        if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
+        const double depth = touching_[isle.places[i]].contact.depth;
+        PairState& pair = *pair_of_contact_[isle.places[i]];
+        if (pair.ahead) pair.ahead = false, pair.since = s_->frame_.tick, tell_begin(pair, touching_[isle.places[i]].contact, time);
+        Event e = s_->contact_event("contact.impact", pair, time);
+        e.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.impulse.x, c.impulse.y, c.impulse.z, depth};
+        s_->emit(std::move(e));
+    }
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,276 @@
+#include "simulation/contacts/island_step.h"
+
+#include <algorithm>
+
+#include "simulation/clock.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// A role of a component that names a manager.
+std::uint32_t manager_role(const world::World& world, std::uint32_t component)
+{
+    for (const Role& role : world.table_of(component).schema().roles())
+        if (role.name == "manager" && role.one) return (*role.one)[world.component(component).row].index;
+    return kNoIndex;
+}
+
+}  // namespace
+
+void HeldIslands::rebuild()
+{
+    known_ = false;
+    manager_of_group_.assign(s_->groups_.all.size(), kNoIndex);
+    any_ = std::any_of(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.by_rows; });
+    holds_joints_ = false;
+    yields_.assign(s_->groups_.all.size(), 0);
+    yielding_groups_.clear();
+    const auto& blocks = s_->schedule_.of(Phase::Constrain);
+    for (std::uint32_t g = 0; g < manager_of_group_.size(); ++g)
+        for (const BlockRow& row : s_->groups_.all[g].rows)
+        {
+            const std::uint32_t component = s_->world_.tables()[blocks[row.block].table]->component_of_row()[row.row];
+            const std::uint32_t manager = manager_role(s_->world_, component);
+            if (manager == kNoIndex || manager_of_group_[g] != kNoIndex) continue;
+            manager_of_group_[g] = manager;
+            yielding_groups_.push_back(g);
+            any_ = true;
+        }
+}
+
+/// Limits that are near, motors at a loss: who has such rows now. Others advance by their solver.
+void HeldIslands::look_for_yielding_rows()
+{
+    holds_joints_ = false;
+    for (const std::uint32_t g : yielding_groups_)
+    {
+        RowSystem* rows = s_->system_for(std::span(&g, 1), {}).rows();
+        StepContext context;
+        context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+        context.seed = s_->frame_.seed;
+        rows->collect(context);
+        yields_[g] = rows->may_yield() ? 1 : 0;
+        holds_joints_ = holds_joints_ || rows->may_yield();
+    }
+}
+
+std::uint32_t HeldIslands::manager_of(const PairState& pair) const
+{
+    for (const Detector& d : s_->detectors_)
+        if (d.component == pair.detector) return d.by_rows ? d.manager : kNoIndex;
+    return kNoIndex;
+}
+
+// Who is held ---------------------------------------------------------------------------------------------------------
+
+void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands)
+{
+    held_.clear();
+    if (!any_) return;
+    manager_of_island_.assign(s_->groups_.all.size(), kNoIndex);
+    const auto name = [&](std::uint32_t group, std::uint32_t manager)
+    {
+        if (group == kNoIndex || manager == kNoIndex) return;
+        std::uint32_t& known = manager_of_island_[islands.find(group)];
+        if (known == kNoIndex || s_->world_.rank(manager) < s_->world_.rank(known)) known = manager;
+    };
+    for (const PairState& p : s_->cache_.pairs())
+    {
+        if (!p.resting) continue;
+        const std::uint32_t manager = manager_of(p);
+        if (manager == kNoIndex) continue;
+        for (const Ref r : {p.a, p.b})
+            if (s_->world_.host().bodies.dynamic(r.index)) name(s_->groups_.of(r), manager);
+    }
+    for (const std::uint32_t g : yielding_groups_)
+        if (yields_[g]) name(g, manager_of_group_[g]);
+    std::size_t kept = 0;
+    for (const std::uint32_t g : groups)
+        if (manager_of_island_[islands.find(g)] != kNoIndex)
+            held_.push_back(g);
+        else
+            groups[kept++] = g;
+    groups.resize(kept);
+    std::sort(held_.begin(), held_.end());
+}
+
+void HeldIslands::make_isles(DisjointSets& islands)
+{
+    isle_of_group_.assign(s_->groups_.all.size(), kNoIndex);
+    isle_count_ = 0;
+    for (const std::uint32_t g : held_)
+    {
+        const std::uint32_t root = islands.find(g);
+        std::uint32_t& number = isle_of_group_[root];
+        if (number == kNoIndex)
+        {
+            number = static_cast<std::uint32_t>(isle_count_++);
+            if (isles_.size() < isle_count_) isles_.push_back(std::make_unique<Isle>());
+            Isle& fresh = *isles_[number];
+            fresh.manager = manager_of_island_[root], fresh.has_rows = false;
+            fresh.groups.clear(), fresh.contacts.clear(), fresh.places.clear();
+        }
+        isle_of_group_[g] = number;
+        Isle& isle = *isles_[number];
+        isle.groups.push_back(g);
+        isle.has_rows = isle.has_rows || !s_->groups_.all[g].rows.empty();
+    }
+}
+
+// The step ------------------------------------------------------------------------------------------------------------
+
+void HeldIslands::advance(std::span<const std::uint32_t> shadows, DisjointSets& islands, double from, double to, WorkBook book, bool trial)
+{
+    // A look at where a piece begins: no time, no impulses.
+    if (!(to > from)) return;
+    make_isles(islands);
+    collect_contacts(from, to - from);
+    share_contacts();
+    plain_.clear(), jointed_.clear(), plain_groups_.clear();
+    for (std::size_t i = 0; i < isle_count_; ++i)
+    {
+        Isle& isle = *isles_[i];
+        (isle.has_rows ? jointed_ : plain_).push_back(&isle);
+        if (!isle.has_rows) plain_groups_.insert(plain_groups_.end(), isle.groups.begin(), isle.groups.end());
+    }
+    // Islands without joints share one system: who is in which of them changes with every contact, who is in all does not.
+    std::sort(plain_groups_.begin(), plain_groups_.end());
+    if (!plain_.empty()) run(plain_, plain_groups_, shadows, from, to, book, trial);
+    for (Isle* isle : jointed_) run(std::span(&isle, 1), isle->groups, shadows, from, to, book, trial);
+}
+
+void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from,
+                      double to, WorkBook book, bool trial)
+{
+    GroupSystem& system = s_->system_for(groups, shadows);
+    system.hold_rows(true);
+    system.begin(from, to, book, trial ? nullptr : s_);
+    system.evaluate(0, 0);
+    for (Isle* isle : isles) isle->members.clear(), isle->roots.clear(), isle->bodies.clear(), isle->shafts.clear();
+    for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
+    {
+        const std::uint32_t b = system.bodies()[i], number = isle_of_group_[s_->groups_.group_of_body[b]];
+        if (number == kNoIndex) continue;  // a shadow
+        isles_[number]->members.push_back(i), isles_[number]->bodies.push_back(b);
+    }
+    for (std::uint32_t i = 0; i < system.roots().size(); ++i)
+    {
+        const std::uint32_t shaft = system.roots()[i], number = isle_of_group_[s_->groups_.group_of_shaft[shaft]];
+        if (number == kNoIndex) continue;
+        isles_[number]->roots.push_back(i), isles_[number]->shafts.push_back(shaft);
+    }
+    for (Isle* isle : isles) solve(*isle, system, from, to, book, trial);
+    if (book.work) book_forces(system, isles, to - from);
+    system.finish_held();
+    for (const Isle* isle : isles) report_rows(*isle, system, to - from, book);
+    system.hold_rows(false);
+    s_->finish_advance(system, system.all_finite(), to, trial);
+}
+
+void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial)
+{
+    world::World& world = s_->world_;
+    world::HostTables& host = world.host();
+    isle.rows.clear();
+    if (isle.has_rows && system.rows())
+    {
+        system.rows()->begin_hold(system.context());
+        isle.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
+    }
+    given_speed_.resize(host.bodies.size(), 0.0);
+    set_approach(isle, system, to - from);
+    if (!trial)
+        for (std::size_t i = 0; i < isle.contacts.size(); ++i)
+            if (s_->is_paradox(isle.contacts[i])) s_->tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]],
+                                                               s_->frame_.start_time + from);
+    isle.motion.begin(system, host.bodies, host.shafts, isle.members, isle.roots, isle.contacts, isle.rows, book.work != nullptr);
+    Island island;
+    island.h = to - from, island.time = s_->frame_.start_time + from;
+    island.bodies = isle.bodies, island.shafts = isle.shafts;
+    shaft_mobility_.resize(host.shafts.size());
+    for (const std::uint32_t root : isle.shafts) shaft_mobility_[root] = mobility_of(root);
+    island.shaft_mobility = shaft_mobility_;
+    island.rows = isle.rows, island.contacts = isle.contacts, island.motion = &isle.motion;
+
+    const world::Component& c = world.component(isle.manager);
+    world::Table& table = world.table_of(isle.manager);
+    StepContext context;
+    context.time = island.time, context.dt = island.h, context.tick = s_->frame_.tick, context.events = trial ? nullptr : s_;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&c.row, 1);
+    call.bodies = &host.bodies, call.shafts = &host.shafts, call.island = &island;
+    const double before = book.work ? isle.motion.kinetic_energy() : 0.0;
+    const std::uint64_t started = now_ns();
+    for (const CommandInfo& command : table.type().info.commands)
+        if (command.phase == Phase::Solve && command.run) (void)command.run(call, table.rows());
+    s_->cost_.by_table[c.table][static_cast<std::size_t>(Phase::Solve)] += now_ns() - started;
+    if (book.work) (*book.work)[isle.manager] += book.sign * (isle.motion.kinetic_energy() - before - isle.motion.work_of_forces());
+    if (trial) return;
+    s_->report_.worst_residual = std::max(s_->report_.worst_residual, island.residual);
+    keep(isle);
+    tell_impacts(isle, island.time);
+}
+
+/// What joints say of themselves, and their share in what the manager did.
+void HeldIslands::report_rows(const Isle& isle, GroupSystem& system, double h, WorkBook book)
+{
+    if (isle.rows.empty()) return;
+    StepContext context = system.context();
+    context.time += h;
+    const double work = system.rows()->take_impulses(context, isle.rows, h, system.row_book());
+    if (book.work) (*book.work)[isle.manager] -= book.sign * work;
+}
+
+/// 1/(kg m^2) of the train that a shaft carries.
+double HeldIslands::mobility_of(std::uint32_t root) const
+{
+    const Shafts& shafts = s_->world_.host().shafts;
+    const ShaftTree* tree = s_->graph_.tree_of(root);
+    const double inertia = tree ? tree->inertia : shafts.dynamic(root) ? shafts.inertia[root] : 0.0;
+    return inertia > 0 ? 1 / inertia : 0.0;
+}
+
+/// Each force component's part of what the kicks did: its power at the mean speeds of the kicks.
+void HeldIslands::book_forces(GroupSystem& system, std::span<Isle*> isles, double h)
+{
+    world::HostTables& host = s_->world_.host();
+    Bodies& bodies = host.bodies;
+    kept_positions_.clear(), kept_orientations_.clear(), kept_velocities_.clear(), kept_spins_.clear(), kept_momenta_.clear();
+    kept_speeds_.clear(), kept_angles_.clear();
+    for (const std::uint32_t b : system.bodies())
+    {
+        kept_positions_.push_back(bodies.position[b]), kept_orientations_.push_back(bodies.orientation[b]);
+        kept_velocities_.push_back(bodies.velocity[b]), kept_spins_.push_back(bodies.angular_velocity[b]);
+        kept_momenta_.push_back(bodies.angular_momentum[b]);
+    }
+    for (const std::uint32_t s : system.roots()) kept_speeds_.push_back(host.shafts.speed[s]), kept_angles_.push_back(host.shafts.angle[s]);
+    const std::span<double> speeds = system.speeds();
+    const auto put = [&](std::size_t at, const Vec3& v) { speeds[at] = v.x, speeds[at + 1] = v.y, speeds[at + 2] = v.z; };
+    for (const Isle* isle : isles)
+    {
+        const auto& means = isle->motion.means();
+        for (std::size_t k = 0; k < isle->members.size(); ++k)
+        {
+            put(6 * isle->members[k], means[k].velocity / h);
+            put(6 * isle->members[k] + 3, means[k].momentum / h);
+        }
+        for (std::size_t k = 0; k < isle->roots.size(); ++k)
+            speeds[6 * system.body_count() + isle->roots[k]] = means[isle->members.size() + k].shaft / h;
+    }
+    system.evaluate(0, 1);
+    for (std::size_t i = 0; i < system.bodies().size(); ++i)
+    {
+        const std::uint32_t b = system.bodies()[i];
+        bodies.position[b] = kept_positions_[i], bodies.orientation[b] = kept_orientations_[i];
+        bodies.velocity[b] = kept_velocities_[i], bodies.angular_velocity[b] = kept_spins_[i];
+        bodies.angular_momentum[b] = kept_momenta_[i];
+    }
+    for (std::size_t i = 0; i < system.roots().size(); ++i)
+        host.shafts.speed[system.roots()[i]] = kept_speeds_[i], host.shafts.angle[system.roots()[i]] = kept_angles_[i];
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,177 @@
+/// Islands of contacts that are rows: what a manager (Phase::Solve) gets to
+/// see, and what becomes of it.
+///
+/// The groups that standing contacts hold together are one island, with the
+/// joints of its members. Forces are taken once, at the start; the manager says
+/// how far they kick, when bodies move, and answers contacts and rows in
+/// between.
+///
+///   work of forces   F . (mean of the speeds before and after each kick) h,
+///   summed: what a kick did to kinetic energy work of manager  the rest of the
+///   change of kinetic energy
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "plab/island.h"
+#include "simulation/contacts/contacts.h"
+
+namespace plab::simulation
+{
+
+class Stepper;
+
+/// How the bodies of one island move. What is kicked twice without a move
+/// between was kicked once: the last time.
+class HeldMotion final : public IslandMotion
+{
+public:
+    /// `members`: indices into system.bodies().
+    void begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std::span<const std::uint32_t> members,
+               std::span<const std::uint32_t> roots, std::span<Contact> contacts, std::span<ConstraintRow> rows, bool books);
+    void kick(double h) override;
+    void move(double h) override;
+    void move_mean(double h) override;
+    void refresh_rows() override;
+    void refresh_depths() override;
+
+    /// J: what the kicks did to kinetic energy.
+    double work_of_forces() const { return kicked_; }
+    double kinetic_energy() const;
+    /// Mean speeds of the kicks times the time they took, by member, and of
+    /// roots.
+    struct Mean
+    {
+        Vec3 velocity;  ///< m
+        Vec3 momentum;  ///< N m s^2, or the spin in B of needles
+        double shaft = 0;
+    };
+    const std::vector<Mean>& means() const { return means_; }
+    std::span<const std::uint32_t> members() const { return members_; }
+
+private:
+    struct Before
+    {
+        Vec3 velocity, spin, momentum;
+    };
+    void commit(double h);
+    Vec3 turn_over(std::uint32_t body, const Vec3& spin, const Vec3& momentum, double h) const;
+    Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
+
+    GroupSystem* system_ = nullptr;
+    Bodies* bodies_ = nullptr;
+    Shafts* shafts_ = nullptr;
+    std::span<const std::uint32_t> members_;
+    std::span<const std::uint32_t> roots_;  ///< indices into system.roots()
+    std::span<Contact> contacts_;
+    std::span<ConstraintRow> rows_;
+    bool books_ = false;
+    double kicked_ = 0, pending_ = 0, since_start_ = 0;
+    std::vector<Before> before_;
+    std::vector<double> shaft_before_;
+    std::vector<Mean> means_, pending_means_;
+    struct Arms
+    {
+        Vec3 a, b;         ///< m, in the bodies' frames
+        Vec3 point;        ///< W, at the start
+        double depth = 0;  ///< m, at the start
+    };
+    std::vector<Arms> arms_;
+};
+
+class HeldIslands
+{
+public:
+    explicit HeldIslands(Stepper& stepper) : s_(&stepper) {}
+
+    /// After any structural change.
+    void rebuild();
+    /// Whether any contacts or joints are held by managers.
+    bool any() const { return any_; }
+    /// Some rows may let go in this step, so that only a manager can hold them.
+    bool holds_joints() const { return holds_joints_; }
+    bool holds_joints_of(std::uint32_t group) const { return holds_joints_ && yields_[group] != 0; }
+    /// At the start of a step: contacts where the bodies are now, unless they are
+    /// known from the end of the last step; pairs that stand from now on.
+    void begin_step();
+    /// Pairs of detectors whose contacts stand at once, where nobody knew of
+    /// them; told as contact.begin.
+    void adopt(std::vector<FoundContact>& found, double time);
+    /// At the end of a step, with the pair's contacts: whether it does not touch, but may within the next step. A pair that
+    /// touches for the first time is told.
+    bool keeps_ahead(PairState& pair, bool touches, std::span<const FoundContact> found, double time) const;
+    /// What contacts held that are gone now goes to those that came in their
+    /// place: corners that lie on one another change their names with every
+    /// tremor. The first `known` contacts of the pair are old.
+    void pass_on(PairState& pair, std::uint32_t known, std::span<const FoundContact> found) const;
+    /// The contacts in `found` are those of the present state.
+    void note_state();
+    /// Takes the groups that managers advance out of `groups` into held(); both
+    /// ascending.
+    void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
+    bool holds_any() const { return !held_.empty(); }
+    void advance(std::span<const std::uint32_t> shadows, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
+
+private:
+    struct Isle
+    {
+        std::uint32_t manager = kNoIndex;  ///< component
+        bool has_rows = false;
+        std::vector<std::uint32_t> groups;
+        std::vector<std::uint32_t> members,
+            roots;                                  ///< indices into the system's lists
+        std::vector<std::uint32_t> bodies, shafts;  ///< host rows
+        std::vector<Contact> contacts;
+        std::vector<ConstraintRow> rows;
+        std::vector<std::uint32_t> places;  ///< of the contacts, in touching_
+        HeldMotion motion;
+    };
+    std::uint32_t manager_of(const PairState& pair) const;
+    bool is_current() const;
+    void collect_contacts(double from, double h);
+    void add_known_contacts();
+    void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law);
+    void make_isles(DisjointSets& islands);
+    void share_contacts();
+    void set_approach(Isle& isle, const GroupSystem& system, double h);
+    void run(std::span<Isle*> isles, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+             WorkBook book, bool trial);
+    void solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void keep(const Isle& isle);
+    void tell_begin(const PairState& pair, const Contact& contact, double time) const;
+    void tell_impacts(const Isle& isle, double time);
+    void look_for_yielding_rows();
+    static void report_rows(const Isle& isle, GroupSystem& system, double h, WorkBook book);
+    double mobility_of(std::uint32_t root) const;
+    void book_forces(GroupSystem& system, std::span<Isle*> isles, double h);
+
+    Stepper* s_;
+    bool any_ = false, holds_joints_ = false;
+    std::vector<std::uint32_t> manager_of_group_;   ///< of joints that name one; kNoIndex: none
+    std::vector<std::uint32_t> yielding_groups_;    ///< those that have one
+    std::vector<std::uint8_t> yields_;              ///< by group: such a joint may let go in this step
+    std::vector<std::uint32_t> manager_of_island_;  ///< by representative group
+    std::vector<std::uint32_t> held_;
+    std::vector<std::uint32_t> isle_of_group_;
+    std::vector<std::unique_ptr<Isle>> isles_;
+    std::size_t isle_count_ = 0;
+    std::vector<Isle*> plain_, jointed_;
+    std::vector<std::uint32_t> plain_groups_;
+    std::vector<FoundContact> touching_;
+    std::vector<PairState*> pair_of_contact_;
+    std::vector<PairState> fresh_;
+    std::vector<std::size_t> first_found_;  ///< beside fresh_
+    std::vector<double> shaft_mobility_;
+    std::vector<double> given_speed_;  ///< m/s, by body: what forces give it in the step
+    // What the state was that the found contacts are of.
+    std::vector<Vec3> known_positions_, known_velocities_, known_spins_;
+    std::vector<Quat> known_orientations_;
+    bool known_ = false;
+    // Kept while forces are booked.
+    std::vector<Vec3> kept_positions_, kept_velocities_, kept_spins_, kept_momenta_;
+    std::vector<Quat> kept_orientations_;
+    std::vector<double> kept_speeds_, kept_angles_;
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,35 @@
+#include "simulation/contacts/paradox.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// Slower than this nothing slides, m/s.
+constexpr double kNoSlip = 1e-6;
+
+/// What an impulse j at p changes in the speed there, seen along n and -- by symmetry of K -- an impulse along n along j.
+double coupling(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n, const Vec3& j)
+{
+    if (!bodies.dynamic(b)) return 0;
+    const Vec3 r = p - bodies.position[b];
+    return bodies.inverse_mass[b] * dot(n, j) + dot(cross(r, n), bodies.inverse_inertia_W(b) * cross(r, j));
+}
+
+}  // namespace
+
+double pressing_share(const Bodies& bodies, const Contact& c)
+{
+    if (!(c.friction > 0)) return 1;
+    const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
+    const Vec3 slip = u - c.normal * dot(u, c.normal);
+    const double speed = length(slip);
+    if (!(speed > kNoSlip)) return 1;
+    const Vec3 force = c.normal - slip * (c.friction / speed);
+    const auto sum = [&](const Vec3& j)
+    { return coupling(bodies, c.a.index, c.point, c.normal, j) + coupling(bodies, c.b.index, c.point, c.normal, j); };
+    const double alone = sum(c.normal);
+    return alone > 0 ? sum(force) / alone : 1;
+}
+
+}  // namespace plab::simulation

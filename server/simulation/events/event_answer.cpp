@@ -1,0 +1,337 @@
+// An event is answered: whom it touches is taken to its time, impulses act, and what happened is told.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "simulation/events/event_locator.h"
+#include "simulation/events/zeno.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// Impacts of one pair in one step before it stops bouncing, and says so.
+constexpr std::uint32_t kMostOfPair = 100000;
+/// And of one with somebody who stands or lies on others: what holds him may press him back as often as he bounces. Bounces of a
+/// hundredth of the step rise by g h^2 / 8e4 at most.
+constexpr std::uint32_t kMostOfHeldPair = 100;
+/// Slower than this nobody who stopped bouncing leaves, m/s.
+constexpr double kStays = 1e-9;
+
+/// What an event says of a contact: point, normal, impulse, depth (server/docs/step.md).
+std::vector<double> values_of(const Contact& c, const Vec3& impulse)
+{
+    return {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, impulse.x, impulse.y, impulse.z, c.depth};
+}
+
+}  // namespace
+
+/// Takes a group from where its piece began to `time`. One that nothing stands on and that reads nobody needs no more
+/// than its solver.
+void EventLocator::advance_group(std::uint32_t g, double time, WorkBook book, bool trial)
+{
+    s_->rewind(g);
+    const std::span one(&g, 1);
+    if (rests_[g] == 0 && s_->groups_.all[g].upstream.empty() && !touches_by_force_)
+        s_->advance_smooth(one, {}, s_->segment_begin_[g], time, book, trial);
+    else
+        s_->advance(one, s_->segment_begin_[g], time, book, trial);
+}
+
+void EventLocator::advance_scope(double time, WorkBook book, bool trial)
+{
+    // Pieces that began together advance together; usually all of them did.
+    bool together = true, rests = false;
+    for (const std::uint32_t g : scope_)
+        together = together && s_->segment_begin_[g] == s_->segment_begin_[scope_.front()], rests = rests || rests_[g] != 0;
+    if (any_certifies_ && !(together && rests))
+    {
+        for (const std::uint32_t g : scope_) advance_group(g, time, book, trial);
+        return;
+    }
+    for (const std::uint32_t g : scope_) s_->rewind(g);
+    if (together)
+        s_->advance(scope_, s_->segment_begin_[scope_.front()], time, book, trial);
+    else
+        for (const std::uint32_t& g : scope_) s_->advance(std::span(&g, 1), s_->segment_begin_[g], time, book, trial);
+}
+
+/// Puts the scope where it is at `time`; both ends of a piece are known.
+void EventLocator::advance_groups_to(double time)
+{
+    if (time == s_->frame_.step)
+    {
+        for (const std::uint32_t g : scope_) s_->restore_end(g);
+        return;
+    }
+    const auto begins = [&](std::uint32_t g) {
+        return s_->segment_begin_[g] == time && s_->groups_.all[g].prescribed_bodies.empty() &&
+               s_->groups_.all[g].prescribed_shafts.empty();
+    };
+    if (!std::all_of(scope_.begin(), scope_.end(), begins)) return advance_scope(time, {}, true);
+    for (const std::uint32_t g : scope_) s_->rewind(g);
+}
+
+/// From `time`, where a new piece begins, to the end of the step.
+void EventLocator::go_on(double time)
+{
+    if (!any_certifies_)
+    {
+        s_->advance(scope_, time, s_->frame_.step, {&s_->work_, 1}, false);
+        return;
+    }
+    advance_scope(s_->frame_.step, {&s_->work_, 1}, false);
+}
+
+void EventLocator::look_from_the_clear_side(Candidate& candidate)
+{
+    // The contacts were seen a rounding error later: see them where the answer will act, pushed together by no more
+    // than the way from there, so that arms and normals fit the state.
+    double closing = 0;
+    for (const FoundContact& f : candidate.contacts) closing = std::max(closing, std::fabs(s_->normal_velocity(f.contact)));
+    const Bodies& bodies = s_->world_.host().bodies;
+    const double size = length(bodies.position[candidate.a.index]) + length(bodies.position[candidate.b.index]);
+    const double margin = 4 * closing * candidate.bracket + 1e-15 * (1 + size);
+    const StandingPair pair{candidate.a, candidate.b, candidate.contacts.front().contact.normal * -margin};
+    seen_.clear();
+    s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
+    if (seen_.empty()) return;
+    sort_contacts(seen_, s_->world_);
+    candidate.contacts = seen_;
+}
+
+/// The contacts of a pair that was found by its gap, with the bodies where the event is. A sensor's stay as they are.
+void EventLocator::complete(Candidate& candidate)
+{
+    if (!candidate.certified) return;
+    const Detector& detector = s_->detectors_[candidate.detector];
+    if (!detector.responds) scope_of_pair(candidate), advance_groups_to(candidate.time);
+    const Bodies& bodies = s_->world_.host().bodies;
+    const GapQuery q = measure(candidate);
+    const double size = length(bodies.position[q.a.index]) + length(bodies.position[q.b.index]);
+    const double closing = std::fabs(dot(bodies.velocity_at(q.b.index, q.point_b) - bodies.velocity_at(q.a.index, q.point_a), q.normal));
+    // Corners that land a rounding error later belong to the same impact.
+    const double margin =
+        std::max(0.0, q.gap) * 2 + 4 * closing * candidate.bracket + 1e-15 * (1 + size) + closing * 0x1p-44 * s_->frame_.step;
+    candidate.contacts.clear();
+    detect_pair(candidate, q.normal * -margin, candidate.contacts);
+    if (candidate.contacts.empty())
+    {
+        FoundContact& only = candidate.contacts.emplace_back();
+        only.detector = candidate.detector;
+        only.contact.a = q.a, only.contact.b = q.b, only.contact.normal = q.normal;
+        only.contact.point = (q.point_a + q.point_b) * 0.5, only.contact.depth = -q.gap;
+    }
+    if (!detector.responds)
+        for (const std::uint32_t g : scope_) s_->restore_end(g);
+}
+
+void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double at)
+{
+    // Normal acceleration of the contact points under the forces alone; it tells bouncing from coming to rest.
+    accelerated_.clear();
+    const Bodies& bodies = s_->world_.host().bodies;
+    for (const std::uint32_t g : scope_)
+    {
+        if (s_->groups_.all[g].bodies.empty()) continue;
+        GroupSystem& system = s_->system_for(std::span(&g, 1), {});
+        if (s_->forces_.any()) s_->forces_.attach(system, std::span(&g, 1));
+        system.begin(at, s_->frame_.step, {}, nullptr);
+        system.evaluate_here();
+        system.set_extra_forces(nullptr);
+        for (std::size_t i = 0; i < system.bodies().size(); ++i)
+        {
+            const std::uint32_t b = system.bodies()[i];
+            const Vec3 w = bodies.angular_velocity[b];
+            accelerated_.push_back(
+                {b, system.acceleration(i), bodies.inverse_inertia_W(b) * (system.torque(i) - cross(w, bodies.angular_momentum[b]))});
+        }
+    }
+    std::sort(accelerated_.begin(), accelerated_.end(), [](const Accelerated& x, const Accelerated& y) { return x.body < y.body; });
+    const auto acceleration = [&](std::uint32_t body, const Vec3& p) -> Vec3
+    {
+        const auto found = std::lower_bound(accelerated_.begin(), accelerated_.end(), body,
+                                            [](const Accelerated& x, std::uint32_t wanted) { return x.body < wanted; });
+        if (found == accelerated_.end() || found->body != body) return {};
+        // Without w x (w x r): a rolling ball's point turns away from the ground, its gap does not.
+        return found->linear + cross(found->spin_up, p - bodies.position[body]);
+    };
+    for (FoundContact& f : contacts)
+        f.contact.normal_acceleration =
+            dot(acceleration(f.contact.b.index, f.contact.point) - acceleration(f.contact.a.index, f.contact.point), f.contact.normal);
+}
+
+void EventLocator::announce_rest(const FoundContact& f, PairState& pair)
+{
+    if (!f.contact.resting || pair.resting) return;
+    pair.resting = true;
+    pair.bounces = {};
+    for (const Ref r : {pair.a, pair.b})
+        if (const std::uint32_t g = s_->groups_.of(r); g != kNoIndex) rests_[g] = 1;
+    Event e = s_->contact_event("contact.rest", pair, rest_time_);
+    e.values = values_of(f.contact, f.contact.impulse);
+    s_->emit(std::move(e));
+}
+
+void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>& contacts, double time)
+{
+    const Detector& detector = s_->detectors_[candidate.detector];
+    bool added = false;
+    PairState& pair = s_->cache_.get_or_add(detector.component, candidate.a, candidate.b, s_->world_, s_->frame_.tick, added);
+    pair.overlapping = !detector.responds || candidate.at_end;
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+    {
+        const FoundContact& f = contacts[i];
+        if (f.detector != candidate.detector || f.contact.a != candidate.a || f.contact.b != candidate.b) continue;
+        if (std::exchange(added, false))
+        {
+            // Impulses are told by the impacts that follow.
+            Event begin = s_->contact_event("contact.begin", pair, time);
+            begin.values = values_of(f.contact, {});
+            s_->emit(std::move(begin));
+        }
+        pair.normal = f.contact.normal;
+        (void)s_->cache_.contact_of(pair, f.contact.feature);
+        if (!detector.responds) continue;
+        Event e = s_->contact_event("contact.impact", pair, time);
+        e.values = values_of(f.contact, f.contact.impulse);
+        s_->emit(std::move(e));
+        if (paradox_[i]) s_->tell_paradox(f.contact, pair, time);
+        announce_rest(f, pair);
+    }
+}
+
+/// Bodies that touch, and close no faster than forces make them in a step, may be in Painleve's paradox; an impact that closes
+/// has an answer of its own, however it jams.
+void EventLocator::note_paradoxes()
+{
+    paradox_.clear();
+    for (const FoundContact& f : impact_)
+    {
+        const bool pressed = s_->normal_velocity(f.contact) >= 2 * f.contact.normal_acceleration * s_->frame_.step - 1e-9;
+        paradox_.push_back(pressed && s_->is_paradox(f.contact) ? 1 : 0);
+    }
+}
+
+void EventLocator::calm(std::vector<FoundContact>& contacts) const
+{
+    // Answered late, a resting body seems to arrive with the speed that it gathered in up to two steps: that is no bounce.
+    for (FoundContact& f : contacts)
+        if (f.contact.normal_acceleration < 0 && s_->normal_velocity(f.contact) >= 2 * f.contact.normal_acceleration * s_->frame_.step)
+            f.contact.restitution = 0;
+}
+
+void EventLocator::keep_if_it_cannot_leave(Contact& c) const
+{
+    // It overlapped from the start: a rebound that does not clear the overlap would be answered again and again.
+    const double speed = s_->normal_velocity(c);
+    const double way = std::max(c.depth, kOverlapTolerance);
+    if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * way)) c.resting = true;
+}
+
+/// Whether the pair's bounces come to their end within the step, or have become too many: then it does not bounce now.
+/// Gives the time at which they end, s.
+bool EventLocator::stop_bouncing(const Candidate& candidate, double time, double& ends)
+{
+    ends = time;
+    const Detector& detector = s_->detectors_[candidate.detector];
+    PairState* pair = s_->cache_.find(detector.component, candidate.a, candidate.b, s_->world_);
+    if (!pair) return exhausted_;
+    if (pair->impacts_tick != s_->frame_.tick) pair->impacts = 0, pair->impacts_tick = s_->frame_.tick;
+    const std::uint32_t most = stands_ ? kMostOfHeldPair : kMostOfPair;
+    if (++pair->impacts > most || exhausted_)
+    {
+        if (pair->impacts == most + 1)
+        {
+            Event e = s_->contact_event("contact.too_many", *pair, time);
+            e.severity = stands_ ? Severity::Info : Severity::Warning;
+            e.message = "more than " + std::to_string(most) + " impacts of one pair in one step; it stops bouncing";
+            s_->emit(std::move(e));
+        }
+        return true;
+    }
+    if (!candidate.certified) return false;
+    note_impact(pair->bounces, time);
+    double next = 0, ratio = 0;
+    for (const FoundContact& f : impact_)
+    {
+        if (f.detector != candidate.detector || f.contact.a != candidate.a || f.contact.b != candidate.b) continue;
+        const double closing = -s_->normal_velocity(f.contact);
+        if (!(f.contact.normal_acceleration < 0) || !(closing > 0)) return false;
+        next = std::max(next, 2 * f.contact.restitution * closing / -f.contact.normal_acceleration);
+        ratio = std::max(ratio, f.contact.restitution);
+    }
+    const std::optional<double> rest = rest_of_bounces(pair->bounces, next, ratio);
+    if (!rest || time + *rest > s_->frame_.start_time + s_->frame_.step) return false;
+    ends = time + *rest;
+    Event e = s_->contact_event("contact.zeno", *pair, ends);
+    e.values = {next, ratio};
+    s_->emit(std::move(e));
+    return true;
+}
+
+void EventLocator::answer()
+{
+    const Candidate& first = candidates_[chosen_.front()];
+    const double time = s_->frame_.start_time + first.time;
+    const bool at_end = first.at_end;
+    impact_.clear();
+    for (const std::uint32_t slot : chosen_)
+    {
+        Candidate& c = candidates_[slot];
+        complete(c);
+        if (!c.certified && !c.stuck && !c.at_end) look_from_the_clear_side(c);
+        impact_.insert(impact_.end(), c.contacts.begin(), c.contacts.end());
+    }
+    const std::size_t own = impact_.size();
+    seen_.clear();
+    stands_ = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
+    if (stands_) s_->touching_pairs_of(scope_, seen_);
+    const auto is_chosen = [&](const FoundContact& f)
+    {
+        return std::any_of(chosen_.begin(), chosen_.end(),
+                           [&](std::uint32_t slot) { return candidates_[slot].a == f.contact.a && candidates_[slot].b == f.contact.b; });
+    };
+    for (FoundContact& f : seen_)
+        if (!is_chosen(f)) f.contact.impulse = {}, impact_.push_back(f);
+    for (std::size_t i = 0; i < own; ++i) s_->fill_material(impact_[i]), impact_[i].contact.impulse = {};
+    rate_of_approach(impact_, first.time);
+    if (at_end) calm(impact_);
+    stopped_.clear();
+    for (const std::uint32_t slot : chosen_)
+    {
+        double ends = time;
+        if (!stop_bouncing(candidates_[slot], time, ends)) continue;
+        stopped_.push_back({slot, ends});
+        for (std::size_t i = 0; i < own; ++i)
+            if (impact_[i].contact.a == candidates_[slot].a && impact_[i].contact.b == candidates_[slot].b)
+                impact_[i].contact.restitution = 0;
+    }
+    note_paradoxes();
+    respond(first.time);
+    if (first.stuck)
+        for (std::size_t i = 0; i < own; ++i) keep_if_it_cannot_leave(impact_[i].contact);
+    for (const std::uint32_t slot : chosen_) record_answered(candidates_[slot], time);
+    ++s_->report_.events;
+}
+
+/// Tells what became of a chosen pair, which may have bounced for the last time.
+void EventLocator::record_answered(Candidate& candidate, double time)
+{
+    const std::uint32_t slot = static_cast<std::uint32_t>(&candidate - candidates_.data());
+    for (const Stopped& stopped : stopped_)
+    {
+        if (stopped.slot != slot) continue;
+        for (FoundContact& f : impact_)
+            if (f.contact.a == candidate.a && f.contact.b == candidate.b && s_->normal_velocity(f.contact) <= kStays)
+                f.contact.resting = true;
+        rest_time_ = stopped.ends;
+        record(candidate, impact_, time);
+        return;
+    }
+    rest_time_ = time;
+    record(candidate, impact_, time);
+}
+
+}  // namespace plab::simulation

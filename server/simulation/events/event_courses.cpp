@@ -1,0 +1,167 @@
+// Pairs that may meet anywhere inside their present smooth pieces: courses of bodies, the broad look, the first bounds.
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/clock.h"
+#include "simulation/events/event_locator.h"
+
+namespace plab::simulation
+{
+
+void EventLocator::begin_courses()
+{
+    const world::HostTables& host = s_->world_.host();
+    const Bodies& bodies = host.bodies;
+    const double step = s_->frame_.step;
+    // The stepper makes a new locator when anything but motion has changed.
+    if (courses_.size() != bodies.size())
+    {
+        courses_.assign(bodies.size(), {});
+        for (std::uint32_t b = 0; b < bodies.size(); ++b) extents_.push_back(extent_of(bodies, host.shapes, b));
+        reach_.assign(bodies.size(), 0.0), active_.assign(bodies.size(), 0);
+    }
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+    {
+        const BodyState last = BodyState::of(bodies, b);
+        if (bodies.motion[b] == Motion::Static)
+        {
+            courses_[b] = steady_course(0, last, step, last);
+            reach_[b] = 0;
+            continue;
+        }
+        s_->start_.restore_body(s_->world_.host(), b);
+        const BodyState first = BodyState::of(bodies, b);
+        s_->end_.restore_body(s_->world_.host(), b);
+        courses_[b] = bodies.dynamic(b) ? course_of(bodies, b, 0, first, step, last) : steady_course(0, first, step, last);
+        reach_[b] = reach_of(courses_[b], extents_[b]);
+    }
+}
+
+void EventLocator::start_pieces(double time)
+{
+    for (const std::uint32_t g : scope_)
+        for (const std::uint32_t b : s_->groups_.all[g].bodies)
+            courses_[b].begin = time, courses_[b].first = BodyState::of(s_->world_.host().bodies, b);
+}
+
+void EventLocator::end_pieces()
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    for (const std::uint32_t g : scope_)
+        for (const std::uint32_t b : s_->groups_.all[g].bodies)
+        {
+            const Course& c = courses_[b];
+            courses_[b] = course_of(bodies, b, c.begin, c.first, s_->frame_.step, BodyState::of(bodies, b));
+            reach_[b] = reach_of(courses_[b], extents_[b]);
+        }
+}
+
+void EventLocator::find_near(bool only_touched)
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const auto activate = [&](std::uint8_t flag)
+    {
+        for (const std::uint32_t g : scope_)
+            if (touched_[g] != 0)
+                for (const std::uint32_t b : s_->groups_.all[g].bodies) active_[b] = flag;
+    };
+    if (only_touched) activate(1);
+    for (std::uint32_t d = 0; d < s_->detectors_.size(); ++d)
+    {
+        const Detector& detector = s_->detectors_[d];
+        if (!detector.certifies) continue;
+        world::Table& table = *s_->world_.tables()[detector.table];
+        StepContext context;
+        context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick, context.events = s_;
+        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+        if (only_touched) context.active_bodies = active_;
+        near_.clear();
+        NearCollector sink(s_->world_, reach_, near_);
+        PhaseCall call;
+        call.context = &context, call.rows = Rows(&detector.row, 1);
+        call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.contacts = &sink;
+        const std::uint64_t before = now_ns();
+        const auto done = detector.command->run(call, table.rows());
+        if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
+        s_->cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
+        for (const NearCollector::Pair& pair : near_)
+            if (bodies.dynamic(pair.a.index) || bodies.dynamic(pair.b.index)) consider_near(d, pair.a, pair.b);
+    }
+    if (only_touched) activate(0);
+}
+
+/// The contacts of one pair, as if b were `shift` further. The detection knows the bodies from the look at all.
+void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, std::vector<FoundContact>& found)
+{
+    const Detector& detector = s_->detectors_[candidate.detector];
+    world::Table& table = *s_->world_.tables()[detector.table];
+    const StandingPair pair{candidate.a, candidate.b, shift};
+    active_[candidate.a.index] = active_[candidate.b.index] = 1;
+    StepContext context;
+    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick, context.events = s_;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    context.active_bodies = active_;
+    ContactCollector sink(s_->world_, found);
+    sink.look_for(candidate.detector, std::span(&pair, 1), true);
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&detector.row, 1);
+    call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.contacts = &sink;
+    const std::uint64_t before = now_ns();
+    const auto done = detector.command->run(call, table.rows());
+    if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
+    s_->cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
+    active_[candidate.a.index] = active_[candidate.b.index] = 0;
+    sort_contacts(found, s_->world_);
+}
+
+void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
+{
+    // Rounding, where a course starts again inside the step, is far below this.
+    constexpr double kExact = 1e-9;  // m/s^2
+    const Course &ca = courses_[a.index], &cb = courses_[b.index];
+    const double begin = std::max(ca.begin, cb.begin), left = s_->frame_.step - begin;
+    if (!(left > 0)) return;
+    const Bodies& bodies = s_->world_.host().bodies;
+    const Shapes& shapes = s_->world_.host().shapes;
+    double clear = 0;
+    // Where one began earlier, it is where its course says, unless its forces change.
+    if (std::max(ca.begin == begin ? 0 : ca.deviation, cb.begin == begin ? 0 : cb.deviation) < kExact)
+    {
+        const auto at_begin = [&](std::uint32_t body, const Course& c) {
+            return mover(body, {c.position_at(begin), c.first.orientation, c.velocity_at(begin), c.first.spin});
+        };
+        const Clearance clearance(bodies, shapes, at_begin(a.index, ca), at_begin(b.index, cb), left);
+        clear = clearance.of_balls();
+        // The attitude is known where the course begins.
+        const auto known = [&](std::uint32_t body, const Course& c) { return c.begin == begin || extents_[body].arm == 0; };
+        if (known(a.index, ca) && known(b.index, cb)) clear = std::max(clear, clearance.of_half_space());
+        if (clear >= left) return;
+    }
+    const Detector& by = s_->detectors_[detector];
+    const PairState* pair = s_->cache_.find(by.component, a, b, s_->world_);
+    if (pair && (pair->resting || !by.responds)) return;
+    const std::uint32_t slot = new_slot();
+    Candidate& c = candidates_[slot];
+    c.detector = detector, c.a = a, c.b = b;
+    c.certified = true;
+    c.time = begin + clear;
+    c.version = version_of(c);
+    push(slot);
+}
+
+void EventLocator::look_at_known_pairs(std::vector<FoundContact>& found)
+{
+    // Everything else is known to be apart.
+    found.clear();
+    for (std::uint32_t d = 0; d < s_->detectors_.size(); ++d)
+    {
+        standing_.clear();
+        for (const PairState& p : s_->cache_.pairs())
+            if (p.detector == s_->detectors_[d].component)
+                standing_.push_back({p.a, p.b, p.resting ? p.normal * -s_->standing_margin(p) : Vec3{}});
+        if (!standing_.empty()) s_->detect(s_->detectors_[d], d, standing_, true, found);
+    }
+    sort_contacts(found, s_->world_);
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,175 @@
+// Impacts of bodies that joints hold. A response knows contacts only; what it does to speeds is joined after it, until neither
+// changes anything (block Gauss-Seidel). So the end of the compression is found; the restitution gives back e times the normal
+// impulses of that, and all of what slides (Poisson's hypothesis), which joints then share out. Without friction that is
+// Newton's law, u' = -e u, and e = 1 keeps the energy: joining is an orthogonal projection in the metric of M.
+//
+// Source: F. Pfeiffer, C. Glocker, "Multibody dynamics with unilateral contacts", 1996, ch. 8.
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/events/event_locator.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+constexpr int kMostRounds = 50;
+/// Share of the approach at which compression is over, and at which a contact slides.
+constexpr double kOver = 1e-12, kSlides = 1e-9;
+
+}  // namespace
+
+/// The groups of the impact that have joints, and all whose speeds change.
+bool EventLocator::find_jointed()
+{
+    Jointed& j = jointed_;
+    j.groups.clear(), j.bodies.clear(), j.shafts.clear();
+    for (const FoundContact& f : impact_)
+        for (const Ref r : {f.contact.a, f.contact.b})
+        {
+            const std::uint32_t g = s_->groups_.of(r);
+            if (g == kNoIndex || !s_->world_.host().bodies.dynamic(r.index)) continue;
+            j.bodies.push_back(r.index);
+            if (s_->groups_.all[g].rows.empty()) continue;
+            j.groups.push_back(g);
+        }
+    if (j.groups.empty()) return false;
+    const auto unique = [](std::vector<std::uint32_t>& list)
+    {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    };
+    unique(j.groups);
+    for (const std::uint32_t g : j.groups)
+    {
+        const Group& group = s_->groups_.all[g];
+        j.bodies.insert(j.bodies.end(), group.bodies.begin(), group.bodies.end());
+        j.shafts.insert(j.shafts.end(), group.shafts.begin(), group.shafts.end());
+    }
+    unique(j.bodies);
+    return true;
+}
+
+/// As if there were no joints, and taken back: who comes to rest is asked of the whole impact.
+void EventLocator::note_who_rests()
+{
+    Jointed& j = jointed_;
+    Bodies& bodies = s_->world_.host().bodies;
+    j.velocity.clear(), j.spin.clear(), j.momentum.clear();
+    for (const std::uint32_t b : j.bodies)
+    {
+        j.velocity.push_back(bodies.velocity[b]), j.spin.push_back(bodies.angular_velocity[b]);
+        j.momentum.push_back(bodies.angular_momentum[b]);
+    }
+    s_->respond(impact_, ImpactMode::Impact, 0, {});
+    for (std::size_t i = 0; i < j.bodies.size(); ++i)
+    {
+        const std::uint32_t b = j.bodies[i];
+        bodies.velocity[b] = j.velocity[i], bodies.angular_velocity[b] = j.spin[i], bodies.angular_momentum[b] = j.momentum[i];
+    }
+    j.rests.clear(), j.restitution.clear(), j.impulse.clear();
+    for (FoundContact& f : impact_)
+    {
+        j.rests.push_back(f.contact.resting ? 1 : 0), j.restitution.push_back(f.contact.restitution), j.impulse.push_back({});
+        f.contact.restitution = 0;
+    }
+}
+
+/// At `time` (s since the start of the step).
+void EventLocator::join(double time)
+{
+    for (const std::uint32_t g : jointed_.groups)
+        s_->system_for(std::span(&g, 1), {}).begin(time, s_->frame_.step, {&s_->work_, 1}, nullptr);
+}
+
+double EventLocator::closing() const
+{
+    double most = 0;
+    for (const FoundContact& f : impact_) most = std::max(most, -s_->normal_velocity(f.contact));
+    return most;
+}
+
+void EventLocator::compress_once(double time)
+{
+    for (FoundContact& f : impact_) f.contact.impulse = {};
+    s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
+    jointed_.last.clear();
+    for (std::size_t i = 0; i < impact_.size(); ++i)
+    {
+        jointed_.last.push_back(impact_[i].contact.impulse);
+        jointed_.impulse[i] += impact_[i].contact.impulse;
+    }
+    join(time);
+}
+
+/// Adds `share` times the last impulses, or of those so far what is normal, with friction where they slide.
+void EventLocator::add_impulses(double share, bool of_all)
+{
+    Bodies& bodies = s_->world_.host().bodies;
+    for (std::size_t i = 0; i < impact_.size(); ++i)
+    {
+        const Contact& c = impact_[i].contact;
+        const auto slip = [&] { return bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point); };
+        const Vec3 before = slip();
+        Vec3 impulse = share * jointed_.last[i];
+        if (of_all)
+        {
+            const Vec3& all = jointed_.impulse[i];
+            const Vec3 across = before - c.normal * dot(c.normal, before);
+            const bool slides = length(across) > kSlides * length(bodies.velocity_at(c.b.index, c.point));
+            impulse = share * jointed_.restitution[i] * (slides ? all : c.normal * dot(c.normal, all));
+            jointed_.last[i] = impulse;
+        }
+        if (impulse == Vec3{}) continue;
+        if (bodies.dynamic(c.a.index)) bodies.apply_impulse(c.a.index, -impulse, c.point);
+        if (bodies.dynamic(c.b.index)) bodies.apply_impulse(c.b.index, impulse, c.point);
+        s_->work_[s_->detectors_[impact_[i].detector].response] += 0.5 * dot(impulse, before + slip());
+        if (!of_all) jointed_.impulse[i] += impulse;
+    }
+}
+
+/// Until nothing closes any more. After a first answer what is left is proportional to it: exactly, where one contact is hit.
+void EventLocator::compress(double time)
+{
+    const double before = closing(), over = kOver * before;
+    if (!(before > 0)) return;
+    compress_once(time);
+    const double left = closing();
+    if (left > over && left < before)
+    {
+        add_impulses(left / (before - left), false);
+        join(time);
+    }
+    for (int round = 0; round < kMostRounds && closing() > over; ++round) compress_once(time);
+}
+
+void EventLocator::give_back(double time)
+{
+    jointed_.last.resize(impact_.size());
+    add_impulses(1, true);
+    for (std::size_t i = 0; i < impact_.size(); ++i) jointed_.impulse[i] += jointed_.last[i];
+    join(time);
+    compress(time);  // who was pressed against others
+}
+
+void EventLocator::respond(double time)
+{
+    if (!find_jointed())
+    {
+        s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
+        return;
+    }
+    note_who_rests();
+    jointed_.last.assign(impact_.size(), Vec3{});
+    compress(time);
+    give_back(time);
+    for (std::size_t i = 0; i < impact_.size(); ++i)
+    {
+        Contact& c = impact_[i].contact;
+        c.restitution = jointed_.restitution[i], c.impulse = jointed_.impulse[i];
+        c.resting = jointed_.rests[i] != 0;
+    }
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,302 @@
+// When, within its piece, a pair meets: by halving between a clear and an overlapping end, or from the clear side only.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulation/events/event_locator.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// Looks before the host gives up on its own; resolutions have limits of their own, and say so.
+constexpr int kMostLooks = 10000;
+/// m: a gap of exactly 0 counts as an overlap, and a resolution is told so by the sign.
+constexpr double kNothing = 1e-300;
+/// A rate below this share of the speeds that it is a difference of is none.
+constexpr double kStill = 1e-14;
+/// Share of the rest of a piece for which a pair that parts, and of which nothing better is known, is let go.
+constexpr double kLetGo = 0x1p-20;
+/// Steps towards a contact before the end of the piece is looked at for a bracket.
+constexpr int kFirstSteps = 4;
+
+}  // namespace
+
+double EventLocator::begin_of_scope() const
+{
+    double begin = 0;
+    for (const std::uint32_t g : scope_) begin = std::max(begin, s_->segment_begin_[g]);
+    return begin;
+}
+
+bool EventLocator::overlaps_at(Candidate& candidate, double time)
+{
+    advance_scope(time, {}, true);
+    ++s_->report_.trials;
+    const StandingPair pair{candidate.a, candidate.b, {}};
+    seen_.clear();
+    s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
+    std::erase_if(seen_, [](const FoundContact& f) { return f.contact.depth <= 0; });
+    if (seen_.empty()) return false;
+    sort_contacts(seen_, s_->world_);
+    candidate.contacts = seen_;
+    return true;
+}
+
+void EventLocator::ask(const Candidate& candidate, Trial& trial)
+{
+    const std::uint32_t resolution = s_->detectors_[candidate.detector].resolution;
+    const world::Component& c = s_->world_.component(resolution);
+    world::Table& table = s_->world_.table_of(resolution);
+    StepContext context;
+    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick, context.events = s_;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&c.row, 1), call.trial = &trial;
+    for (const CommandInfo& command : table.type().info.commands)
+        if (command.phase == Phase::Locate && command.run) (void)command.run(call, table.rows());
+}
+
+void EventLocator::bracket(Candidate& candidate, Trial& trial)
+{
+    for (;; ++trial.iteration)
+    {
+        ask(candidate, trial);
+        if (trial.decision != Trial::Decision::Try || trial.iteration > kMostLooks) return;
+        (overlaps_at(candidate, trial.next) ? trial.end : trial.begin) = trial.next;
+    }
+}
+
+void EventLocator::locate(Candidate& candidate)
+{
+    candidate.located = true;
+    if (candidate.certified) return search(candidate);
+    candidate.time = s_->frame_.step;
+    if (candidate.at_end) return;
+    // Trials need the pair alone, whoever is rewound for its answer: the rest does not feel it.
+    scope_of_pair(candidate);
+    Trial trial;
+    trial.begin = begin_of_scope(), trial.end = trial.step = s_->frame_.step;
+    trial.gap_begin = trial.gap_end = trial.rate_begin = trial.rate_end = kUnknown;
+    for (const FoundContact& f : candidate.contacts) trial.depth = std::max(trial.depth, f.contact.depth);
+    at_end_ = candidate.contacts;
+    if (!overlaps_at(candidate, trial.begin))
+    {
+        bracket(candidate, trial);
+        candidate.time = trial.begin;
+        candidate.bracket = trial.end - trial.begin;
+    }
+    else
+    {
+        // Overlapping where the piece begins: nothing to bracket. A pair that closes is answered there; one that parts is
+        // left alone until the end of the step.
+        const auto closes = [&](const FoundContact& f) { return s_->normal_velocity(f.contact) <= 0; };
+        candidate.stuck = std::any_of(candidate.contacts.begin(), candidate.contacts.end(), closes);
+        candidate.at_end = !candidate.stuck;
+        if (candidate.stuck)
+            candidate.time = trial.begin;
+        else
+            candidate.contacts = at_end_;
+    }
+    for (const std::uint32_t g : scope_) s_->restore_end(g);
+}
+
+/// The pair's own groups, and what stands on them.
+void EventLocator::scope_of_pair(const Candidate& candidate)
+{
+    scope_.clear();
+    const std::uint32_t ga = s_->groups_.of(candidate.a), gb = s_->groups_.of(candidate.b);
+    const auto rests = [&](std::uint32_t g) { return g != kNoIndex && rests_[g] != 0; };
+    if (!rests(ga) && !rests(gb))
+    {
+        for (const std::uint32_t g : {std::min(ga, gb), std::max(ga, gb)})
+            if (g != kNoIndex && (scope_.empty() || scope_.back() != g)) scope_.push_back(g);
+        return;
+    }
+    in_scope_.assign(s_->groups_.all.size(), 0);
+    scope_of(candidate, true);
+    for (std::uint32_t g = 0; g < in_scope_.size(); ++g)
+        if (in_scope_[g]) scope_.push_back(g);
+}
+
+/// How far the pair is apart where it is now.
+GapQuery EventLocator::measure(const Candidate& candidate) const
+{
+    const Detector& detector = s_->detectors_[candidate.detector];
+    world::Table& table = *s_->world_.tables()[detector.table];
+    GapQuery query;
+    query.a = candidate.a, query.b = candidate.b;
+    StepContext context;
+    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&detector.row, 1);
+    call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.gap = &query;
+    (void)detector.gap->run(call, table.rows());
+    return query;
+}
+
+EventLocator::Look EventLocator::look_at(const Candidate& candidate, double time)
+{
+    advance_groups_to(time);
+    ++s_->report_.trials;
+    Look look;
+    look.time = time;
+    look.query = measure(candidate);
+    const Bodies& bodies = s_->world_.host().bodies;
+    const GapQuery& q = look.query;
+    const Vec3 va = bodies.velocity_at(q.a.index, q.point_a), vb = bodies.velocity_at(q.b.index, q.point_b);
+    look.rate = dot(vb - va, q.normal);
+    look.speed = length(va) + length(vb);
+    // Rounding of positions, and the way in the least time that can be told apart.
+    const double size = length(bodies.position[q.a.index]) + length(bodies.position[q.b.index]) + length(q.point_a - q.point_b);
+    look.touch = 4e-16 * size + 2e-16 * length(bodies.position[q.b.index] - bodies.position[q.a.index]) +
+                 0x1p-50 * s_->frame_.step * std::fabs(look.rate);
+    return look;
+}
+
+/// rad/s: how the normal turned from one look to a later one.
+Vec3 EventLocator::turn_between(const Look& first, const Look& then)
+{
+    return cross(first.query.normal, then.query.normal) / (then.time - first.time);
+}
+
+/// s from the look until which they cannot meet; `closing`: the first-order bound on their speed, m/s.
+double EventLocator::clear_for(const Candidate& candidate, const Look& look, const Vec3& turn, double& closing) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const std::uint32_t a = candidate.a.index, b = candidate.b.index;
+    const double left = s_->frame_.step - look.time;
+    const Clearance clearance(bodies, s_->world_.host().shapes, mover(a, BodyState::of(bodies, a)), mover(b, BodyState::of(bodies, b)),
+                              left);
+    closing = clearance.fastest_closing(look.query.normal);
+    return std::max(clearance.of_balls(), clearance.along(look.query.normal, look.query.gap, turn));
+}
+
+/// Overlap, or touching without parting, where the search begins. True if that settles it.
+bool EventLocator::settle_at_begin(Candidate& candidate, const Look& look)
+{
+    if (look.query.gap >= -look.touch - kOverlapTolerance) return false;
+    // Nothing to find: a pair that closes is answered here; one that parts is left alone until the end of the step.
+    candidate.time = look.time;
+    candidate.stuck = look.rate <= 0 || !s_->detectors_[candidate.detector].responds;
+    candidate.at_end = !candidate.stuck;
+    if (candidate.stuck) return true;
+    candidate.time = s_->frame_.step;
+    const Look last = look_at(candidate, s_->frame_.step);
+    candidate.nothing = !(last.query.gap < 0 && last.rate < 0);
+    return true;
+}
+
+/// Time of a zero between a clear and an overlapping look, by the resolution. With `certify`: only if nothing met before.
+bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, const Look& over, bool certify)
+{
+    Trial trial;
+    trial.begin = clear.time, trial.end = over.time, trial.step = s_->frame_.step;
+    trial.gap_begin = clear.query.gap, trial.rate_begin = clear.rate;
+    trial.gap_end = std::min(over.query.gap, -kNothing), trial.rate_end = over.rate;
+    trial.depth = -over.query.gap, trial.closing = -over.rate;
+    trial.last = clear.time, trial.last_gap = clear.query.gap, trial.last_rate = clear.rate;
+    Look low = clear;
+    for (;; ++trial.iteration)
+    {
+        ask(candidate, trial);
+        if (trial.decision != Trial::Decision::Try || trial.iteration > kMostLooks) break;
+        const Look look = look_at(candidate, trial.next);
+        trial.last = look.time, trial.last_gap = look.query.gap, trial.last_rate = look.rate;
+        if (look.query.gap > 0)
+            low = look, trial.begin = look.time, trial.gap_begin = look.query.gap, trial.rate_begin = look.rate;
+        else
+            trial.end = look.time, trial.gap_end = std::min(look.query.gap, -kNothing), trial.rate_end = look.rate;
+    }
+    candidate.time = trial.begin;
+    candidate.bracket = trial.end - trial.begin;
+    if (!certify || trial.begin == clear.time) return true;
+    const Look last = look_at(candidate, trial.begin);
+    const Bodies& bodies = s_->world_.host().bodies;
+    const std::uint32_t a = candidate.a.index, b = candidate.b.index;
+    const Clearance clearance(bodies, s_->world_.host().shapes, mover(a, BodyState::of(bodies, a)), mover(b, BodyState::of(bodies, b)),
+                              s_->frame_.step - last.time);
+    return clearance.was_clear(last.query.normal, std::max(last.query.gap, 0.0), last.time - clear.time, turn_between(clear, last));
+}
+
+/// The resolution gave up: what shows at the end of the step is all that is known.
+bool EventLocator::found_when_given_up(Candidate& candidate, const Look& look)
+{
+    const Look last = look_at(candidate, s_->frame_.step);
+    if (!(last.query.gap < -last.touch)) return false;
+    candidate.time = look.time, candidate.bracket = last.time - look.time;
+    return settle_in_bracket(candidate, look, last, false);
+}
+
+void EventLocator::search(Candidate& candidate)
+{
+    scope_of_pair(candidate);
+    candidate.nothing = !meets(candidate);
+    for (const std::uint32_t g : scope_) s_->restore_end(g);
+}
+
+/// Whether the pair has had an impact at this very time: what did not part it then will not now.
+bool EventLocator::answered_at(const Candidate& candidate, double time) const
+{
+    const PairState* pair = s_->cache_.find(s_->detectors_[candidate.detector].component, candidate.a, candidate.b, s_->world_);
+    return pair && pair->impacts_tick == s_->frame_.tick && pair->bounces.time == s_->frame_.start_time + time;
+}
+
+bool EventLocator::meets(Candidate& candidate)
+{
+    const double step = s_->frame_.step, shortest = 0x1p-48 * step;
+    const bool responds = s_->detectors_[candidate.detector].responds;
+    Trial trial;
+    trial.end = trial.step = step;
+    Vec3 turn;
+    Look look = look_at(candidate, candidate.time), over;
+    if (settle_at_begin(candidate, look)) return !candidate.nothing;
+    for (;; ++trial.iteration)
+    {
+        candidate.time = look.time;
+        const bool touches = look.query.gap <= look.touch;
+        if (touches && (!responds || look.rate < -kStill * look.speed)) return true;
+        if (!(look.time < step)) return false;
+        double clear = clear_for(candidate, look, turn, trial.closing);
+        if (look.time + clear >= step) return false;
+        // Closing, and nearer than times can be told apart.
+        if (clear < shortest && look.rate < 0) return true;
+        // Touching, and nothing says that it parts: what presses is answered here, once. What parts is let go.
+        const bool parts = look.rate > kStill * look.speed;
+        if (touches && !(clear > 0) && !parts && !answered_at(candidate, look.time)) return true;
+        if (touches) clear = std::max(clear, kLetGo * (step - look.time));
+        if (trial.iteration == kFirstSteps) over = look_at(candidate, step);
+        const bool bracketed = trial.iteration >= kFirstSteps && over.query.gap < -over.touch;
+        trial.begin = look.time, trial.gap_begin = std::max(look.query.gap, 0x1p-60 * look.touch);
+        trial.rate_begin = -trial.gap_begin / std::max(clear, 0x1p-60 * step);
+        trial.gap_end = bracketed ? over.query.gap : kUnknown, trial.rate_end = bracketed ? over.rate : kUnknown;
+        trial.last = look.time, trial.last_gap = look.query.gap, trial.last_rate = look.rate;
+        if (touches)
+            trial.next = look.time + clear;
+        else
+        {
+            ask(candidate, trial);
+            // What parts, however narrow the gap is still, is no impact: it goes on.
+            if (trial.decision == Trial::Decision::Accept && (!responds || look.rate < 0)) return true;
+            if (trial.decision == Trial::Decision::Accept) trial.next = look.time + (clear = std::max(clear, kLetGo * (step - look.time)));
+            if (trial.decision == Trial::Decision::GiveUp || trial.iteration > kMostLooks) return found_when_given_up(candidate, look);
+            // A resolution that knows of an overlap may jump to where it thinks the zero is.
+            if (bracketed && trial.next > look.time + clear && (trial.iteration & 7) == kFirstSteps &&
+                settle_in_bracket(candidate, look, over, true))
+                return true;
+        }
+        const double next = std::min(trial.next, look.time + clear);
+        // Closer than times can be told apart; what parts there goes into the next step.
+        if (!(next > look.time)) return !(look.rate > kStill * look.speed);
+        const Look ahead = look_at(candidate, std::min(next, step));
+        // The bound is as good as what is known of the forces.
+        if (ahead.query.gap < -ahead.touch) return settle_in_bracket(candidate, look, ahead, false);
+        turn = turn_between(look, ahead);
+        look = ahead;
+    }
+}
+
+}  // namespace plab::simulation

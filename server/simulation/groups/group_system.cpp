@@ -1,0 +1,426 @@
+#include "simulation/groups/group_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plab/rotation.h"
+#include "simulation/clock.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// What has died away is 0: arithmetic with denormal numbers costs a hundredfold. Too small for products with steps and
+/// masses to be lost.
+double without_traces(double speed) { return std::fabs(speed) < 1e-280 ? 0.0 : speed; }
+Vec3 without_traces(const Vec3& v) { return {without_traces(v.x), without_traces(v.y), without_traces(v.z)}; }
+
+}  // namespace
+
+void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
+{
+    frame_ = frame;
+    ++configuration_;
+    world::World& world = *frame.world;
+    const world::HostTables& host = world.host();
+    for (auto* list :
+         {&bodies_, &shafts_, &quantities_, &roots_, &prescribed_bodies_, &prescribed_shafts_, &active_bodies_, &active_shafts_})
+        list->clear();
+    collect_members(groups);
+    own_bodies_ = active_bodies_.size(), own_shafts_ = active_shafts_.size();
+    collect_members(shadows);
+    std::sort(shafts_.begin(), shafts_.end(),
+              [&](std::uint32_t a, std::uint32_t b) {
+                  return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b});
+              });
+    for (const std::uint32_t s : shafts_)
+        if (host.shafts.root[s] == s) roots_.push_back(s);
+    has_shadows_ = !shadows.empty();
+
+    groups_.assign(groups.begin(), groups.end());
+    groups_.insert(groups_.end(), shadows.begin(), shadows.end());
+    filter_forces();
+    shaft_system_.configure(world, *frame.schedule, *frame.groups, groups_, *frame.graph);
+    quantity_values_ = 0;
+    for (const std::uint32_t q : quantities_) quantity_values_ += host.quantities.value[q].size();
+    const std::size_t n = 6 * bodies_.size() + roots_.size() + quantity_values_;
+    coordinates_.resize(n), speeds_.resize(n), coordinate_rates_.resize(n), speed_rates_.resize(n);
+    start_position_.resize(bodies_.size()), start_orientation_.resize(bodies_.size()), start_angle_.resize(roots_.size());
+    configure_rows();
+}
+
+void GroupSystem::collect_members(std::span<const std::uint32_t> groups)
+{
+    const auto take = [](const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& to, std::vector<std::uint32_t>& active)
+    {
+        to.insert(to.end(), from.begin(), from.end());
+        active.insert(active.end(), from.begin(), from.end());
+    };
+    for (const std::uint32_t g : groups)
+    {
+        const Group& group = frame_.groups->all[g];
+        take(group.bodies, bodies_, active_bodies_);
+        take(group.prescribed_bodies, prescribed_bodies_, active_bodies_);
+        take(group.shafts, shafts_, active_shafts_);
+        take(group.prescribed_shafts, prescribed_shafts_, active_shafts_);
+        quantities_.insert(quantities_.end(), group.quantities.begin(), group.quantities.end());
+    }
+}
+
+void GroupSystem::activate()
+{
+    if (scratch_->is_active(this, configuration_)) return;
+    scratch_->activate(this, configuration_, active_bodies_, active_shafts_);
+    for (std::size_t i = 0; i < own_bodies_; ++i) scratch_->book_body(active_bodies_[i]);
+    for (std::size_t i = 0; i < own_shafts_; ++i) scratch_->book_shaft(active_shafts_[i]);
+}
+
+void GroupSystem::filter_forces()
+{
+    merged_.clear();
+    for (const std::uint32_t g : groups_)
+    {
+        const auto& rows = frame_.groups->all[g].forces;
+        merged_.insert(merged_.end(), rows.begin(), rows.end());
+    }
+    std::sort(merged_.begin(), merged_.end());
+    merged_.erase(std::unique(merged_.begin(), merged_.end()), merged_.end());
+
+    const auto& blocks = frame_.schedule->of(Phase::Force);
+    if (selected_.size() < blocks.size()) selected_.resize(blocks.size());
+    selected_count_ = 0;
+    for (std::size_t i = 0; i < merged_.size();)
+    {
+        Selected& s = selected_[selected_count_++];
+        s.block = &blocks[merged_[i].block];
+        s.rows.clear();
+        for (const std::uint32_t block = merged_[i].block; i < merged_.size() && merged_[i].block == block; ++i)
+            s.rows.push_back(merged_[i].row);
+        make_shortlists(s);
+    }
+    uniform_ = std::all_of(selected_.begin(), selected_.begin() + static_cast<std::ptrdiff_t>(selected_count_),
+                           [&](const Selected& s) { return frame_.world->tables()[s.block->table]->type().info.uniform; });
+    for (const std::uint32_t g : groups_) uniform_ = uniform_ && frame_.groups->all[g].couplings.empty();
+}
+
+void GroupSystem::make_shortlists(Selected& selected)
+{
+    constexpr std::size_t kLong = 16;  // shorter lists are quickly walked
+    activate();
+    selected.shortlists.clear();
+    const world::Table& table = *frame_.world->tables()[selected.block->table];
+    const auto is_active = [&](Ref r)
+    {
+        if (r.facet == Facet::Body) return scratch_->active_bodies[r.index] != 0;
+        return r.facet != Facet::Shaft || scratch_->active_shafts[r.index] != 0;
+    };
+    for (const Role& role : table.schema().roles())
+    {
+        if (!role.many || !role.independent) continue;
+        for (const Row row : selected.rows)
+        {
+            const RefList& all = (*role.many)[row];
+            if (all.size() <= kLong) continue;
+            Shortlist& s = selected.shortlists.emplace_back();
+            s.all = &all;
+            std::copy_if(all.begin(), all.end(), std::back_inserter(s.active), is_active);
+        }
+    }
+    const auto by_address = [](const Shortlist& a, const Shortlist& b) { return std::less<>()(a.all, b.all); };
+    std::sort(selected.shortlists.begin(), selected.shortlists.end(), by_address);
+}
+
+void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events)
+{
+    from_ = from;
+    book_ = book;
+    context_ = {};
+    context_.time = frame_.start_time + from, context_.dt = to - from;
+    context_.tick = frame_.tick, context_.seed = frame_.seed, context_.events = events;
+    activate();
+    context_.active_bodies = scratch_->active_bodies, context_.active_shafts = scratch_->active_shafts;
+    if (rows_ && !rows_held_) join();
+
+    const world::HostTables& host = frame_.world->host();
+    std::fill(coordinates_.begin(), coordinates_.end(), 0.0);
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+    {
+        const std::uint32_t b = bodies_[i];
+        start_position_[i] = host.bodies.position[b], start_orientation_[i] = host.bodies.orientation[b];
+        put(speeds_, 6 * i, without_traces(host.bodies.velocity[b]));
+        put(speeds_, 6 * i + 3,
+            without_traces(host.bodies.needle[b] != 0 ? rotate_back(host.bodies.orientation[b], host.bodies.angular_velocity[b])
+                                                      : host.bodies.angular_momentum[b]));
+    }
+    for (std::size_t i = 0; i < roots_.size(); ++i)
+    {
+        start_angle_[i] = host.shafts.angle[roots_[i]];
+        speeds_[6 * bodies_.size() + i] = without_traces(host.shafts.speed[roots_[i]]);
+    }
+    std::size_t next = 6 * bodies_.size() + roots_.size();
+    for (const std::uint32_t q : quantities_)
+        for (const double value : host.quantities.value[q]) speeds_[next++] = without_traces(value);
+}
+
+void GroupSystem::scatter_prescribed(double since_step_start)
+{
+    world::HostTables& host = frame_.world->host();
+    for (const std::uint32_t b : prescribed_bodies_)
+    {
+        frame_.start->restore_body(host, b);
+        host.bodies.position[b] += host.bodies.velocity[b] * since_step_start;
+        const Quat turn = exp_rotation(host.bodies.angular_velocity[b] * since_step_start);
+        host.bodies.orientation[b] = normalized(turn * host.bodies.orientation[b]);
+    }
+    for (const std::uint32_t s : prescribed_shafts_)
+    {
+        frame_.start->restore_shaft(host, s);
+        host.shafts.angle[s] += host.shafts.speed[s] * since_step_start;
+    }
+}
+
+void GroupSystem::scatter(double t)
+{
+    world::HostTables& host = frame_.world->host();
+    scatter_prescribed(from_ + t);
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+    {
+        const std::uint32_t b = bodies_[i];
+        host.bodies.position[b] = start_position_[i] + get(coordinates_, 6 * i);
+        host.bodies.orientation[b] = start_orientation_[i] * exp_rotation(get(coordinates_, 6 * i + 3));
+        host.bodies.velocity[b] = get(speeds_, 6 * i);
+        if (host.bodies.needle[b] != 0)
+            host.bodies.angular_velocity[b] = rotate(host.bodies.orientation[b], get(speeds_, 6 * i + 3));
+        else
+            host.bodies.angular_momentum[b] = get(speeds_, 6 * i + 3);
+        host.bodies.refresh_spin(b);
+    }
+    const std::size_t base = 6 * bodies_.size();
+    for (std::size_t i = 0; i < roots_.size(); ++i)
+    {
+        host.shafts.angle[roots_[i]] = start_angle_[i] + coordinates_[base + i];
+        host.shafts.speed[roots_[i]] = speeds_[base + i];
+    }
+    if (!shafts_.empty()) frame_.graph->derive(host.shafts, scratch_->active_shafts);
+    std::size_t next = base + roots_.size();
+    for (const std::uint32_t q : quantities_)
+        for (double& value : host.quantities.value[q]) value = speeds_[next++];
+}
+
+void GroupSystem::clear_wrenches()
+{
+    Wrenches& w = scratch_->wrenches;
+    for (const std::uint32_t b : bodies_) w.force[b] = {}, w.torque[b] = {};
+    for (const std::uint32_t s : shafts_) w.shaft_torque[s] = 0;
+    for (const std::uint32_t q : quantities_) std::fill(w.quantity_rate[q].begin(), w.quantity_rate[q].end(), 0.0);
+}
+
+void GroupSystem::run_forces(double weight)
+{
+    world::HostTables& host = frame_.world->host();
+    const bool booked = book_.work != nullptr && weight != 0;
+    StageScratch& scratch = *scratch_;
+    Wrenches& wrenches = scratch.wrenches;
+    ++scratch.evaluations;
+    wrenches.power = booked ? &scratch.power : nullptr;
+    wrenches.accounted_bodies = scratch.accounted_bodies, wrenches.accounted_shafts = scratch.accounted_shafts;
+    PhaseCall call;
+    call.context = &context_;
+    call.bodies = &host.bodies, call.shafts = &host.shafts, call.quantities = &host.quantities, call.shapes = &host.shapes;
+    call.materials = &host.materials;
+    call.wrenches = &wrenches;
+    for (std::size_t k = 0; k < selected_count_; ++k)
+    {
+        const Selected& s = selected_[k];
+        const std::uint64_t before = booked ? now_ns() : 0;
+        const world::Table& table = *frame_.world->tables()[s.block->table];
+        context_.component_of_row = table.component_of_row(), context_.facet_of_row = table.host_of_row();
+        context_.shortlists = s.shortlists;
+        call.rows = s.rows;
+        (void)s.block->command->run(call, table.rows());  // forces have no failures but events
+        if (!booked) continue;
+        scratch.cost[s.block->table][static_cast<std::size_t>(Phase::Force)] += now_ns() - before;
+        const double share = book_.sign * weight * context_.dt;
+        for (const Row row : s.rows)
+        {
+            const std::uint32_t component = context_.component_of_row[row];
+            (*book_.work)[component] += share * scratch.power[component];
+            scratch.power[component] = 0;
+        }
+    }
+    if (!extra_) return;
+    extra_->add(context_, wrenches);
+    if (booked) extra_->book(context_, *book_.work, scratch.power, book_.sign * weight * context_.dt);
+}
+
+void GroupSystem::rates_of_bodies()
+{
+    const Bodies& bodies = frame_.world->host().bodies;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+    {
+        const std::uint32_t b = bodies_[i];
+        put(coordinate_rates_, 6 * i, bodies.velocity[b]);
+        const Vec3 w_B = rotate_back(bodies.orientation[b], bodies.angular_velocity[b]);
+        put(coordinate_rates_, 6 * i + 3, rotation_vector_rate(get(coordinates_, 6 * i + 3), w_B));
+    }
+}
+
+Vec3 GroupSystem::spin_rate_B(std::uint32_t b) const
+{
+    // Euler's equations in the body frame: I w' = tau - w x I w.
+    const Bodies& bodies = frame_.world->host().bodies;
+    const Vec3 w_B = rotate_back(bodies.orientation[b], bodies.angular_velocity[b]);
+    const Vec3 torque_B = rotate_back(bodies.orientation[b], scratch_->wrenches.torque[b]);
+    return bodies.inverse_inertia_B[b] * (torque_B - cross(w_B, bodies.inertia_B[b] * w_B));
+}
+
+void GroupSystem::kick(std::size_t member, double h)
+{
+    Bodies& bodies = frame_.world->host().bodies;
+    const std::uint32_t b = bodies_[member];
+    bodies.velocity[b] += acceleration(member) * h;
+    if (bodies.needle[b] != 0)
+        bodies.angular_velocity[b] += rotate(bodies.orientation[b], spin_rate_B(b)) * h;
+    else
+        bodies.angular_momentum[b] += scratch_->wrenches.torque[b] * h;
+    bodies.refresh_spin(b);
+}
+
+void GroupSystem::rates_of_shafts(double weight)
+{
+    if (roots_.empty()) return;
+    world::HostTables& host = frame_.world->host();
+    shaft_system_.solve_accelerations(context_, scratch_->wrenches.shaft_torque);
+    // Shadows' couplings were booked with their own group's advance.
+    if (book_.work && weight != 0 && !has_shadows_) shaft_system_.account(*book_.work, book_.sign * weight * context_.dt);
+    const std::size_t base = 6 * bodies_.size();
+    for (std::size_t i = 0; i < roots_.size(); ++i)
+    {
+        coordinate_rates_[base + i] = host.shafts.speed[roots_[i]];
+        speed_rates_[base + i] = shaft_system_.rate(roots_[i]);
+    }
+}
+
+void GroupSystem::rates_of_quantities()
+{
+    std::size_t next = 6 * bodies_.size() + roots_.size();
+    for (const std::uint32_t q : quantities_)
+        for (const double rate : scratch_->wrenches.quantity_rate[q]) coordinate_rates_[next] = 0, speed_rates_[next++] = rate;
+}
+
+void GroupSystem::evaluate(double t, double weight)
+{
+    context_.time = frame_.start_time + (from_ + t);
+    scatter(t);
+    clear_wrenches();
+    run_forces(weight);
+    if (rows_ && !rows_held_)
+    {
+        (void)rows_->react(context_, scratch_->wrenches);  // what is not finite is seen when the advance is over
+        if (book_.work && weight != 0) rows_->account(row_book(), weight * context_.dt);
+    }
+    rates_of_bodies();
+    const Bodies& bodies = frame_.world->host().bodies;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+    {
+        put(speed_rates_, 6 * i, scratch_->wrenches.force[bodies_[i]] * bodies.inverse_mass[bodies_[i]]);
+        put(speed_rates_, 6 * i + 3, bodies.needle[bodies_[i]] != 0 ? spin_rate_B(bodies_[i]) : scratch_->wrenches.torque[bodies_[i]]);
+    }
+    rates_of_shafts(weight);
+    rates_of_quantities();
+}
+
+void GroupSystem::evaluate_here()
+{
+    evaluate(0, 0);
+    if (!book_.work) return;
+    std::span<double> before = workspace(0);
+    std::copy(speeds_.begin(), speeds_.end(), before.begin());
+    for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] += 0.5 * context_.dt * speed_rates_[i];
+    evaluate(0, 1);
+    std::copy(before.begin(), before.end(), speeds_.begin());
+    evaluate(0, 0);  // booked or not, the kick is made with the same bits
+}
+
+void GroupSystem::evaluate_kinematics()
+{
+    scatter(0);
+    rates_of_bodies();
+    const std::size_t base = 6 * bodies_.size();
+    for (std::size_t i = 0; i < roots_.size(); ++i) coordinate_rates_[base + i] = speeds_[base + i];
+    for (std::size_t i = base + roots_.size(); i < coordinate_rates_.size(); ++i) coordinate_rates_[i] = 0;
+}
+
+void GroupSystem::move_shafts(double h, Shafts& shafts)
+{
+    const std::size_t base = 6 * bodies_.size();
+    for (std::size_t i = 0; i < roots_.size(); ++i)
+    {
+        const double before = speeds_[base + i];
+        shafts.speed[roots_[i]] = before + h * speed_rates_[base + i];
+        shafts.angle[roots_[i]] = start_angle_[i] + 0.5 * h * (before + shafts.speed[roots_[i]]);
+    }
+    if (!shafts_.empty()) frame_.graph->derive(shafts, scratch_->active_shafts);
+}
+
+std::span<double> GroupSystem::workspace(int i)
+{
+    std::vector<double>& w = workspace_[static_cast<std::size_t>(i)];
+    w.resize(coordinates_.size());
+    return w;
+}
+
+RigidMember GroupSystem::rigid(std::size_t body) const
+{
+    const Bodies& bodies = frame_.world->host().bodies;
+    const std::uint32_t b = bodies_[body];
+    return {start_orientation_[body], bodies.inertia_B[b], bodies.inverse_inertia_B[b], bodies.mass[b], bodies.needle[b] != 0};
+}
+
+bool GroupSystem::finish()
+{
+    scatter(context_.dt);
+    Bodies& bodies = frame_.world->host().bodies;
+    for (const std::uint32_t b : bodies_) bodies.orientation[b] = normalized(bodies.orientation[b]);
+    const bool finite = all_finite();
+    if (finite) project();
+    return finite;
+}
+
+void GroupSystem::finish_held()
+{
+    scatter_prescribed(from_ + context_.dt);
+    world::HostTables& host = frame_.world->host();
+    if (!shafts_.empty()) frame_.graph->derive(host.shafts, scratch_->active_shafts);
+    std::size_t at = speeds_.size() - quantity_values_;
+    for (const std::uint32_t q : quantities_)
+        for (double& value : host.quantities.value[q])
+        {
+            value = speeds_[at] + context_.dt * speed_rates_[at];
+            ++at;
+        }
+}
+
+bool GroupSystem::all_finite() const
+{
+    const world::HostTables& host = frame_.world->host();
+    return std::all_of(bodies_.begin(), bodies_.end(), [&](std::uint32_t b) { return is_finite(host.bodies, b); }) &&
+           std::all_of(shafts_.begin(), shafts_.end(), [&](std::uint32_t s) { return is_finite(host.shafts, s); }) &&
+           std::all_of(quantities_.begin(), quantities_.end(), [&](std::uint32_t q) { return is_finite(host.quantities, q); });
+}
+
+bool is_finite(const Bodies& bodies, std::uint32_t b)
+{
+    return plab::is_finite(bodies.position[b]) && plab::is_finite(bodies.velocity[b]) && plab::is_finite(bodies.orientation[b]) &&
+           plab::is_finite(bodies.angular_velocity[b]);
+}
+
+bool is_finite(const Quantities& quantities, std::uint32_t q)
+{
+    return std::all_of(quantities.value[q].begin(), quantities.value[q].end(), [](double v) { return std::isfinite(v); });
+}
+
+bool is_finite(const Shafts& shafts, std::uint32_t s) { return std::isfinite(shafts.angle[s]) && std::isfinite(shafts.speed[s]); }
+
+}  // namespace plab::simulation

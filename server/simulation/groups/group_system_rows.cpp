@@ -1,0 +1,82 @@
+// The joints of a group system: their rows inside the stages, and the projection when an advance is over.
+#include <algorithm>
+#include <cstdio>
+
+#include "simulation/groups/group_system.h"
+
+namespace plab::simulation
+{
+
+void GroupSystem::configure_rows()
+{
+    merged_.clear(), contradictory_.clear();
+    for (const std::uint32_t g : groups_)
+    {
+        const auto& rows = frame_.groups->all[g].rows;
+        merged_.insert(merged_.end(), rows.begin(), rows.end());
+    }
+    std::sort(merged_.begin(), merged_.end());
+    merged_.erase(std::unique(merged_.begin(), merged_.end()), merged_.end());
+    rows_.reset();
+    if (merged_.empty()) return;
+    rows_ = std::make_unique<RowSystem>();
+    rows_->configure(*frame_.world, *frame_.schedule, merged_, *frame_.graph);
+}
+
+void GroupSystem::join()
+{
+    if (rows_) rows_->join(context_, row_book());
+}
+
+void GroupSystem::project()
+{
+    if (!rows_) return;
+    context_.time = frame_.start_time + (from_ + context_.dt);
+    ProjectionReport report = rows_->project(context_);
+    const auto by_id = [this](std::uint32_t x, std::uint32_t y) { return frame_.world->rank(x) < frame_.world->rank(y); };
+    std::sort(report.contradictory.begin(), report.contradictory.end(), by_id);
+    announce_contradictions(report);
+    rows_->collect_cost(scratch_->cost);
+}
+
+namespace
+{
+
+/// What rows that cannot hold together leave: places, or else speeds.
+std::string left_over(const ProjectionReport& report)
+{
+    constexpr double kPlacesHold = 1e-9;
+    const bool places = report.position_error > kPlacesHold;
+    char text[64];
+    std::snprintf(text, sizeof text, places ? "%g m or rad are left" : "%g m/s or rad/s are left",
+                  places ? report.position_error : report.speed_error);
+    return text;
+}
+
+}  // namespace
+
+void GroupSystem::announce_contradictions(const ProjectionReport& report)
+{
+    if (!context_.events) return;
+    for (const std::uint32_t component : report.contradictory)
+    {
+        if (std::find(contradictory_.begin(), contradictory_.end(), component) != contradictory_.end()) continue;
+        Event e;
+        e.time = context_.time, e.kind = "constraint.contradiction", e.severity = Severity::Warning, e.component = component;
+        std::string others;
+        for (const std::uint32_t other : report.contradictory)
+            if (other != component) others += (others.empty() ? "" : ", ") + frame_.world->id_of(other);
+        e.message = "cannot hold" + (others.empty() ? std::string() : " together with " + others) + ": " +
+                    left_over(report) + ", shared out by least squares";
+        e.values = {report.position_error, report.speed_error};
+        context_.events->emit(std::move(e));
+    }
+    contradictory_ = report.contradictory;
+}
+
+void GroupSystem::add_reports(RowReportTable& reports) const
+{
+    if (rows_) rows_->report_to(reports);
+}
+
+}  // namespace plab::simulation

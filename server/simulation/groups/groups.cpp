@@ -1,0 +1,246 @@
+#include "simulation/groups/groups.h"
+
+#include <algorithm>
+
+namespace plab::simulation
+{
+
+void DisjointSets::reset(std::size_t n)
+{
+    parent_.resize(n);
+    for (std::uint32_t i = 0; i < n; ++i) parent_[i] = i;
+}
+
+std::uint32_t DisjointSets::find(std::uint32_t i)
+{
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+}
+
+void DisjointSets::join(std::uint32_t a, std::uint32_t b)
+{
+    a = find(a), b = find(b);
+    if (a < b)
+        parent_[b] = a;
+    else
+        parent_[a] = b;
+}
+
+namespace
+{
+
+/// Who an interaction acts on and whom it reads, as ranks of components.
+struct Participation
+{
+    std::vector<Ref> acts_on, reads;
+    bool joins = false;
+};
+
+Participation participation(const world::World& world, std::uint32_t component)
+{
+    Participation p;
+    for (const Role& role : world.table_of(component).schema().roles())
+    {
+        const bool in_space = std::any_of(role.facets.begin(), role.facets.end(),
+                                          [](Facet f) { return f == Facet::Body || f == Facet::Shaft || f == Facet::Quantities; });
+        if (!in_space) continue;
+        for (const Ref ref : world.participants(component, role)) (role.writes ? p.acts_on : p.reads).push_back(ref);
+        if (role.writes && !role.independent) p.joins = true;
+    }
+    return p;
+}
+
+bool is_dynamic(const world::HostTables& host, Ref ref)
+{
+    if (ref.facet == Facet::Quantities) return true;
+    return ref.facet == Facet::Body ? host.bodies.dynamic(ref.index) : host.shafts.dynamic(ref.index);
+}
+
+Motion motion_of(const world::HostTables& host, Ref ref)
+{
+    if (ref.facet == Facet::Quantities) return Motion::Dynamic;
+    return ref.facet == Facet::Body ? host.bodies.motion[ref.index] : host.shafts.motion[ref.index];
+}
+
+class Builder
+{
+public:
+    Builder(const world::World& world, const Schedule& schedule) : world_(world), schedule_(schedule) {}
+
+    Groups build()
+    {
+        sets_.reset(world_.in_id_order().size());
+        for_each_interaction([&](std::uint32_t component, std::uint32_t, Row) { join_members(component); });
+        make_groups();
+        link_rows();
+        make_clusters();
+        choose_solvers();
+        return std::move(groups_);
+    }
+
+private:
+    /// Calls visit(component, block, row) for each force, coupling and connection, in order.
+    template <class Visit>
+    void for_each_interaction(Visit visit) const
+    {
+        for (const Phase phase : {Phase::Force, Phase::Couple, Phase::Constrain, Phase::Connect}) for_each_row(phase, visit);
+    }
+
+    template <class Visit>
+    void for_each_row(Phase phase, Visit visit) const
+    {
+        const auto& blocks = schedule_.of(phase);
+        for (std::uint32_t b = 0; b < blocks.size(); ++b)
+            for (const Row row : blocks[b].rows) visit(world_.tables()[blocks[b].table]->component_of_row()[row], b, row);
+    }
+
+    void join_members(std::uint32_t component)
+    {
+        const Participation p = participation(world_, component);
+        if (!p.joins) return;
+        std::uint32_t first = kNoIndex;
+        for (const Ref ref : p.acts_on)
+        {
+            if (!is_dynamic(world_.host(), ref)) continue;
+            if (first == kNoIndex) first = world_.rank(ref);
+            sets_.join(first, world_.rank(ref));
+        }
+    }
+
+    void make_groups()
+    {
+        groups_.group_of_body.assign(world_.host().bodies.size(), kNoIndex);
+        groups_.group_of_shaft.assign(world_.host().shafts.size(), kNoIndex);
+        groups_.group_of_quantities.assign(world_.host().quantities.size(), kNoIndex);
+        std::vector<std::uint32_t> group_of_rank(world_.in_id_order().size(), kNoIndex);
+        for (const std::uint32_t i : world_.in_id_order())
+        {
+            const world::Component& c = world_.component(i);
+            if (c.facet != Facet::Body && c.facet != Facet::Shaft && c.facet != Facet::Quantities) continue;
+            const Ref ref = c.ref(i);
+            const Motion motion = motion_of(world_.host(), ref);
+            if (motion == Motion::Static) continue;
+            std::uint32_t& g = group_of_rank[sets_.find(world_.rank(i))];
+            if (g == kNoIndex)
+            {
+                g = static_cast<std::uint32_t>(groups_.all.size());
+                groups_.all.emplace_back();
+            }
+            Group& group = groups_.all[g];
+            if (c.facet == Facet::Quantities)
+            {
+                groups_.group_of_quantities[ref.index] = g;
+                group.quantities.push_back(ref.index);
+                continue;
+            }
+            const bool body = c.facet == Facet::Body;
+            (body ? groups_.group_of_body : groups_.group_of_shaft)[ref.index] = g;
+            if (motion == Motion::Kinematic)
+                (body ? group.prescribed_bodies : group.prescribed_shafts).push_back(ref.index);
+            else
+                (body ? group.bodies : group.shafts).push_back(ref.index);
+        }
+    }
+
+    void link_rows()
+    {
+        for (const Phase phase : {Phase::Force, Phase::Couple, Phase::Constrain})
+            for_each_row(phase,
+                         [&](std::uint32_t component, std::uint32_t block, Row row)
+                         {
+                             const Participation p = participation(world_, component);
+                             for (const Ref ref : p.acts_on)
+                             {
+                                 if (groups_.of(ref) == kNoIndex) continue;
+                                 if (phase == Phase::Constrain && !is_dynamic(world_.host(), ref)) continue;
+                                 Group& group = groups_.all[groups_.of(ref)];
+                                 auto& rows = phase == Phase::Force ? group.forces : phase == Phase::Couple ? group.couplings : group.rows;
+                                 rows.push_back({block, world_.rank(component), row});
+                                 // A participant that is acted on is read as well: a force between two feels both.
+                                 for (const auto* others : {&p.reads, &p.acts_on})
+                                     if (others == &p.reads || p.joins)
+                                         for (const Ref other : *others)
+                                             if (groups_.of(other) != kNoIndex && groups_.of(other) != groups_.of(ref))
+                                                 group.upstream.push_back(groups_.of(other));
+                             }
+                         });
+        for (Group& group : groups_.all)
+            for (auto* list : {&group.forces, &group.couplings, &group.rows})
+            {
+                std::sort(list->begin(), list->end());
+                list->erase(std::unique(list->begin(), list->end()), list->end());
+            }
+        for (Group& group : groups_.all)
+        {
+            std::sort(group.upstream.begin(), group.upstream.end());
+            group.upstream.erase(std::unique(group.upstream.begin(), group.upstream.end()), group.upstream.end());
+        }
+    }
+
+    void make_clusters()
+    {
+        DisjointSets clusters(groups_.all.size());
+        for (std::uint32_t g = 0; g < groups_.all.size(); ++g)
+            for (const std::uint32_t up : groups_.all[g].upstream) clusters.join(g, up);
+        std::vector<std::uint32_t> number(groups_.all.size(), kNoIndex);
+        for (std::uint32_t g = 0; g < groups_.all.size(); ++g)
+        {
+            std::uint32_t& n = number[clusters.find(g)];
+            if (n == kNoIndex) n = groups_.clusters++;
+            groups_.all[g].cluster = n;
+        }
+        groups_.cluster_has_couplings.assign(groups_.clusters, 0);
+        for (const Group& group : groups_.all)
+            if (!group.couplings.empty()) groups_.cluster_has_couplings[group.cluster] = 1;
+    }
+
+    std::uint32_t solver_of(Ref ref) const
+    {
+        const std::uint32_t component = world_.host().component_of(ref);
+        for (const Role& role : world_.table_of(component).schema().roles())
+            if (role.family == "Solver/" && role.one) return (*role.one)[world_.component(component).row].index;
+        return kNoIndex;
+    }
+
+    /// One solver for each cluster: stage times must agree. A mixture takes the highest order, then the first by id.
+    void choose_solvers()
+    {
+        std::vector<std::uint32_t> best(groups_.clusters, kNoIndex);
+        std::vector<std::uint8_t> mixed(groups_.clusters, 0);
+        const auto better = [&](std::uint32_t a, std::uint32_t b)
+        {
+            const int pa = world_.type_of(a)->info.order, pb = world_.type_of(b)->info.order;
+            return pa != pb ? pa > pb : world_.rank(a) < world_.rank(b);
+        };
+        const auto consider = [&](const Group& group, Ref ref)
+        {
+            const std::uint32_t solver = solver_of(ref);
+            std::uint32_t& chosen = best[group.cluster];
+            if (solver == kNoIndex || solver == chosen) return;
+            if (chosen != kNoIndex) mixed[group.cluster] = 1;
+            if (chosen == kNoIndex || better(solver, chosen)) chosen = solver;
+        };
+        for (const Group& group : groups_.all)
+        {
+            for (const std::uint32_t b : group.bodies) consider(group, {Facet::Body, b});
+            for (const std::uint32_t s : group.shafts) consider(group, {Facet::Shaft, s});
+            for (const std::uint32_t q : group.quantities) consider(group, {Facet::Quantities, q});
+        }
+        for (Group& group : groups_.all)
+        {
+            group.solver = best[group.cluster];
+            group.mixed_solvers = mixed[group.cluster] != 0;
+        }
+    }
+
+    const world::World& world_;
+    const Schedule& schedule_;
+    Groups groups_;
+    DisjointSets sets_;
+};
+
+}  // namespace
+
+Groups build_groups(const world::World& world, const Schedule& schedule) { return Builder(world, schedule).build(); }
+
+}  // namespace plab::simulation

@@ -1,0 +1,68 @@
+/// Solver groups: what is connected by force or coupling this step, and is therefore integrated as one.
+///
+/// Fields that act on each body by itself connect nothing, nor do static and prescribed bodies; a role that only reads
+/// orders two groups without joining them: the reader's forces need the other's state, not the other way round.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulation/step/schedule.h"
+
+namespace plab::simulation
+{
+
+/// A row of Schedule::of(Phase::Force), Couple or Constrain that acts on a group.
+struct BlockRow
+{
+    std::uint32_t block = 0;
+    std::uint32_t rank = 0;  ///< of the component: the order within the block
+    Row row = 0;
+    friend auto operator<=>(const BlockRow&, const BlockRow&) = default;
+};
+
+struct Group
+{
+    std::vector<std::uint32_t> bodies;                                ///< dynamic, in id order
+    std::vector<std::uint32_t> shafts;                                ///< dynamic, in id order
+    std::vector<std::uint32_t> quantities;                            ///< in id order
+    std::vector<std::uint32_t> prescribed_bodies, prescribed_shafts;  ///< a group of its own for each
+    std::vector<std::uint32_t> upstream;                              ///< groups whose state its forces read, ascending
+    std::vector<BlockRow> forces, couplings, rows;
+    std::uint32_t solver = kNoIndex;  ///< component; kNoIndex for prescribed motion
+    bool mixed_solvers = false;       ///< members named different ones; the one of highest order was taken
+    std::uint32_t cluster = 0;        ///< groups joined by reading, advanced in one batch
+};
+
+struct Groups
+{
+    std::vector<Group> all;
+    std::vector<std::uint32_t> group_of_body, group_of_shaft, group_of_quantities;  ///< kNoIndex: static
+    std::uint32_t clusters = 0;
+    std::vector<std::uint8_t> cluster_has_couplings;  ///< by cluster: sweeps are needed
+
+    std::uint32_t of(Ref ref) const
+    {
+        if (ref.facet == Facet::Body) return group_of_body[ref.index];
+        if (ref.facet == Facet::Shaft) return group_of_shaft[ref.index];
+        if (ref.facet == Facet::Quantities) return group_of_quantities[ref.index];
+        return kNoIndex;
+    }
+};
+
+Groups build_groups(const world::World& world, const Schedule& schedule);
+
+/// Disjoint sets with the lowest member as representative, so that the result depends on no order of joins.
+class DisjointSets
+{
+public:
+    explicit DisjointSets(std::size_t n = 0) { reset(n); }
+    void reset(std::size_t n);
+    std::uint32_t find(std::uint32_t i);
+    void join(std::uint32_t a, std::uint32_t b);
+
+private:
+    std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace plab::simulation

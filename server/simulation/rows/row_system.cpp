@@ -1,0 +1,373 @@
+#include "simulation/rows/row_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "simulation/clock.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// Most that rows may add to the speeds in one step, as a multiple of those and of what loads add. Rotation by 4 rad in a
+/// step is beyond any solver.
+constexpr double kMostKick = 4;
+
+}  // namespace
+
+/// The components' commands, block by block.
+class RowSystem::ScheduledRows final : public RowSource
+{
+public:
+    void select(world::World& world, const Schedule& schedule, std::span<const BlockRow> rows)
+    {
+        world_ = &world;
+        sorted_.assign(rows.begin(), rows.end());
+        std::sort(sorted_.begin(), sorted_.end());
+        sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
+        const auto& blocks = schedule.of(Phase::Constrain);
+        if (selected_.size() < blocks.size()) selected_.resize(blocks.size());
+        count_ = 0;
+        for (std::size_t i = 0; i < sorted_.size();)
+        {
+            Selected& s = selected_[count_++];
+            s.block = &blocks[sorted_[i].block];
+            s.rows.clear();
+            for (const std::uint32_t block = sorted_[i].block; i < sorted_.size() && sorted_[i].block == block; ++i)
+                s.rows.push_back(sorted_[i].row);
+        }
+        ns_.resize(world.tables().size());
+    }
+    void constrain(const StepContext& given, RowSink& sink) override
+    {
+        world::HostTables& host = world_->host();
+        StepContext context = given;
+        PhaseCall call;
+        call.context = &context;
+        call.bodies = &host.bodies, call.shafts = &host.shafts, call.shapes = &host.shapes, call.materials = &host.materials;
+        call.quantities = &host.quantities, call.rows_out = &sink;
+        for (std::size_t k = 0; k < count_; ++k)
+        {
+            const Selected& s = selected_[k];
+            const world::Table& table = *world_->tables()[s.block->table];
+            const std::uint64_t before = now_ns();
+            context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+            call.rows = s.rows;
+            (void)s.block->command->run(call, table.rows());  // rows have no failures but events
+            ns_[s.block->table] += now_ns() - before;
+        }
+    }
+    /// Time of the equations goes to the tables by the number of their rows.
+    void share(std::uint64_t ns)
+    {
+        if (sorted_.empty()) return;
+        for (std::size_t k = 0; k < count_; ++k) ns_[selected_[k].block->table] += ns * selected_[k].rows.size() / sorted_.size();
+    }
+    void collect_cost(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table)
+    {
+        for (std::size_t t = 0; t < ns_.size(); ++t) by_table[t][static_cast<std::size_t>(Phase::Constrain)] += std::exchange(ns_[t], 0);
+    }
+
+private:
+    struct Selected
+    {
+        const Block* block = nullptr;
+        std::vector<Row> rows;
+    };
+    world::World* world_ = nullptr;
+    std::vector<BlockRow> sorted_;
+    std::vector<Selected> selected_;  // the first count_ are valid
+    std::size_t count_ = 0;
+    std::vector<std::uint64_t> ns_;  // by table
+};
+
+/// Takes rows in: pieces by component, shafts as the roots of their trains.
+class RowSystem::Sink final : public RowSink
+{
+public:
+    explicit Sink(RowSystem& out) : out_(out), shafts_(out.host_->shafts) {}
+    void begin(std::uint32_t component) override { component_ = component, fresh_ = true; }
+    void add(const ConstraintRow& row) override
+    {
+        const auto at = static_cast<std::uint32_t>(out_.rows_.size());
+        if (std::exchange(fresh_, false)) out_.pieces_.push_back({component_, at, 0});
+        ++out_.pieces_.back().count;
+        ConstraintRow& mine = out_.rows_.emplace_back(row);
+        mine.component = component_, mine.impulse = 0;
+        for (std::uint32_t k = 0; k < mine.count; ++k) reduce(mine.blocks[k], at, k);
+        if (mine.may_yield()) out_.may_yield_ = true;
+    }
+
+private:
+    void reduce(RowBlock& block, std::uint32_t row, std::uint32_t k)
+    {
+        if (block.who.facet != Facet::Shaft || !block.who.valid()) return;
+        const std::uint32_t root = shafts_.root[block.who.index];
+        if (root == block.who.index) return;
+        out_.geared_.push_back({row, k, block.who, block.angular.x});
+        block.angular.x *= shafts_.ratio[block.who.index];
+        block.who.index = root;
+    }
+
+    RowSystem& out_;
+    const Shafts& shafts_;
+    std::uint32_t component_ = kNoIndex;
+    bool fresh_ = true;
+};
+
+RowSystem::RowSystem() = default;
+RowSystem::~RowSystem() = default;
+RowSystem::RowSystem(RowSystem&&) noexcept = default;
+RowSystem& RowSystem::operator=(RowSystem&&) noexcept = default;
+
+void RowSystem::configure(world::World& world, const Schedule& schedule, std::span<const BlockRow> rows, const ConstraintGraph& graph)
+{
+    if (rows.empty())
+    {
+        source_ = nullptr;
+        return;
+    }
+    if (!scheduled_) scheduled_ = std::make_unique<ScheduledRows>();
+    scheduled_->select(world, schedule, rows);
+    configure(world.host(), *scheduled_, graph);
+}
+
+void RowSystem::configure(world::HostTables& host, RowSource& source, const ConstraintGraph& graph)
+{
+    host_ = &host, source_ = &source, graph_ = &graph;
+    equations_.bind(host, graph);
+    rows_.clear(), geared_.clear(), pieces_.clear(), lambda_.clear();
+    position_error_.clear(), speed_error_.clear(), redundant_.clear();
+    may_yield_ = factored_ = false;
+}
+
+void RowSystem::collect(const StepContext& context)
+{
+    rows_.clear(), geared_.clear(), pieces_.clear();
+    may_yield_ = false;
+    Sink sink(*this);
+    source_->constrain(context, sink);
+}
+
+bool RowSystem::is_mobile(Ref who) const
+{
+    return who.facet == Facet::Body ? host_->bodies.dynamic(who.index) : host_->shafts.dynamic(who.index);
+}
+
+double RowSystem::speed_of(const RowBlock& b) const
+{
+    if (b.who.facet == Facet::Shaft) return b.angular.x * host_->shafts.speed[b.who.index];
+    return dot(b.linear, host_->bodies.velocity[b.who.index]) + dot(b.angular, host_->bodies.angular_velocity[b.who.index]);
+}
+
+double RowSystem::speed_of(const ConstraintRow& row) const
+{
+    double sum = 0;
+    for (std::uint32_t k = 0; k < row.count; ++k) sum += speed_of(row.blocks[k]);
+    return sum;
+}
+
+double RowSystem::speed_of_others(const ConstraintRow& row) const
+{
+    double sum = 0;
+    for (std::uint32_t k = 0; k < row.count; ++k)
+        if (!is_mobile(row.blocks[k].who)) sum += speed_of(row.blocks[k]);
+    return sum;
+}
+
+void RowSystem::load_forces(const Wrenches& wrenches)
+{
+    const Bodies& bodies = host_->bodies;
+    const auto members = equations_.members();
+    for (std::size_t i = 0; i < members.size(); ++i)
+    {
+        double* g = equations_.load(i);
+        const std::uint32_t who = members[i].who.index;
+        if (members[i].who.facet == Facet::Body)
+        {
+            const Quat& q = bodies.orientation[who];
+            const Vec3 w_B = rotate_back(q, bodies.angular_velocity[who]);
+            const Vec3 torque_B = rotate_back(q, wrenches.torque[who]) - cross(w_B, bodies.inertia_B[who] * w_B);
+            const Vec3& f = wrenches.force[who];
+            g[0] = f.x, g[1] = f.y, g[2] = f.z, g[3] = torque_B.x, g[4] = torque_B.y, g[5] = torque_B.z;
+            continue;
+        }
+        const ShaftTree* tree = graph_->tree_of(who);
+        if (!tree)
+            g[0] = wrenches.shaft_torque[who];
+        else
+            for (const ShaftNode& node : graph_->nodes(*tree)) g[0] += node.ratio * wrenches.shaft_torque[node.shaft];
+    }
+}
+
+bool RowSystem::react(const StepContext& context, Wrenches& wrenches)
+{
+    collect(context);
+    const std::uint64_t before = now_ns();
+    factored_ = false;
+    equations_.set_rows(rows_, pieces_);
+    lambda_.assign(rows_.size(), 0.0);
+    const auto slots = equations_.slots();
+    if (slots.empty()) return true;
+    equations_.factor();
+    equations_.clear_right_hand_side();
+    load_forces(wrenches);
+    for (std::size_t s = 0; s < slots.size(); ++s) equations_.wanted(s) = rows_[slots[s].row].bias;
+    const bool finite = equations_.solve_refined() && (!equations_.compliant() || calm(context.dt));
+    if (finite)
+    {
+        for (std::size_t s = 0; s < slots.size(); ++s) lambda_[slots[s].row] = equations_.multiplier(s);
+        add_reactions(wrenches);
+    }
+    if (scheduled_) scheduled_->share(now_ns() - before);
+    return finite;
+}
+
+/// Close to a singular configuration, speeds that do not fit it ask for accelerations like v^2 / angle: a linkage that is
+/// stretched out cannot go on. Where a step cannot follow that, rows give way until it can.
+bool RowSystem::calm(double dt)
+{
+    const double speed = speed_norm();
+    RowEquations::Norms norms = equations_.norms();
+    const double most = speed + dt * norms.loads;
+    if (!(dt * norms.reactions > kMostKick * most)) return true;
+    for (double compliance = 100 * RowEquations::kCompliance; compliance < 1; compliance *= 100)
+    {
+        equations_.factor(compliance);
+        if (!equations_.solve()) return false;
+        norms = equations_.norms();
+        if (dt * norms.reactions < most) break;
+    }
+    return true;
+}
+
+/// sqrt(v . M v) of the members.
+double RowSystem::speed_norm() const
+{
+    double sum = 0;
+    for (const RowEquations::Member& m : equations_.members())
+        sum += m.who.facet == Facet::Body ? 2 * host_->bodies.kinetic_energy(m.who.index)
+                                          : m.inertia * host_->shafts.speed[m.who.index] * host_->shafts.speed[m.who.index];
+    return std::sqrt(sum);
+}
+
+void RowSystem::add_reactions(Wrenches& wrenches) const
+{
+    std::size_t next = 0;
+    for (std::uint32_t i = 0; i < rows_.size(); ++i)
+        for (std::uint32_t k = 0; k < rows_[i].count; ++k)
+        {
+            const RowBlock& b = rows_[i].blocks[k];
+            const bool geared = next < geared_.size() && geared_[next].row == i && geared_[next].block == k;
+            const Geared* as_given = geared ? &geared_[next++] : nullptr;
+            if (!is_mobile(b.who)) continue;
+            if (b.who.facet == Facet::Body)
+                wrenches.force[b.who.index] += b.linear * lambda_[i], wrenches.torque[b.who.index] += b.angular * lambda_[i];
+            else if (as_given)
+                wrenches.shaft_torque[as_given->who.index] += as_given->coefficient * lambda_[i];
+            else
+                wrenches.shaft_torque[b.who.index] += b.angular.x * lambda_[i];
+        }
+}
+
+/// Whether a row's work counts: rows join members of one group, so that the first that moves tells.
+bool RowSystem::books(const ConstraintRow& row, const RowBook& book) const
+{
+    const auto end = row.blocks.begin() + row.count;
+    const auto moved = std::find_if(row.blocks.begin(), end, [&](const RowBlock& b) { return is_mobile(b.who); });
+    if (moved == end) return false;
+    const auto& flags = moved->who.facet == Facet::Body ? book.bodies : book.shafts;
+    return flags.empty() || flags[moved->who.index] != 0;
+}
+
+void RowSystem::account(const RowBook& book, double share) const
+{
+    for (std::uint32_t i = 0; i < rows_.size() && i < lambda_.size(); ++i)
+    {
+        const ConstraintRow& row = rows_[i];
+        if (lambda_[i] == 0 || !books(row, book)) continue;
+        (*book.work)[row.component] += book.sign * share * lambda_[i] * (row.rate - speed_of_others(row));
+    }
+}
+
+void RowSystem::begin_hold(const StepContext& context)
+{
+    collect(context);
+    held_speed_.clear();
+    for (const ConstraintRow& row : rows_) held_speed_.push_back(speed_of(row) - speed_of_others(row));
+}
+
+double RowSystem::take_impulses(const StepContext& context, std::span<const ConstraintRow> held, double h, const RowBook& book)
+{
+    collect(context);
+    lambda_.assign(rows_.size(), 0.0);
+    position_error_.assign(rows_.size(), 0.0), speed_error_.assign(rows_.size(), 0.0);
+    redundant_.assign(pieces_.size(), 0);
+    double sum = 0;
+    for (std::size_t i = 0, at = 0; i < rows_.size(); ++i)
+    {
+        const ConstraintRow& row = rows_[i];
+        if (row.kind == RowKind::Equality) position_error_[i] = row.error;
+        if (row.kind == RowKind::OneSided) position_error_[i] = std::fmin(0.0, row.error);
+        if (!row.may_yield()) speed_error_[i] = speed_of(row) - row.rate;
+        // A limit may have come near or gone since: both lists stand in one order.
+        std::size_t found = at;
+        while (found < held.size() && !(held[found].component == row.component && held[found].feature == row.feature)) ++found;
+        if (found == held.size()) continue;
+        at = found + 1;
+        lambda_[i] = held[found].impulse / h;
+        if (!book.work || !books(row, book)) continue;
+        const double work = 0.5 * held[found].impulse * (held_speed_[found] + speed_of(row) - speed_of_others(row));
+        (*book.work)[row.component] += book.sign * work;
+        sum += work;
+    }
+    keep_reactions();
+    return sum;
+}
+
+void RowSystem::keep_reactions()
+{
+    reactions_.clear();
+    for (const RowPiece& piece : pieces_)
+    {
+        Reaction r;
+        r.component = piece.component;
+        const ConstraintRow& first = rows_[piece.first];
+        const std::uint32_t last = first.count - 1;
+        for (std::uint32_t i = piece.first; i < piece.first + piece.count && i < lambda_.size(); ++i)
+        {
+            const RowBlock& b = rows_[i].blocks[rows_[i].count - 1];
+            if (b.who != first.blocks[last].who) continue;
+            r.force += b.linear * lambda_[i], r.torque += b.angular * lambda_[i];
+        }
+        // A shaft's torque is that on the shaft itself, not on the root of its train.
+        const auto geared =
+            std::find_if(geared_.begin(), geared_.end(), [&](const Geared& g) { return g.row == piece.first && g.block == last; });
+        if (geared != geared_.end() && geared->coefficient != 0) r.torque.x *= geared->coefficient / first.blocks[last].angular.x;
+        reactions_.push_back(r);
+    }
+}
+
+void RowSystem::report_to(RowReportTable& table) const
+{
+    for (const Reaction& r : reactions_) table.at(r.component).force = r.force, table.at(r.component).torque = r.torque;
+    for (std::size_t p = 0; p < pieces_.size(); ++p)
+    {
+        RowReport& report = table.at(pieces_[p].component);
+        for (std::uint32_t i = pieces_[p].first; i < pieces_[p].first + pieces_[p].count; ++i)
+        {
+            if (i < position_error_.size()) report.position_error = std::fmax(report.position_error, std::fabs(position_error_[i]));
+            if (i < speed_error_.size()) report.speed_error = std::fmax(report.speed_error, std::fabs(speed_error_[i]));
+        }
+        if (p < redundant_.size()) report.redundant = redundant_[p];
+    }
+}
+
+void RowSystem::collect_cost(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table)
+{
+    if (scheduled_) scheduled_->collect_cost(by_table);
+}
+
+}  // namespace plab::simulation

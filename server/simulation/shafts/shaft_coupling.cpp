@@ -1,0 +1,229 @@
+#include "simulation/shafts/shaft_coupling.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace plab::simulation
+{
+
+void ShaftCoupling::begin_level(Level level, const ConstraintGraph& graph, const Shafts& shafts)
+{
+    graph_ = &graph, shafts_ = &shafts, level_ = level;
+    ++solve_;
+    current_ = kNoIndex, largest_change_ = 0;
+    conflict_.reset();
+    participants_.clear();
+    roots_.resize(shafts.size()), torque_.resize(shafts.size()), member_.resize(shafts.size());
+    below_.resize(graph.nodes().size());
+}
+
+double ShaftCoupling::inertia_of(std::uint32_t root) const
+{
+    if (const ShaftTree* tree = graph_->tree_of(root)) return tree->inertia;
+    return shafts_->dynamic(root) ? shafts_->inertia[root] : 0.0;
+}
+
+ShaftCoupling::Root& ShaftCoupling::enter(std::uint32_t root, double rate)
+{
+    Root& r = roots_[root];
+    if (r.solve == solve_) return r;
+    if (!takes_part(root)) take_in(root, 0);
+    r.solve = solve_, r.sweep = 0, r.driver = r.driven = kNoIndex, r.touched = false;
+    r.rate = rate, r.scale = std::fabs(rate), r.torque = 0;
+    r.inertia = inertia_of(root);
+    r.mobility = shafts_->dynamic(root) ? 1.0 / r.inertia : 0.0;
+    return r;
+}
+
+void ShaftCoupling::take_in(std::uint32_t shaft, double torque)
+{
+    member_[shaft] = solve_;
+    torque_[shaft] = torque;
+}
+
+void ShaftCoupling::begin_accelerations(const ConstraintGraph& graph, const Shafts& shafts, std::span<const double> torque,
+                                        std::span<const std::uint32_t> members, std::span<const std::uint32_t> prescribed)
+{
+    begin_level(Level::Acceleration, graph, shafts);
+    members_ = members;
+    for (const std::uint32_t i : prescribed) take_in(i, 0), enter(shafts.root[i], 0);  // forces do not matter to it
+    for (const std::uint32_t i : members)
+    {
+        take_in(i, torque[i]);
+        enter(shafts.root[i], 0).torque += shafts.ratio[i] * torque[i];
+    }
+    for (const std::uint32_t i : members)
+    {
+        if (shafts.root[i] != i) continue;
+        Root& r = roots_[i];
+        r.rate = r.torque / r.inertia;
+        r.scale = std::fabs(r.rate);
+    }
+}
+
+void ShaftCoupling::begin_speeds(const ConstraintGraph& graph, const Shafts& shafts, std::span<const std::uint32_t> members,
+                                 std::span<const std::uint32_t> prescribed)
+{
+    begin_level(Level::Speed, graph, shafts);
+    members_ = members;
+    for (const auto list : {prescribed, members})
+        for (const std::uint32_t i : list)
+        {
+            take_in(i, 0);
+            enter(shafts.root[i], shafts.speed[shafts.root[i]]);
+        }
+}
+
+void ShaftCoupling::start_sweep()
+{
+    ++sweep_;
+    largest_change_ = 0;
+    conflict_.reset();
+}
+
+void ShaftCoupling::begin(std::uint32_t component, Ref driven)
+{
+    current_ = component;
+    if (component >= shares_.size()) shares_.resize(component + 1);
+    Share& share = shares_[component];
+    if (share.solve == solve_) return;
+    share = {solve_, driven.index, 0, 0};
+    participants_.push_back(component);
+}
+
+double ShaftCoupling::rate(Ref shaft) const
+{
+    const std::uint32_t root = root_of(shaft);
+    if (entered(root)) return shafts_->ratio[shaft.index] * roots_[root].rate;
+    return level_ == Level::Speed ? shafts_->speed[shaft.index] : 0.0;
+}
+
+double ShaftCoupling::mobility(Ref shaft) const
+{
+    const std::uint32_t root = root_of(shaft);
+    if (!entered(root) || assigned(roots_[root])) return 0;
+    const double ratio = shafts_->ratio[shaft.index];
+    return ratio * ratio * roots_[root].mobility;
+}
+
+void ShaftCoupling::change_rate(Root& r, double rate)
+{
+    const double change = std::fabs(rate - r.rate);
+    r.touched = r.touched || rate != r.rate;
+    r.scale = std::max({r.scale, std::fabs(rate), std::fabs(r.rate)});
+    r.rate = rate;
+    if (change == 0) return;
+    const double relative = change / r.scale;
+    // A rate that is not a number never settles.
+    largest_change_ = std::max(largest_change_, std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity());
+}
+
+void ShaftCoupling::apply(Ref shaft, double torque)
+{
+    assert(current_ != kNoIndex);
+    const std::uint32_t i = shaft.index;
+    const double ratio = shafts_->ratio[i];
+    const std::uint32_t root = root_of(shaft);
+    Share& share = shares_[current_];
+    if (i == share.driven) share.reaction += torque;
+    if (!entered(root)) return;  // not advanced here: nothing pushes it
+    Root& r = roots_[root];
+    torque_[i] += torque;
+    r.torque += ratio * torque;
+
+    const double before = r.rate;
+    if (!assigned(r)) change_rate(r, r.rate + ratio * torque * r.mobility);
+    if (level_ == Level::Acceleration)
+    {
+        if (shafts_->dynamic(i)) share.work += torque * shafts_->speed[i];
+        return;
+    }
+    // Summed over the sweeps this is the change of kinetic energy; a drive takes what is done on what it holds.
+    const double work = 0.5 * ratio * torque * (before + r.rate);
+    if (r.mobility > 0) share.work += work;
+    if (assigned(r)) shares_[r.driver].work -= work;
+}
+
+void ShaftCoupling::assign(Ref shaft, double rate)
+{
+    assert(current_ != kNoIndex);
+    const std::uint32_t i = shaft.index;
+    const double ratio = shafts_->ratio[i];
+    const std::uint32_t root = root_of(shaft);
+    Root& r = enter(root, level_ == Level::Speed ? shafts_->speed[root] : 0.0);
+    const double root_rate = rate / ratio;
+    if (r.sweep == sweep_)
+    {
+        if (std::fabs(root_rate - r.rate) > kDriveTolerance * r.scale)
+            conflict_ = DriveConflict{r.driver, current_, i, ratio * r.rate, rate};
+        return;
+    }
+    r.sweep = sweep_, r.driver = current_, r.driven = i;
+    if (level_ == Level::Speed) shares_[current_].work += 0.5 * r.inertia * (root_rate - r.rate) * (root_rate + r.rate);
+    change_rate(r, root_rate);
+}
+
+void ShaftCoupling::store_rates(std::span<double> out) const
+{
+    for (const std::uint32_t i : members_) out[i] = shafts_->ratio[i] * roots_[shafts_->root[i]].rate;
+}
+
+void ShaftCoupling::store_speeds(Shafts& shafts) const
+{
+    assert(level_ == Level::Speed);
+    for (const std::uint32_t i : members_)
+        if (const Root& r = roots_[shafts.root[i]]; r.touched) shafts.speed[i] = shafts.ratio[i] * r.rate;
+}
+
+double ShaftCoupling::total_torque(std::uint32_t shaft) const
+{
+    if (!takes_part(shaft)) return 0;
+    const Root& r = roots_[shafts_->root[shaft]];
+    if (assigned(r)) return torque_[shaft] + (r.driven == shaft ? holding_torque(r) / shafts_->ratio[shaft] : 0.0);
+    return shafts_->dynamic(shaft) ? torque_[shaft] : torque_[shaft] + holding_torque(r);
+}
+
+double ShaftCoupling::reaction(std::uint32_t component) const
+{
+    const Share& share = shares_[component];
+    const std::uint32_t root = shafts_->root[share.driven];
+    const bool drives = entered(root) && roots_[root].driver == component;
+    return drives ? share.reaction + holding_torque(roots_[root]) / shafts_->ratio[share.driven] : share.reaction;
+}
+
+void ShaftCoupling::account(std::vector<double>& work, double share)
+{
+    for (const std::uint32_t c : participants_)
+    {
+        double done = shares_[c].work;
+        const std::uint32_t root = shafts_->root[shares_[c].driven];
+        if (level_ == Level::Acceleration && entered(root) && roots_[root].driver == c && shafts_->dynamic(root))
+            done += holding_torque(roots_[root]) * shafts_->speed[root];
+        work[c] += share * done;
+    }
+    if (level_ != Level::Acceleration) return;
+    for (const ShaftTree& tree : graph_->trees())
+        if (tree.prescribed && entered(tree.root)) account_prescribed(tree, work, share);
+}
+
+// Power through each coupling of the prescribed shaft: (sum rho^2 J alpha_root - sum rho tau) w_root over what is
+// below.
+void ShaftCoupling::account_prescribed(const ShaftTree& tree, std::vector<double>& work, double share)
+{
+    const auto nodes = graph_->nodes();
+    const Root& r = roots_[tree.root];
+    for (std::uint32_t k = tree.first; k < tree.first + tree.count; ++k)
+        below_[k] = takes_part(nodes[k].shaft) ? nodes[k].ratio * torque_[nodes[k].shaft] : 0.0;
+    for (std::uint32_t k = tree.first + tree.count; --k > tree.first;)
+    {
+        const ShaftNode& n = nodes[k];
+        if (n.parent != tree.first)
+            below_[n.parent] += below_[k];
+        else
+            work[n.component] += share * (n.inertia_inside * r.rate - below_[k]) * shafts_->speed[tree.root];
+    }
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,117 @@
+#include "simulation/shafts/shaft_system.h"
+
+#include <algorithm>
+
+namespace plab::simulation
+{
+
+ShaftSystem::Part& ShaftSystem::part_of_cluster(std::uint32_t cluster)
+{
+    for (std::size_t i = 0; i < count_; ++i)
+        if (parts_[i].cluster == cluster) return parts_[i];
+    if (count_ == parts_.size()) parts_.emplace_back();
+    Part& part = parts_[count_++];
+    part.cluster = cluster;
+    part.members.clear(), part.prescribed.clear(), part.couplings.clear();
+    part.begun = false;
+    return part;
+}
+
+void ShaftSystem::configure(const world::World& world, const Schedule& schedule, const Groups& groups,
+                            std::span<const std::uint32_t> members, const ConstraintGraph& graph)
+{
+    world_ = &world, schedule_ = &schedule, graph_ = &graph;
+    count_ = 0;
+    part_of_shaft_.clear();
+    for (const std::uint32_t g : members)
+    {
+        const Group& group = groups.all[g];
+        if (group.shafts.empty() && group.prescribed_shafts.empty()) continue;
+        // Clusters without couplings need no sweeps: they share one part.
+        const bool swept = groups.cluster_has_couplings[group.cluster] != 0;
+        Part& part = part_of_cluster(swept ? group.cluster : kNoIndex);
+        part.members.insert(part.members.end(), group.shafts.begin(), group.shafts.end());
+        part.prescribed.insert(part.prescribed.end(), group.prescribed_shafts.begin(), group.prescribed_shafts.end());
+        part.couplings.insert(part.couplings.end(), group.couplings.begin(), group.couplings.end());
+    }
+    if (count_ == 0) return;
+    part_of_shaft_.assign(world.host().shafts.size(), kNoIndex);
+    const auto by_rank = [&](std::uint32_t a, std::uint32_t b) {
+        return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b});
+    };
+    for (std::uint32_t i = 0; i < count_; ++i)
+    {
+        Part& part = parts_[i];
+        std::sort(part.members.begin(), part.members.end(), by_rank);
+        std::sort(part.prescribed.begin(), part.prescribed.end(), by_rank);
+        std::sort(part.couplings.begin(), part.couplings.end());
+        part.couplings.erase(std::unique(part.couplings.begin(), part.couplings.end()), part.couplings.end());
+        for (const auto* list : {&part.members, &part.prescribed})
+            for (const std::uint32_t s : *list) part_of_shaft_[s] = i;
+    }
+}
+
+CouplingReport ShaftSystem::sweep(Part& part, const StepContext& outer)
+{
+    if (part.couplings.empty()) return {};
+    StepContext context = outer;
+    PhaseCall call;
+    call.context = &context, call.shaft_motion = &part.coupling;
+    const auto& blocks = schedule_->of(Phase::Couple);
+    return part.coupling.solve(
+        [&]
+        {
+            for (const BlockRow& row : part.couplings)
+            {
+                const Block& block = blocks[row.block];
+                const world::Table& table = *world_->tables()[block.table];
+                context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+                call.rows = Rows(&row.row, 1);
+                (void)block.command->run(call, table.rows());
+            }
+        });
+}
+
+void ShaftSystem::solve_accelerations(const StepContext& context, std::span<const double> torque)
+{
+    for (std::size_t i = 0; i < count_; ++i)
+    {
+        Part& part = parts_[i];
+        part.coupling.begin_accelerations(*graph_, world_->host().shafts, torque, part.members, part.prescribed);
+        part.begun = true;
+        (void)sweep(part, context);
+    }
+}
+
+CouplingReport ShaftSystem::solve_speeds(const StepContext& context, Shafts& shafts, std::vector<double>& work)
+{
+    CouplingReport worst;
+    for (std::size_t i = 0; i < count_; ++i)
+    {
+        Part& part = parts_[i];
+        if (part.couplings.empty()) continue;
+        part.coupling.begin_speeds(*graph_, shafts, part.members, part.prescribed);
+        const CouplingReport report = sweep(part, context);
+        part.coupling.store_speeds(shafts);
+        part.coupling.account(work, 1.0);
+        if (report.residual > worst.residual) worst.residual = report.residual;
+        worst.converged = worst.converged && report.converged;
+        if (report.conflict && !worst.conflict) worst.conflict = report.conflict;
+    }
+    return worst;
+}
+
+double ShaftSystem::rate(std::uint32_t shaft) const { return parts_[part_of_shaft_[shaft]].coupling.rate({Facet::Shaft, shaft}); }
+
+void ShaftSystem::account(std::vector<double>& work, double share)
+{
+    for (std::size_t i = 0; i < count_; ++i) parts_[i].coupling.account(work, share);
+}
+
+void ShaftSystem::add_reactions(ShaftTorques& torques) const
+{
+    for (std::size_t i = 0; i < count_; ++i)
+        if (parts_[i].begun) torques.add(parts_[i].coupling);
+}
+
+}  // namespace plab::simulation

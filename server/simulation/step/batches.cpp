@@ -1,0 +1,231 @@
+// The whole step in one go for everybody: groups in batches, one batch for each thread.
+#include <algorithm>
+#include <map>
+
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// A solver that judges may declare this command beside its own: it advances groups together where that changes no bit, or
+/// refuses (by an error) with the state at the start of the advance. Then they are split, down to each by itself.
+constexpr std::string_view kTogether = "Solver/AdvanceTogether";
+
+bool is_together(const CommandInfo& command) { return command.phase == Phase::Advance && command.name == kTogether; }
+
+const CommandInfo* together_command(const world::World& world, std::uint32_t solver)
+{
+    if (solver == kNoIndex) return nullptr;
+    const auto& commands = world.type_of(solver)->info.commands;
+    const auto found = std::find_if(commands.begin(), commands.end(), is_together);
+    return found == commands.end() ? nullptr : &*found;
+}
+
+/// How clusters share systems, in the order in which they are planned: whoever goes alone opens a part that nobody joins.
+enum class Sharing
+{
+    Always,
+    UnlessRefused,
+    Alone,
+};
+
+struct Cluster
+{
+    std::vector<std::uint32_t> groups;
+    std::size_t load = 0;
+    std::uint32_t solver = kNoIndex;
+    Sharing sharing = Sharing::Alone;
+};
+
+/// In the order of their first group.
+std::vector<Cluster> clusters_of(const Groups& groups)
+{
+    std::vector<Cluster> out(groups.clusters);
+    for (std::uint32_t g = 0; g < groups.all.size(); ++g)
+    {
+        const Group& group = groups.all[g];
+        Cluster& c = out[group.cluster];
+        c.groups.push_back(g), c.solver = group.solver;
+        c.load += group.bodies.size() + group.shafts.size() + group.quantities.size() + 1;
+    }
+    return out;
+}
+
+/// Takes half of the clusters out of a part that holds several; empty if it holds one.
+std::vector<std::uint32_t> half_of(const Groups& groups, std::vector<std::uint32_t>& part)
+{
+    std::vector<std::uint32_t> clusters;
+    for (const std::uint32_t g : part) clusters.push_back(groups.all[g].cluster);
+    std::sort(clusters.begin(), clusters.end());
+    clusters.erase(std::unique(clusters.begin(), clusters.end()), clusters.end());
+    if (clusters.size() < 2) return {};
+    const std::uint32_t middle = clusters[clusters.size() / 2];
+    const auto stays = [&](std::uint32_t g) { return groups.all[g].cluster < middle; };
+    std::vector<std::uint32_t> taken;
+    std::copy_if(part.begin(), part.end(), std::back_inserter(taken), [&](std::uint32_t g) { return !stays(g); });
+    std::erase_if(part, [&](std::uint32_t g) { return !stays(g); });
+    return taken;
+}
+
+/// Which solver advances what in which batch together, unless it refuses.
+using SharedParts = std::map<std::pair<const Batch*, std::uint32_t>, std::size_t>;
+
+void share(Batch& batch, std::span<const std::uint32_t> cluster, std::uint32_t solver, SharedParts& parts)
+{
+    const auto [place, fresh] = parts.try_emplace({&batch, solver}, batch.parts.size());
+    if (fresh) batch.parts.emplace_back().solver = solver;
+    auto& groups = batch.parts[place->second].groups;
+    groups.insert(groups.end(), cluster.begin(), cluster.end());
+    std::sort(groups.begin(), groups.end());
+}
+
+}  // namespace
+
+GroupSystem& Stepper::system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
+{
+    GroupSystem& system = pool_.of(frame_, groups, shadows);
+    system.set_extra_forces(extra_);
+    return system;
+}
+
+void Stepper::plan_batches()
+{
+    // One batch for each thread, in whole clusters: what reads another group must share its stage times. Partition never
+    // shows in the state: groups do not feel one another, and a solver whose choices depend on its whole system gets each
+    // cluster by itself.
+    std::vector<Cluster> clusters = clusters_of(groups_);
+    std::size_t total = 0;
+    for (Cluster& c : clusters)
+    {
+        const auto any = [&](auto holds)
+        { return std::any_of(c.groups.begin(), c.groups.end(), [&](std::uint32_t g) { return holds(groups_.all[g]); }); };
+        const bool alone = any([&](const Group&g) { return goes_alone(g); }), held = any([](const Group&g) { return !g.rows.empty(); });
+        c.sharing = !alone ? Sharing::Always : !held && together_command(world_, c.solver) ? Sharing::UnlessRefused : Sharing::Alone;
+        total += c.load;
+    }
+    std::stable_sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.sharing < b.sharing; });
+    batches_.clear();
+    batches_.reserve(static_cast<std::size_t>(workers_.threads()));  // they stay where they are
+    SharedParts shared;
+    std::map<std::uint32_t, std::size_t> home;
+    for (const Cluster& c : clusters)
+    {
+        // A solver that keeps something between advances serves its clusters one after the other, in one order.
+        const bool keeps = c.solver != kNoIndex && !world_.type_of(c.solver)->info.elementwise;
+        const auto known = keeps ? home.find(c.solver) : home.end();
+        Batch& batch = known != home.end() ? batches_[known->second] : lightest_batch(total);
+        if (keeps) home.emplace(c.solver, static_cast<std::size_t>(&batch - batches_.data()));
+        batch.load += c.load;
+        if (c.sharing == Sharing::UnlessRefused)
+            share(batch, c.groups, c.solver, shared);
+        else
+            batch.add(c.groups, c.solver, c.sharing == Sharing::Always);
+    }
+    for (Batch& batch : batches_)
+    {
+        batch.scratch = std::make_unique<StageScratch>();
+        batch.scratch->fit(world_);
+        batch.work.assign(work_.size(), 0.0);
+        for (Batch::Part& part : batch.parts)
+        {
+            part.system = std::make_unique<GroupSystem>(*batch.scratch);
+            part.system->configure(frame_, part.groups);
+        }
+    }
+}
+
+Batch& Stepper::lightest_batch(std::size_t total_load)
+{
+    const auto threads = static_cast<std::size_t>(workers_.threads());
+    for (Batch& batch : batches_)
+        if (batch.load * threads < total_load) return batch;
+    if (batches_.size() < threads) return batches_.emplace_back();
+    return *std::min_element(batches_.begin(), batches_.end(), [](const Batch& x, const Batch& y) { return x.load < y.load; });
+}
+
+void Batch::add(std::span<const std::uint32_t> cluster, std::uint32_t solver, bool together)
+{
+    const auto same = together ? std::find_if(parts.begin(), parts.end(), [&](const Part& p) { return p.solver == solver; }) : parts.end();
+    Part& part = same != parts.end() ? *same : parts.emplace_back();
+    part.solver = solver;
+    part.groups.insert(part.groups.end(), cluster.begin(), cluster.end());
+    std::sort(part.groups.begin(), part.groups.end());
+}
+
+void Stepper::run_batch(Batch& batch, std::vector<double>& work)
+{
+    for (std::size_t i = 0; i < batch.parts.size(); ++i)
+    {
+        // The frame is new in each step; its pointers are the same.
+        batch.parts[i].system->set_frame(frame_);
+        while (!run_solver(batch.parts[i], work, batch.events))
+        {
+            Batch::Part& rest = batch.parts.emplace_back();
+            rest.solver = batch.parts[i].solver;
+            rest.groups = half_of(groups_, batch.parts[i].groups);
+            rest.system = std::make_unique<GroupSystem>(*batch.scratch);
+            rest.system->configure(frame_, rest.groups);
+            batch.parts[i].system->configure(frame_, batch.parts[i].groups);
+        }
+    }
+}
+
+/// False if the solver refuses to advance its several clusters together.
+bool Stepper::run_solver(Batch::Part& part, std::vector<double>& work, EventSink& events)
+{
+    const auto cluster = [&](std::uint32_t g) { return groups_.all[g].cluster; };
+    const bool several =
+        std::any_of(part.groups.begin(), part.groups.end(), [&](std::uint32_t g) { return cluster(g) != cluster(part.groups.front()); });
+    const CommandInfo* together = several ? together_command(world_, part.solver) : nullptr;
+    if (!together)
+    {
+        part.fine = run_solver(*part.system, part.solver, 0, frame_.step, {&work, 1}, &events);
+        return true;
+    }
+    part.system->begin(0, frame_.step, {&work, 1}, &events);
+    if (!call_solver(*part.system, part.solver, *together)) return false;
+    part.fine = part.system->finish();
+    return true;
+}
+
+void Stepper::emit_in_order()
+{
+    // In an order that no partition shows in.
+    std::vector<Event> all;
+    for (Batch& batch : batches_)
+    {
+        std::move(batch.events.events.begin(), batch.events.events.end(), std::back_inserter(all));
+        batch.events.events.clear();
+    }
+    const auto key = [&](const Event& e) { return std::pair(e.time, e.component == kNoIndex ? kNoIndex : world_.rank(e.component)); };
+    std::stable_sort(all.begin(), all.end(), [&](const Event& x, const Event& y) { return key(x) < key(y); });
+    for (Event& event : all) emit(std::move(event));
+}
+
+void Stepper::advance_batches()
+{
+    if (!batches_ready_) plan_batches();
+    batches_ready_ = true;
+    const bool alone = batches_.size() == 1;
+    if (alone)
+        run_batch(batches_.front(), work_);
+    else
+        workers_.run(batches_.size(), [this](std::size_t b) { run_batch(batches_[b], batches_[b].work); });
+    emit_in_order();
+    for (Batch& batch : batches_)
+    {
+        for (Batch::Part& part : batch.parts)
+        {
+            if (!part.fine) freeze(*part.system);
+            part.system->add_reactions(reactions_);
+            part.system->add_reports(row_reports_);
+        }
+        if (alone) continue;
+        for (std::size_t i = 0; i < work_.size(); ++i) work_[i] += batch.work[i];
+        std::fill(batch.work.begin(), batch.work.end(), 0.0);
+    }
+}
+
+}  // namespace plab::simulation

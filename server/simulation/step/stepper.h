@@ -1,0 +1,281 @@
+/// One step of a world: the phases of step_tree.h, with rewinding to events inside the step.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "simulation/contact_forces/contact_forces.h"
+#include "simulation/contacts/contacts.h"
+#include "simulation/shafts/shaft_reactions.h"
+#include "simulation/sight.h"
+#include "simulation/groups/system_pool.h"
+#include "simulation/step/worker_pool.h"
+
+namespace plab::simulation
+{
+
+/// What a step did, beside moving the world.
+struct StepReport
+{
+    int events = 0;   ///< impacts located and answered
+    int trials = 0;   ///< trial advances made to locate them
+    int rewinds = 0;  ///< groups rewound
+    int resting_pairs = 0;
+    std::uint64_t evaluations = 0;  ///< of forces, summed over the systems that solvers advanced, trials included
+    double worst_residual = 0;      ///< m/s, left over by contact responses
+    double coupling_residual = 0;   ///< relative, left over by shaft couplings
+    double deepest = 0;             ///< m, overlap left at the end of the step
+    std::vector<Ref> frozen;        ///< objects whose state was not finite any more
+};
+
+/// CPU time by component type and phase, and per step; ns.
+struct CostBook
+{
+    std::vector<std::array<std::uint64_t, kPhaseCount>> by_table;  ///< index of the world's table
+    std::uint64_t steps = 0;
+    std::uint64_t total = 0;
+};
+
+/// Events of one thread, until all threads are done.
+class EventBuffer final : public EventSink
+{
+public:
+    void emit(Event event) override { events.push_back(std::move(event)); }
+    std::vector<Event> events;
+};
+
+/// What one thread advances: whole clusters of groups.
+struct Batch
+{
+    struct Part
+    {
+        std::uint32_t solver = kNoIndex;
+        std::vector<std::uint32_t> groups;
+        std::unique_ptr<GroupSystem> system;
+        bool fine = true;
+    };
+    /// Clusters of one solver share a part where that changes no bit (`together`).
+    void add(std::span<const std::uint32_t> cluster, std::uint32_t solver, bool together);
+
+    std::vector<Part> parts;
+    std::size_t load = 0;
+    std::vector<double> work;
+    std::unique_ptr<StageScratch> scratch;
+    EventBuffer events;
+};
+
+class EventLocator;
+
+class HeldIslands;
+
+class Stepper final : public EventSink
+{
+public:
+    Stepper(world::World& world, int threads);
+
+    /// To be called after any structural change and after changes of parameters: schedule, groups, constraint graph,
+    /// materials. On error (a contradictory graph) the world must be put back and rebuilt.
+    Result<void> rebuild();
+    /// Steps from tick to tick + 1. Times in s.
+    void step(Tick tick, double start_time, double dt);
+
+    const std::vector<Event>& events() const { return events_; }
+    const StepReport& report() const { return report_; }
+    const Schedule& schedule() const { return schedule_; }
+    const Groups& groups() const { return groups_; }
+    const ConstraintGraph& graph() const { return graph_; }
+    const std::vector<Detector>& detectors() const { return detectors_; }
+    ContactCache& contacts() { return cache_; }
+    const ContactForces& forces() const { return forces_; }
+    const ContactCache& contacts() const { return cache_; }
+    const std::vector<FoundContact>& touching() const { return found_; }
+    std::vector<double>& work() { return work_; }  ///< J by component, since the run began
+    const std::vector<double>& work() const { return work_; }
+    /// A component is about to be removed: its work stays in the ledger, whoever gets its place starts with none.
+    void retire(std::uint32_t component)
+    {
+        if (component >= work_.size()) return;
+        departed_work_ += work_[component];
+        work_[component] = 0;
+    }
+    /// J, by components that were removed since.
+    double& departed_work() { return departed_work_; }
+    double departed_work() const { return departed_work_; }
+    /// J, by requests: what a set, push or swap changed at once.
+    double& requests_work() { return requests_work_; }
+    double requests_work() const { return requests_work_; }
+    CostBook& cost() { return cost_; }
+    const CostBook& cost() const { return cost_; }
+    std::uint64_t state_hash() const;
+    /// Where parameter changes of scripts go at the end of the drive phase.
+    using ApplyChanges = void (*)(void* owner, std::vector<ParameterChange>& changes);
+    void on_changes(ApplyChanges apply, void* owner) { apply_changes_ = apply, changes_owner_ = owner; }
+
+    /// Where cameras in the scene send their pictures; null: nowhere, and they do not draw.
+    void draw_for(ImageSink* images) { images_ = images; }
+
+    void emit(Event event) override;
+
+    // The nodes of the step tree ---------------------------------------------------------------------------------------
+    void save_start();
+    void drive();
+    void couple_speeds();
+    void advance_all();
+    void locate_events();
+    void finish_contacts();
+    void finish();
+    void draw();
+
+    bool anything_moves() const { return !groups_.all.empty(); }
+    bool anything_drives() const { return !schedule_.of(Phase::Drive).empty(); }
+    bool anything_couples() const { return !schedule_.of(Phase::Couple).empty() || !graph_.trees().empty(); }
+    bool anything_collides() const { return !detectors_.empty(); }
+    bool anything_finishes() const { return !schedule_.of(Phase::Finish).empty(); }
+    bool anything_draws() const { return images_ && !schedule_.of(Phase::Draw).empty(); }
+
+private:
+    friend class EventLocator;
+    friend class ContactForces;
+    friend class HeldIslands;
+
+    // stepper_build.cpp
+    void connect_materials(Errors& errors);
+    void connect_graph(Errors& errors);
+    Errors run_connect(const Block& block, PhaseCall call);
+    void measure_bodies();
+    void plan_batches();
+    Batch& lightest_batch(std::size_t total_load);
+    void run_batch(Batch& batch, std::vector<double>& work);
+    void emit_in_order();
+    void collect_cost();
+
+    // advance.cpp. A trial emits no events and freezes nobody.
+    void advance_batches();
+    void advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial);
+    void advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+                        WorkBook book, bool trial);
+    void advance_contacts(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+                          WorkBook book, bool trial);
+    bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events);
+    bool run_solver(Batch::Part& part, std::vector<double>& work, EventSink& events);
+    /// False if the command refused.
+    bool call_solver(GroupSystem& system, std::uint32_t solver, const CommandInfo& command);
+    bool goes_alone(const Group& group) const;
+    void collect_units(std::span<const std::uint32_t> groups);
+    EventSink* sink_for(bool trial) { return trial ? nullptr : this; }
+    void split_by_contact(std::span<const std::uint32_t> groups);
+    void collect_shadows(std::span<const std::uint32_t> groups);
+    void finish_advance(GroupSystem& system, bool finite, double to, bool trial);
+    void rewind(std::uint32_t group);
+    void save_segment(std::uint32_t group);
+    void save_end(std::uint32_t group);
+    void restore_end(std::uint32_t group);
+    void freeze(GroupSystem& system);
+    GroupSystem& system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows);
+
+    // contact_step.cpp
+    void detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
+                std::vector<FoundContact>& out, double margin = 0);
+    double speculative_acceleration(const Detector& detector) const;
+    void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
+    void detect_all(std::vector<FoundContact>& out);
+    void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0);
+    KnownContact& known_contact(const FoundContact& found);
+    double gap_margin(const PairState& pair, double h) const;
+    void drop_far(std::vector<FoundContact>& out, double h) const;
+    bool arrest(const GroupSystem& system, double h, WorkBook book);
+    bool is_paradox(const Contact& contact) const;
+    void tell_paradox(const Contact& contact, PairState& pair, double time);
+    void fill_material(FoundContact& found) const;
+    SurfaceLaw response_law(std::uint32_t detector) const;
+    double standing_margin(Ref a, Ref b) const;
+    void respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book);
+    void advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
+                        WorkBook book, bool trial);
+    void keep_impulses(const std::vector<FoundContact>& contacts);
+    static bool same_pair(const FoundContact& x, const FoundContact& y)
+    {
+        return x.detector == y.detector && x.contact.a == y.contact.a && x.contact.b == y.contact.b;
+    }
+    void correct_positions();
+
+    // contact_force_swap.cpp
+    struct Eased
+    {
+        KnownContact* known = nullptr;
+        FoundContact* found = nullptr;
+    };
+    void ease_overlaps();
+    void ease_pair(PairState& pair);
+    double share_of_overlap_left(const PairState& pair, std::span<const Eased> eased) const;
+
+    void part(std::size_t begin, std::size_t end);
+    bool is_of_pair(const FoundContact& f, const PairState& pair) const;
+    std::size_t first_of_pair(const PairState& pair, std::size_t from) const;
+    void update_pair(PairState& pair, std::size_t begin, std::size_t end);
+    double normal_velocity(const Contact& c) const;
+    double standing_margin(const PairState& pair) const;
+    double kinetic_energy(const std::vector<FoundContact>& contacts) const;
+    Event contact_event(const char* kind, const PairState& pair, double time) const;
+
+    template <class Body>
+    void timed(const Block& block, Body body);
+
+    world::World& world_;
+    Schedule schedule_;
+    Groups groups_;
+    ConstraintGraph graph_;
+    ShaftTorques reactions_;
+    RowReportTable row_reports_;
+    std::vector<Detector> detectors_;
+    ContactCache cache_;
+    ContactForces forces_{*this};
+    std::shared_ptr<HeldIslands> held_;   ///< likewise
+    ExtraForces* extra_ = nullptr;        ///< of all systems that are set up now
+    std::vector<double> radius_of_body_;  ///< m, about C; infinite for planes
+    WorkerPool workers_;
+
+    std::shared_ptr<EventLocator> locator_;  ///< shared only so that its type need not be known here
+
+    StepFrame frame_;
+    world::MotionMemento start_, segment_, end_;
+    std::vector<double> segment_begin_;  ///< s, by group: where its present smooth piece began
+    bool rewinds_possible_ = false;
+
+    std::vector<Batch> batches_;
+    bool batches_ready_ = false;
+    SystemPool pool_;
+
+    // Working lists, kept warm.
+    struct Unit
+    {
+        std::uint32_t solver_rank = 0, cluster = kNoIndex, group = 0;  ///< kNoIndex: whatever cluster
+        friend auto operator<=>(const Unit&, const Unit&) = default;
+    };
+    std::vector<Unit> units_;
+    std::vector<std::uint32_t> smooth_, in_contact_, shadows_, island_, island_all_, same_unit_;
+    ShaftSystem speed_system_;
+    std::vector<std::uint8_t> group_flags_;
+    std::vector<std::uint32_t> contact_groups_;
+    std::vector<std::uint8_t> done_;
+    mutable std::vector<std::uint32_t> counted_;
+    DisjointSets islands_;
+    std::vector<StandingPair> standing_;
+    std::vector<FoundContact> found_, touching_;
+    std::vector<Eased> eased_;
+    std::vector<Contact> impact_contacts_;
+    std::vector<Vec3> old_velocity_, old_spin_;
+
+    std::vector<Event> events_;
+    std::vector<ParameterChange> changes_;
+    ApplyChanges apply_changes_ = nullptr;
+    void* changes_owner_ = nullptr;
+    std::vector<double> work_;
+    double departed_work_ = 0, requests_work_ = 0;
+    CostBook cost_;
+    StepReport report_;
+    ImageSink* images_ = nullptr;
+    SightBuilder sight_;
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,204 @@
+#include "simulation/watch/tunnel_watch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "simulation/simulation.h"
+
+namespace plab::simulation
+{
+
+namespace
+{
+
+constexpr double kStraight = 0.1;  // share by which a way may differ from speed times step
+constexpr double kDeep = 0.5;
+constexpr int kDeepSteps = 8;
+constexpr double kHalfDiagonal = 0.70710678118654752;
+
+/// Half extents of a box inside the shape, about its origin; negative if there is none.
+Vec3 box_inside(const Geometry& g)
+{
+    switch (g.kind)
+    {
+        case GeometryKind::Box:
+            return g.size;
+        case GeometryKind::Capsule:
+        case GeometryKind::Cylinder:
+            return {kHalfDiagonal * g.size.x, kHalfDiagonal * g.size.x, g.size.z};
+        default:
+            return {-1, -1, -1};
+    }
+}
+
+/// Half the least width of a shape; 0 where it is not known.
+double half_width(const Geometry& g)
+{
+    switch (g.kind)
+    {
+        case GeometryKind::Sphere:
+        case GeometryKind::Capsule:
+            return g.size.x;
+        case GeometryKind::Box:
+            return std::min({g.size.x, g.size.y, g.size.z});
+        case GeometryKind::Cylinder:
+            return std::min(g.size.x, g.size.z);
+        default:
+            return 0;
+    }
+}
+
+bool crosses_ball(const Vec3& a, const Vec3& b, double radius)
+{
+    const double r2 = radius * radius;
+    if (length_squared(a) <= r2 || length_squared(b) <= r2) return false;
+    const Vec3 way = b - a;
+    const double t = -dot(a, way) / length_squared(way);
+    return t > 0 && t < 1 && length_squared(a + way * t) < r2;
+}
+
+/// Slabs: the part of the way inside all three.
+bool crosses_box(const Vec3& a, const Vec3& b, const Vec3& half)
+{
+    const std::array<double, 3> from{a.x, a.y, a.z}, to{b.x, b.y, b.z}, h{half.x, half.y, half.z};
+    double enter = 0, leave = 1;
+    bool a_inside = true, b_inside = true;
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        a_inside = a_inside && std::fabs(from[k]) <= h[k];
+        b_inside = b_inside && std::fabs(to[k]) <= h[k];
+        const double way = to[k] - from[k];
+        if (way == 0 && std::fabs(from[k]) >= h[k]) return false;
+        if (way == 0) continue;
+        const double one = (-h[k] - from[k]) / way, two = (h[k] - from[k]) / way;
+        enter = std::max(enter, std::min(one, two)), leave = std::min(leave, std::max(one, two));
+    }
+    return !a_inside && !b_inside && enter < leave;
+}
+
+bool crosses(const Vec3& a, const Vec3& b, const Geometry& g)
+{
+    if (g.kind == GeometryKind::Sphere) return crosses_ball(a, b, g.size.x);
+    const Vec3 half = box_inside(g);
+    return half.x > 0 && crosses_box(a, b, half);
+}
+
+}  // namespace
+
+void TunnelWatch::look_up(const Simulation& s)
+{
+    const world::World& world = s.world();
+    const world::HostTables& host = world.host();
+    ready_ = true;
+    crowds_.clear();
+    for (const Detector& d : s.stepper().detectors())
+    {
+        if (!d.responds && !d.by_rows && !d.by_force) continue;  // a sensor: passing through is what it is for
+        Crowd crowd{d.component, {}, d.certifies && !d.persists()};
+        for (const Role& role : world.table_of(d.component).schema().roles())
+            for (const Ref r : world.participants(d.component, role))
+                if (r.facet == Facet::Body) crowd.bodies.push_back(r.index);
+        if (crowd.bodies.size() > 1) crowds_.push_back(std::move(crowd));
+    }
+    told_.assign(host.bodies.size(), 0);
+    start_.resize(host.bodies.size());
+    least_width_.assign(host.bodies.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t b = 0; b < least_width_.size(); ++b)
+        for (const Ref shape : host.bodies.shapes[b])
+            least_width_[b] = std::min(least_width_[b], half_width(host.shapes.geometry[shape.index]));
+    sinking_.resize(host.bodies.size());
+    shallow_ = std::numeric_limits<double>::infinity();
+    for (const double width : least_width_)
+        if (width > 0) shallow_ = std::min(shallow_, kDeep * width);
+}
+
+void TunnelWatch::before_step(const Simulation& s)
+{
+    if (!ready_) look_up(s);
+    if (crowds_.empty()) return;
+    const Bodies& bodies = s.world().host().bodies;
+    for (std::size_t b = 0; b < start_.size(); ++b) start_[b] = {bodies.position[b], bodies.orientation[b]};
+}
+
+bool TunnelWatch::passed(const Simulation& s, std::uint32_t body, std::uint32_t other) const
+{
+    const world::HostTables& host = s.world().host();
+    const Bodies& bodies = host.bodies;
+    const auto straight = [&](std::uint32_t b)
+    {
+        const Vec3 way = bodies.position[b] - start_[b].position;
+        return length_squared(way - bodies.velocity[b] * s.dt()) <= kStraight * kStraight * length_squared(way);
+    };
+    if (!straight(body) || !straight(other)) return false;
+    // In the other's axes about its centre of mass, at the start and at the end.
+    const Vec3 from = rotate(conjugate(start_[other].orientation), start_[body].position - start_[other].position) + bodies.center_B[other];
+    const Vec3 to = rotate(conjugate(bodies.orientation[other]), bodies.position[body] - bodies.position[other]) + bodies.center_B[other];
+    return std::any_of(bodies.shapes[other].begin(), bodies.shapes[other].end(),
+                       [&](const Ref shape)
+                       {
+                           const Geometry& g = host.shapes.geometry[shape.index];
+                           const auto in_shape = [&](const Vec3& p) { return rotate(conjugate(g.pose.q), p - g.pose.p); };
+                           return crosses(in_shape(from), in_shape(to), g);
+                       });
+}
+
+void TunnelWatch::look(const Simulation& s, const Crowd& crowd, std::uint32_t body, std::vector<Event>& events)
+{
+    const world::World& world = s.world();
+    const Vec3 way = world.host().bodies.position[body] - start_[body].position;
+    for (const std::uint32_t other : crowd.bodies)
+    {
+        if (other == body || !passed(s, body, other)) continue;
+        told_[body] = 1;
+        const Ref a{Facet::Body, body}, b{Facet::Body, other};
+        Event e;
+        e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "contact.missed", e.severity = Severity::Warning;
+        e.component = crowd.detector, e.a = a, e.b = b;
+        e.message = world.id_of(a) + " passed through " + world.id_of(b) +
+                    " within a step, unseen; a resolution that looks inside the step (Resolution/LocalRoot) or shorter steps would find it";
+        e.values = {length(way)};
+        return events.push_back(std::move(e));
+    }
+}
+
+void TunnelWatch::after_step(const Simulation& s, std::vector<Event>& events)
+{
+    const Bodies& bodies = s.world().host().bodies;
+    for (const Crowd& crowd : crowds_)
+        for (const std::uint32_t b : crowd.bodies)
+            if (!crowd.certified && bodies.dynamic(b) && told_[b] == 0 &&
+                length_squared(bodies.position[b] - start_[b].position) > least_width_[b] * least_width_[b])
+                look(s, crowd, b, events);
+    if (!crowds_.empty() && s.stepper().report().deepest > shallow_) look_for_overlaps(s, events);
+}
+
+void TunnelWatch::look_for_overlaps(const Simulation& s, std::vector<Event>& events)
+{
+    const world::World& world = s.world();
+    const Bodies& bodies = world.host().bodies;
+    for (const FoundContact& f : s.stepper().touching())
+    {
+        const Contact& c = f.contact;
+        const Detector& d = s.stepper().detectors()[f.detector];
+        if (d.by_force || (!d.responds && !d.by_rows)) continue;
+        const double one = least_width_[c.a.index], two = least_width_[c.b.index];
+        if (!(c.depth > kDeep * std::min(one > 0 ? one : two, two > 0 ? two : one))) continue;
+        const Ref who = bodies.dynamic(c.a.index) ? c.a : c.b;
+        Sinking& sinking = sinking_[who.index];
+        if (sinking.last == s.tick()) continue;
+        sinking.steps = sinking.last + 1 == s.tick() ? sinking.steps + 1 : 1;
+        sinking.last = s.tick();
+        if (sinking.steps != kDeepSteps) continue;
+        Event e;
+        e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "contact.deep", e.severity = Severity::Warning;
+        e.component = d.component, e.a = c.a, e.b = c.b;
+        e.message = world.id_of(c.a) + " and " + world.id_of(c.b) +
+                    " are sunk into one another, and stay so; more iterations, shorter steps or Manager/Direct may hold them";
+        e.values = {c.depth};
+        events.push_back(std::move(e));
+    }
+}
+
+}  // namespace plab::simulation
