@@ -174,7 +174,7 @@ void responses()
 {
     print_head("Response", {"cube at rest, us"});
     for (const Rung& r : rungs_of("Response"))
-        print_row(r, {cell_of(cost_of(scene(cubes_on_ground(1) + contact("response=\"" + r.name + "\""))))});
+        print_row(r, {cell_of(cost_of(scene(cubes_on_ground(1) + contact("resolution=\"Resolution/None\" response=\"" + r.name + "\""))))});
 }
 
 void managers()
@@ -185,7 +185,8 @@ void managers()
         const auto stack = [&r](int n)
         {
             return scene(cubes_on_ground(n) + "<component id=\"manager\" type=\"" + r.name + "\"/>" +
-                         "<component id=\"contact.response\" type=\"Response/Rows\" manager=\"manager\" friction=\"0.8\"/>" + contact(""));
+                         "<component id=\"contact.response\" type=\"Response/Rows\" manager=\"manager\" friction=\"0.8\"/>" +
+                         contact("resolution=\"Resolution/None\""));
         };
         print_row(r, {cell_of(cost_of(stack(5))), cell_of(cost_of(stack(20)))});
     }
