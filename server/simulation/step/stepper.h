@@ -6,9 +6,9 @@
 
 #include "simulation/contact_forces/contact_forces.h"
 #include "simulation/contacts/contacts.h"
+#include "simulation/groups/system_pool.h"
 #include "simulation/shafts/shaft_reactions.h"
 #include "simulation/sight.h"
-#include "simulation/groups/system_pool.h"
 #include "simulation/step/worker_pool.h"
 
 namespace plab::simulation
@@ -85,6 +85,8 @@ public:
     const Groups& groups() const { return groups_; }
     const ConstraintGraph& graph() const { return graph_; }
     const std::vector<Detector>& detectors() const { return detectors_; }
+    /// m, about the centre of mass, by body: whatever collides is within; infinite for planes.
+    std::span<const double> radius_of_body() const { return radius_of_body_; }
     ContactCache& contacts() { return cache_; }
     const ContactForces& forces() const { return forces_; }
     const ContactCache& contacts() const { return cache_; }

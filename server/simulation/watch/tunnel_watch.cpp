@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "simulation/simulation.h"
 
@@ -144,33 +145,83 @@ bool TunnelWatch::passed(const Simulation& s, std::uint32_t body, std::uint32_t 
                        });
 }
 
-void TunnelWatch::look(const Simulation& s, const Crowd& crowd, std::uint32_t body, std::vector<Event>& events)
+/// Boxes around what the crowd's bodies swept over. False if nobody went far enough to pass through anybody.
+bool TunnelWatch::sweep(const Simulation& s, const Crowd& crowd)
+{
+    const Bodies& bodies = s.world().host().bodies;
+    const std::span<const double> radius = s.stepper().radius_of_body();
+    const auto is_fast = [&](std::uint32_t b)
+    {
+        return bodies.dynamic(b) && told_[b] == 0 &&
+               length_squared(bodies.position[b] - start_[b].position) > least_width_[b] * least_width_[b];
+    };
+    if (std::none_of(crowd.bodies.begin(), crowd.bodies.end(), is_fast)) return false;
+    swept_.clear();
+    for (std::uint32_t place = 0; place < crowd.bodies.size(); ++place)
+    {
+        const std::uint32_t b = crowd.bodies[place];
+        if (!std::isfinite(radius[b])) continue;  // a plane: who gets behind it overlaps it
+        const Vec3 &from = start_[b].position, &to = bodies.position[b], around{radius[b], radius[b], radius[b]};
+        const Vec3 lower{std::min(from.x, to.x), std::min(from.y, to.y), std::min(from.z, to.z)};
+        const Vec3 upper{std::max(from.x, to.x), std::max(from.y, to.y), std::max(from.z, to.z)};
+        swept_.push_back({lower - around, upper + around, place, is_fast(b)});
+    }
+    std::sort(swept_.begin(), swept_.end(),
+              [](const Swept& one, const Swept& two) { return std::tie(one.lower.x, one.place) < std::tie(two.lower.x, two.place); });
+    return true;
+}
+
+/// Sweep and prune along x, then whoever may have met is looked at.
+void TunnelWatch::find_passages(const Simulation& s, const Crowd& crowd)
+{
+    active_.clear(), passages_.clear();
+    const auto look = [&](const Swept& one, const Swept& two)
+    {
+        if (one.fast && passed(s, crowd.bodies[one.place], crowd.bodies[two.place])) passages_.push_back({one.place, two.place});
+    };
+    for (const Swept& item : swept_)
+    {
+        std::erase_if(active_, [&](const Swept* other) { return other->upper.x < item.lower.x; });
+        for (const Swept* other : active_)
+        {
+            const bool apart = other->upper.y < item.lower.y || item.upper.y < other->lower.y || other->upper.z < item.lower.z ||
+                               item.upper.z < other->lower.z;
+            if (apart) continue;
+            look(item, *other);
+            look(*other, item);
+        }
+        active_.push_back(&item);
+    }
+    std::sort(passages_.begin(), passages_.end());
+}
+
+void TunnelWatch::tell(const Simulation& s, const Crowd& crowd, std::vector<Event>& events)
 {
     const world::World& world = s.world();
-    const Vec3 way = world.host().bodies.position[body] - start_[body].position;
-    for (const std::uint32_t other : crowd.bodies)
+    for (const Passage& p : passages_)
     {
-        if (other == body || !passed(s, body, other)) continue;
+        const std::uint32_t body = crowd.bodies[p.body];
+        if (told_[body] != 0) continue;
         told_[body] = 1;
-        const Ref a{Facet::Body, body}, b{Facet::Body, other};
+        const Ref a{Facet::Body, body}, b{Facet::Body, crowd.bodies[p.other]};
         Event e;
         e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "contact.missed", e.severity = Severity::Warning;
         e.component = crowd.detector, e.a = a, e.b = b;
         e.message = world.id_of(a) + " passed through " + world.id_of(b) +
                     " within a step, unseen; a resolution that looks inside the step (Resolution/LocalRoot) or shorter steps would find it";
-        e.values = {length(way)};
-        return events.push_back(std::move(e));
+        e.values = {length(world.host().bodies.position[body] - start_[body].position)};
+        events.push_back(std::move(e));
     }
 }
 
 void TunnelWatch::after_step(const Simulation& s, std::vector<Event>& events)
 {
-    const Bodies& bodies = s.world().host().bodies;
     for (const Crowd& crowd : crowds_)
-        for (const std::uint32_t b : crowd.bodies)
-            if (!crowd.certified && bodies.dynamic(b) && told_[b] == 0 &&
-                length_squared(bodies.position[b] - start_[b].position) > least_width_[b] * least_width_[b])
-                look(s, crowd, b, events);
+    {
+        if (crowd.certified || !sweep(s, crowd)) continue;
+        find_passages(s, crowd);
+        tell(s, crowd, events);
+    }
     if (!crowds_.empty() && s.stepper().report().deepest > shallow_) look_for_overlaps(s, events);
 }
 

@@ -13,6 +13,8 @@
 /// compounds are not tested. Not part of the state: neither saved nor hashed, and it changes nothing.
 #pragma once
 
+#include <compare>
+#include <cstdint>
 #include <vector>
 
 #include "plab/context.h"
@@ -50,8 +52,24 @@ private:
         bool certified = false;  ///< its resolution sees whatever happens inside the step: bodies bounce round one another
     };
 
+    /// What a body swept over in the step, in W, m; of the crowd's place-th body.
+    struct Swept
+    {
+        Vec3 lower, upper;
+        std::uint32_t place = 0;
+        bool fast = false;  ///< went further than it is wide, and nothing was told of it yet
+    };
+    /// Places in the crowd: `body` went through `other`.
+    struct Passage
+    {
+        std::uint32_t body = 0, other = 0;
+        friend auto operator<=>(const Passage&, const Passage&) = default;
+    };
+
     void look_up(const Simulation& s);
-    void look(const Simulation& s, const Crowd& crowd, std::uint32_t body, std::vector<Event>& events);
+    bool sweep(const Simulation& s, const Crowd& crowd);
+    void find_passages(const Simulation& s, const Crowd& crowd);
+    void tell(const Simulation& s, const Crowd& crowd, std::vector<Event>& events);
     void look_for_overlaps(const Simulation& s, std::vector<Event>& events);
     bool passed(const Simulation& s, std::uint32_t body, std::uint32_t other) const;
 
@@ -62,6 +80,10 @@ private:
     std::vector<std::uint8_t> told_;   ///< by body
     std::vector<Sinking> sinking_;     ///< by body
     double shallow_ = 0;               ///< m: no overlap up to here is deep for anybody
+    // Of the crowd that is looked at.
+    std::vector<Swept> swept_;          ///< by lower.x
+    std::vector<const Swept*> active_;  ///< those that x has come to and not left
+    std::vector<Passage> passages_;
 };
 
 }  // namespace plab::simulation
