@@ -178,22 +178,7 @@ void DormandPrinceMemory::fit(std::size_t n)
 
 void DormandPrince54Rows::describe(Schema& schema)
 {
-    schema
-        .param(relative_tolerance, "relative_tolerance", unit::one,
-               "error of an internal step, relative to speeds and to the path within the step")
-        .or_else(1e-9)
-        .positive();
-    schema
-        .param(absolute_tolerance, "absolute_tolerance", unit::one,
-               "error that is always allowed, in m, rad, m/s, rad/s or the quantity's unit")
-        .or_else(1e-12)
-        .positive();
-    schema.param(max_substeps, "max_substeps", unit::one, "internal steps tried within a step before it gives up")
-        .or_else(100000)
-        .at_least(1);
-    schema.output(substeps, "substeps", unit::one, "internal steps in the last step");
-    schema.output(refused, "refused", unit::one, "internal steps that were tried again shorter");
-    schema.output(evaluations, "evaluations", unit::one, "force evaluations in the last step");
+    describe_control(schema);
     schema.scratch(memory, "memory", "working vectors");
 }
 
@@ -205,11 +190,7 @@ DormandPrinceCounts advance_by_dormand_prince(double h, bool trial, const Tolera
 
 void tell_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts)
 {
-    start.emit(row, "solver.gave_up", Severity::Warning,
-               std::to_string(counts.accepted) + " internal steps (" + std::to_string(counts.refused) + " more refused) reached " +
-                   std::to_string(counts.reached) + " s of " + std::to_string(start.dt) +
-                   " s; the group stays as it was there: raise max_substeps, loosen the tolerances, or use Solver/Radau5 if it is stiff",
-               {counts.reached, start.dt});
+    tell_gave_up(start, row, counts, "raise max_substeps, loosen the tolerances, or use Solver/Radau5 if it is stiff");
 }
 
 void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince54Rows& rows, DynamicSystem& system)
@@ -219,7 +200,7 @@ void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince
     const DormandPrinceCounts counts =
         advance_by_dormand_prince(start.dt, is_trial(start), tolerance, rows.max_substeps[row], rows.memory[row], system);
     if (is_trial(start)) return;
-    rows.substeps[row] = counts.accepted, rows.refused[row] = counts.refused, rows.evaluations[row] = counts.evaluations;
+    rows.report(row, counts);
     if (counts.reached < start.dt) tell_dormand_prince_gave_up(start, row, counts);
 }
 

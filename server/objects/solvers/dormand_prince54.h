@@ -17,8 +17,8 @@
 #include <array>
 #include <vector>
 
+#include "error_control.h"
 #include "flat_system.h"
-#include "plab/registrar.h"
 
 namespace plab::solvers
 {
@@ -32,17 +32,10 @@ struct DormandPrinceMemory
     void fit(std::size_t n);
 };
 
-struct DormandPrinceCounts
-{
-    std::int64_t accepted = 0, refused = 0, evaluations = 0;
-    double reached = 0;  ///< s, where the last accepted internal step ended
-};
+using DormandPrinceCounts = SubstepCounts;
 
-struct DormandPrince54Rows
+struct DormandPrince54Rows : ErrorControlRows
 {
-    Column<double> relative_tolerance, absolute_tolerance;
-    Column<std::int64_t> max_substeps;
-    Column<std::int64_t> substeps, refused, evaluations;
     Column<DormandPrinceMemory> memory;
 
     void describe(Schema& schema);

@@ -175,22 +175,7 @@ void Radau5Memory::fit(std::size_t n)
 
 void Radau5Rows::describe(Schema& schema)
 {
-    schema
-        .param(relative_tolerance, "relative_tolerance", unit::one,
-               "error of an internal step, relative to speeds and to the path within the step")
-        .or_else(1e-9)
-        .positive();
-    schema
-        .param(absolute_tolerance, "absolute_tolerance", unit::one,
-               "error that is always allowed, in m, rad, m/s, rad/s or the quantity's unit")
-        .or_else(1e-12)
-        .positive();
-    schema.param(max_substeps, "max_substeps", unit::one, "internal steps tried within a step before it gives up")
-        .or_else(100000)
-        .at_least(1);
-    schema.output(substeps, "substeps", unit::one, "internal steps in the last step");
-    schema.output(refused, "refused", unit::one, "internal steps that were tried again shorter");
-    schema.output(evaluations, "evaluations", unit::one, "force evaluations in the last step");
+    describe_control(schema);
     schema.output(factorisations, "factorisations", unit::one, "pairs of linear systems that were factorised in the last step");
     schema.state(told_size, "told_size", unit::one, "an event told that the group is large");
     schema.scratch(memory, "memory", "working vectors and matrices");
@@ -204,11 +189,7 @@ Radau5Counts advance_by_radau(double h, bool trial, const Tolerance& tolerance, 
 
 void tell_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts)
 {
-    start.emit(row, "solver.gave_up", Severity::Warning,
-               std::to_string(counts.accepted) + " internal steps (" + std::to_string(counts.refused) + " more refused) reached " +
-                   std::to_string(counts.reached) + " s of " + std::to_string(start.dt) +
-                   " s; the group stays as it was there: raise max_substeps or loosen the tolerances",
-               {counts.reached, start.dt});
+    tell_gave_up(start, row, counts, "raise max_substeps or loosen the tolerances");
 }
 
 namespace
@@ -238,8 +219,8 @@ void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, Dynam
     const Radau5Counts counts = advance_by_radau(start.dt, is_trial(start), tolerance, rows.max_substeps[row], rows.memory[row], system);
     if (is_trial(start)) return;
     tell_size(start, row, rows, FlatSystem(system).size());
-    rows.substeps[row] = counts.accepted, rows.refused[row] = counts.refused;
-    rows.evaluations[row] = counts.evaluations, rows.factorisations[row] = counts.factorisations;
+    rows.report(row, counts);
+    rows.factorisations[row] = counts.factorisations;
     if (counts.reached < start.dt) tell_radau_gave_up(start, row, counts);
 }
 

@@ -16,8 +16,8 @@
 /// Source: Hairer, Wanner, Solving ordinary differential equations II, section IV.8; the program RADAU5.
 #pragma once
 
+#include "error_control.h"
 #include "jacobian.h"
-#include "plab/registrar.h"
 
 namespace plab::solvers
 {
@@ -35,17 +35,14 @@ struct Radau5Memory
     void fit(std::size_t n);
 };
 
-struct Radau5Counts
+struct Radau5Counts : SubstepCounts
 {
-    std::int64_t accepted = 0, refused = 0, evaluations = 0, factorisations = 0;
-    double reached = 0;  ///< s
+    std::int64_t factorisations = 0;
 };
 
-struct Radau5Rows
+struct Radau5Rows : ErrorControlRows
 {
-    Column<double> relative_tolerance, absolute_tolerance;
-    Column<std::int64_t> max_substeps;
-    Column<std::int64_t> substeps, refused, evaluations, factorisations;
+    Column<std::int64_t> factorisations;
     Column<bool> told_size;
     Column<Radau5Memory> memory;
 
