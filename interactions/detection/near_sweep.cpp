@@ -11,6 +11,7 @@ void NearSweep::reset(std::size_t parts)
     boxes_.assign(parts, {{1, 1, 1}, {-1, -1, -1}});
     asked_.assign(parts, 0);
     half_spaces_.clear();
+    pairs_.reserve(parts);
     order_.clear();
     for (std::uint32_t i = 0; i < parts; ++i) order_.push_back(i);
 }

@@ -124,7 +124,7 @@ void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const Contact
         m.end_shape = static_cast<std::uint32_t>(body_shapes_.size());
     }
     broad_.reset(space_, parts_.size());
-    sweep_.reset(parts_.size());
+    sweep_.reset(parts_.size()), near_.reserve(parts_.size());
     for (const Part& part : parts_) broad_.add(colliders_[part.collider], part.member, members_[part.member].membership);
 }
 

@@ -26,6 +26,16 @@ void ContactForces::rebuild()
     scratch_.bind(host.bodies, host.shafts);
     scratch_.force.assign(host.bodies.size(), {}), scratch_.torque.assign(host.bodies.size(), {});
     for (auto& sums : sums_) sums.assign(host.bodies.size(), 0.0);
+    make_room();
+}
+
+/// Where few bodies are near one another, their number changes without a step that asks for memory.
+void ContactForces::make_room()
+{
+    constexpr std::size_t kRoom = 32;
+    near_.reserve(kRoom), near_found_.reserve(kRoom);
+    islands_.resize(std::max(islands_.size(), std::min(kRoom, s_->groups_.all.size())));
+    for (Island& island : islands_) island.groups.reserve(kRoom), island.shadows.reserve(kRoom);
 }
 
 bool ContactForces::dynamic(Ref r) const { return s_->world_.host().bodies.dynamic(r.index); }

@@ -105,6 +105,7 @@ private:
     // contact_forces.cpp
     void transfer(const ForceState& from, ForceState& to, std::uint32_t group);
     bool touches(Ref a, Ref b, std::uint32_t group) const;
+    void make_room();
     void look_near(double h);
     void fill_reach(double h);
     bool within_reach(std::span<const std::uint32_t> groups, double h) const;
