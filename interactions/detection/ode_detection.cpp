@@ -47,9 +47,11 @@ Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bo
     if (!start_ode()) return reason("the ODE library did not start");
     auto& scene = rows.scene[row];
     if (!scene) scene = std::make_unique<OdeScene>();
-    if (scene->update(context, rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink)) report_complaints(context, row, *scene);
+    if (scene->update(context, rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink))
+        report_complaints(context, row, *scene);
     scene->detect(context, bodies, sink);
-    rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());
+    if (!sink.reach().empty()) return {};  // who is near was asked, nobody looked for contacts
+    if (!sink.only_standing()) rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());
     rows.penetration[row] = scene->penetration();
     return {};
 }

@@ -84,17 +84,17 @@ void Account::describe(Schema& s)
     s.output(iterations, "iterations", unit::one, "sweeps, sub-steps' sweeps or Newton steps in the last step");
     s.output(contacts, "contacts", unit::one, "contact points in the last step");
     s.output(fallbacks, "fallbacks", unit::one, "islands that another algorithm had to finish in the last step");
-    s.scratch(memory, "account", "whether the last step converged");
+    s.output(step, "step", unit::one, "the step that these figures are of; -1: none yet").or_else(-1);
+    s.output(last_failure, "last_failure", unit::one, "the last step that did not converge; -1: none. An event tells of the first in a row")
+        .or_else(-1);
 }
 
 void Account::add(const StepContext& context, Row row, const Island& island, double tolerance)
 {
     if (!context.events) return;
-    Memory& m = memory[row];
-    if (m.tick != context.tick)
+    if (step[row] != context.tick)
     {
-        m.failing = m.failing_now && m.tick + 1 == context.tick;
-        m.tick = context.tick, m.failing_now = false;
+        step[row] = context.tick;
         iterations[row] = contacts[row] = fallbacks[row] = 0, residual[row] = 0;
     }
     iterations[row] += island.iterations;
@@ -102,12 +102,13 @@ void Account::add(const StepContext& context, Row row, const Island& island, dou
     fallbacks[row] += island.fell_back ? 1 : 0;
     residual[row] = std::max(residual[row], island.residual);
     if (island.converged) return;
-    if (!m.failing && !m.failing_now)
+    const bool told = last_failure[row] >= 0 && last_failure[row] + 1 >= context.tick;
+    if (!told)
         context.emit(row, "manager.not_converged", Severity::Info,
                      "contacts are left " + std::to_string(island.residual) + " m/s from what they ask for, " + std::to_string(tolerance) +
                          " would do; allow more iterations, or take a smaller dt or a more exact manager",
                      {island.residual, tolerance});
-    m.failing_now = true;
+    last_failure[row] = context.tick;
 }
 
 void SequentialRows::describe(Schema& s)

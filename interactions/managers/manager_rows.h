@@ -17,16 +17,9 @@ struct Account
 {
     Column<std::int64_t> iterations, contacts, fallbacks;
     Column<double> residual;  // m/s
+    Column<Tick> step, last_failure;
 
     void describe(Schema& schema);
-
-    struct Memory
-    {
-        Tick tick = -1;
-        bool failing = false;  ///< did not converge in the step before
-        bool failing_now = false;
-    };
-    Column<Memory> memory;
 
     /// Trials leave no trace: they have nobody to tell events to.
     void add(const StepContext& context, Row row, const Island& island, double tolerance);

@@ -51,8 +51,8 @@ public:
             sweep_points(true), sweep_lines(true);
             write();
             if (bounces_) count_way();
+            follow_points();
             island_.motion->move(h_);
-            turn_arms();
             for (int i = 0; i < choices_.relax_iterations; ++i) sweep_lines(false), sweep_points(false);
             write();
             const int more = calm();
@@ -69,7 +69,7 @@ private:
     void start();
     void kick();
     void write();
-    void turn_arms();
+    void follow_points();
     void sweep_points(bool soft);
     void sweep_lines(bool soft);
     int calm();
@@ -79,7 +79,6 @@ private:
     double bounce(double share);
     void give_back();
     void finish(Verdict& out);
-    double depth_now(std::size_t i) const;
 
     Island& island_;
     Bodies& bodies_;
@@ -97,18 +96,8 @@ void SoftIsland::start()
 {
     problem_.load(island_, bodies_, shafts_);
     problem_.scale_impulses(1.0 / choices_.substeps);
-    memory_.anchor_a.clear(), memory_.anchor_b.clear(), memory_.depth.clear();
-    for (std::size_t i = 0; i < problem_.points.size(); ++i)
-    {
-        memory_.anchor_a.push_back(problem_.points[i].r_a), memory_.anchor_b.push_back(problem_.points[i].r_b);
-        memory_.depth.push_back(island_.contacts[i].depth);
-    }
-    memory_.start_position.clear(), memory_.start_orientation.clear();
-    for (const Anchor& m : problem_.anchors)
-    {
-        memory_.start_position.push_back(m.shaft ? Vec3{} : bodies_.position[m.host]);
-        memory_.start_orientation.push_back(m.shaft ? Quat{} : bodies_.orientation[m.host]);
-    }
+    memory_.depth.clear();
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth.push_back(island_.contacts[i].depth);
     memory_.greatest.assign(problem_.points.size(), 0.0);
     memory_.sum.assign(problem_.points.size(), Vec3{});
     memory_.line_sum.assign(problem_.lines.size(), 0.0);
@@ -163,30 +152,11 @@ void SoftIsland::write()
     problem_.write_speeds(bodies_, shafts_);
 }
 
-void SoftIsland::turn_arms()
+/// Depths after the way that comes. Contact points stay where they were found, seen from the centres of mass: what is round
+/// touches with another point of it when it has turned, and a point that turned with it would seem to rise.
+void SoftIsland::follow_points()
 {
-    for (std::size_t i = 0; i < problem_.points.size(); ++i)
-    {
-        Point& p = problem_.points[i];
-        const auto turned = [&](std::uint32_t mover, const Vec3& arm)
-        {
-            if (mover == kNoIndex) return arm;
-            const Quat turn = bodies_.orientation[problem_.anchors[mover].host] * conjugate(memory_.start_orientation[mover]);
-            return rotate(turn, arm);
-        };
-        p.r_a = turned(p.a, memory_.anchor_a[i]), p.r_b = turned(p.b, memory_.anchor_b[i]);
-    }
-}
-
-double SoftIsland::depth_now(std::size_t i) const
-{
-    const Point& p = problem_.points[i];
-    Vec3 moved;
-    if (p.b != kNoIndex)
-        moved += bodies_.position[problem_.anchors[p.b].host] - memory_.start_position[p.b] + (p.r_b - memory_.anchor_b[i]);
-    if (p.a != kNoIndex)
-        moved -= bodies_.position[problem_.anchors[p.a].host] - memory_.start_position[p.a] + (p.r_a - memory_.anchor_a[i]);
-    return memory_.depth[i] - dot(p.n, moved);
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth[i] -= h_ * problem_.slip(problem_.points[i]).z;
 }
 
 void SoftIsland::sweep_points(bool soft)
@@ -196,7 +166,7 @@ void SoftIsland::sweep_points(bool soft)
         Point& p = problem_.points[i];
         if (!(p.K(2, 2) > 0)) continue;
         const Softness& how = p.a == kNoIndex || p.b == kNoIndex ? against_fixed_ : soft_;
-        const double depth = depth_now(i);
+        const double depth = memory_.depth[i];
         double bias = 0, mass_share = 1, impulse_share = 0;
         if (depth < 0)
             bias = -depth * rate_;
@@ -241,7 +211,7 @@ void SoftIsland::gather()
 int SoftIsland::calm()
 {
     constexpr int kSweeps = 2;
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, depth_now(i)) * rate_;
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
     if (!makes_energy(problem_)) return 0;
     const Swept done = sweep(problem_, {kSweeps, 0, 1});
     problem_.apply_impulses();
@@ -309,7 +279,7 @@ void SoftIsland::finish(Verdict& out)
 
         c.impulse = p.t1 * j.x + p.t2 * j.y + p.n * j.z;
         c.slip = std::hypot(u.x, u.y);
-        if (p.impulse.z == 0 && p.K(2, 2) > 0 && depth_now(i) >= 0) out.residual = std::max(out.residual, -u.z);
+        if (p.impulse.z == 0 && p.K(2, 2) > 0 && memory_.depth[i] >= 0) out.residual = std::max(out.residual, -u.z);
     }
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {

@@ -34,10 +34,7 @@ struct SoftChoices
 struct SoftMemory
 {
     StepMemory step;
-    std::vector<Vec3> anchor_a, anchor_b;  ///< m: contact points seen from the centres of mass at the start, W
-    std::vector<Vec3> start_position;
-    std::vector<Quat> start_orientation;
-    std::vector<double> depth;     ///< m, at the start
+    std::vector<double> depth;     ///< m, of the contact points as they go
     std::vector<double> greatest;  ///< N s, largest normal impulse of a sub-step
     std::vector<Vec3> sum;         ///< N s, over the step
     std::vector<double> line_sum;

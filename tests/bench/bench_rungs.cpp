@@ -6,17 +6,16 @@
 // of 1/240 s, one thread, no bus.
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "blueprint/reader.h"
-#include "model/compile.h"
-#include "plugins/library.h"
 #include "simulation/clock.h"
-#include "simulation/simulation.h"
+#include "support/load.h"
 
 using namespace plab;
+using plab::test::library;
+using plab::test::load_text;
+using plab::test::whole_scene;
 
 namespace
 {
@@ -24,30 +23,13 @@ namespace
 constexpr int kRuns = 5;
 constexpr int kSteps = 1200;  // 5 s
 
-plugins::PluginLibrary& library()
-{
-    static plugins::PluginLibrary instance({PLAB_BINARY_DIR "/lib/plab"});
-    return instance;
-}
-
-Result<std::unique_ptr<simulation::Simulation>> load(const std::string& text)
-{
-    const auto blueprint = blueprint::read_blueprint(text, "rung.xml");
-    if (!blueprint) return blueprint.errors();
-    const auto scene = model::compile(*blueprint, library());
-    if (!scene) return scene.errors();
-    auto simulation = std::make_unique<simulation::Simulation>(library());
-    if (auto loaded = simulation->load(*scene); !loaded) return loaded.errors();
-    return simulation;
-}
-
 /// us per step.
 Result<double> cost_of(const std::string& text)
 {
     double least = 1e300;
     for (int run = 0; run < kRuns; ++run)
     {
-        auto simulation = load(text);
+        auto simulation = load_text(text, "rung.xml");
         if (!simulation) return simulation.errors();
         const std::uint64_t before = simulation::now_ns();
         for (int i = 0; i < kSteps; ++i) (*simulation)->step();
@@ -73,10 +55,7 @@ std::string cell_of(const Result<double>& cost)
 
 const std::string kGravity = "<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\"/>";
 
-std::string scene(const std::string& body, const std::string& settings = "")
-{
-    return "<plab version=\"1\"><scene dt=\"1/240\" " + settings + "/>" + body + "</plab>";
-}
+std::string scene(const std::string& body, const std::string& settings = "") { return whole_scene(body, "dt=\"1/240\" " + settings); }
 
 std::string body(const std::string& id, const std::string& where, const std::string& more = "")
 {

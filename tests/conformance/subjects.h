@@ -32,13 +32,6 @@ model::ComponentNode& subject_node(model::Blueprint& blueprint);
 /// The same scene four times, 100 m apart.
 model::Blueprint repeated(const Subject& subject);
 
-/// Why something was refused; empty if it was not.
-template <class T>
-std::string reasons(const Result<T>& result)
-{
-    return result.ok() ? std::string() : first_error(result.errors());
-}
-
 /// The scene compiled; a scene that does not compile fails the test.
 model::SceneSpec compiled(const model::Blueprint& blueprint, model::TypeSource& types = library());
 /// The scene loaded; one that does not load fails the test.

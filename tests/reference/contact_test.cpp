@@ -1,16 +1,15 @@
 // Impacts and resting contact against closed forms. C1.. as in the catalogue of reference problems.
+#include "support/ground.h"
 #include "support/scene.h"
 
 using namespace plab;
 using plab::test::distance;
+using plab::test::kGround;
 using plab::test::near;
 using plab::test::Scene;
 
 namespace
 {
-
-const char* const kGround =
-    "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>";
 
 std::string contact(const std::string& between, const std::string& resolution, const std::string& restitution,
                     const std::string& friction = "0")

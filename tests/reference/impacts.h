@@ -1,39 +1,29 @@
 /// Scenes of impacts, from blueprint text.
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "support/ground.h"
 #include "support/scene.h"
+#include "support/text.h"
 
 namespace plab::test
 {
 
-inline const char* const kGround =
-    "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>";
-
-inline std::string number(double x)
-{
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", x);
-    return text;
-}
-inline std::string numbers(const Vec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
-
 inline std::string sphere(const std::string& id, double radius, const std::string& attributes, const char* state = "RigidBody")
 {
-    return "<component id=\"" + id + ".shape\" type=\"Shape/Sphere\" radius=\"" + number(radius) + "\"/><component id=\"" + id +
+    return "<component id=\"" + id + ".shape\" type=\"Shape/Sphere\" radius=\"" + text(radius) + "\"/><component id=\"" + id +
            "\" type=\"State/" + state + "\" shape=\"" + id + ".shape\" " + attributes + "/>";
 }
 inline std::string box(const std::string& id, const Vec3& half, const std::string& attributes, const char* state = "RigidBody")
 {
-    return "<component id=\"" + id + ".shape\" type=\"Shape/Box\" half_extents=\"" + numbers(half) + "\"/><component id=\"" + id +
+    return "<component id=\"" + id + ".shape\" type=\"Shape/Box\" half_extents=\"" + text(half) + "\"/><component id=\"" + id +
            "\" type=\"State/" + state + "\" shape=\"" + id + ".shape\" " + attributes + "/>";
 }
 inline std::string at(const Vec3& p, const Vec3& v = {}, double mass = 1)
 {
-    return "mass=\"" + number(mass) + "\" position=\"" + numbers(p) + "\" linear_velocity=\"" + numbers(v) + "\"";
+    return "mass=\"" + text(mass) + "\" position=\"" + text(p) + "\" linear_velocity=\"" + text(v) + "\"";
 }
 inline std::string gravity(const std::string& between)
 {
@@ -41,7 +31,7 @@ inline std::string gravity(const std::string& between)
 }
 inline std::string gravity(const std::string& between, const Vec3& g)
 {
-    return "<component id=\"g\" type=\"Field/Gravity\" between=\"" + between + "\" acceleration=\"" + numbers(g) + "\"/>";
+    return "<component id=\"g\" type=\"Field/Gravity\" between=\"" + between + "\" acceleration=\"" + text(g) + "\"/>";
 }
 inline std::string contact(const std::string& between, const std::string& resolution, const std::string& restitution,
                            const std::string& more = "")
@@ -75,8 +65,8 @@ inline std::string contact(const std::string& between, const Rung& rung, double 
                            const std::string& more = "")
 {
     return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + rung.resolution +
-           "\" response=\"Response/" + rung.response + "\" response.restitution=\"" + number(restitution) + "\" response.friction=\"" +
-           number(friction) + "\"" + (rung.rows() ? std::string(" response.manager=\"Manager/") + rung.manager + "\"" : "") + " " + more +
+           "\" response=\"Response/" + rung.response + "\" response.restitution=\"" + text(restitution) + "\" response.friction=\"" +
+           text(friction) + "\"" + (rung.rows() ? std::string(" response.manager=\"Manager/") + rung.manager + "\"" : "") + " " + more +
            "/>";
 }
 inline std::string sensor(const std::string& between, const std::string& resolution, const std::string& against = "")

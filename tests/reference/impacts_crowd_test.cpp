@@ -12,8 +12,7 @@ namespace
 
 std::string wall(const std::string& id, const Vec3& p, const std::string& turn)
 {
-    return "<component id=\"" + id + "\" type=\"State/Static\" shape=\"floor\" position=\"" + numbers(p) + "\" orientation=\"" + turn +
-           "\"/>";
+    return "<component id=\"" + id + "\" type=\"State/Static\" shape=\"floor\" position=\"" + text(p) + "\" orientation=\"" + turn + "\"/>";
 }
 
 /// A room of 2 m with `n` bodies that fly and spin.
@@ -33,7 +32,7 @@ std::string room(int n, bool boxes, double speed, double spin, std::uint64_t see
         const Vec3 p{-0.75 + 0.5 * (i % 4), -0.75 + 0.5 * (i / 4 % 4), -0.75 + 0.5 * (i / 16)};
         const double vx = uniform(-speed, speed), vy = uniform(-speed, speed), vz = uniform(-speed, speed);
         const double wx = uniform(-spin, spin), wy = uniform(-spin, spin), wz = uniform(-spin, spin);
-        const std::string motion = at(p, {vx, vy, vz}) + " solver=\"exact\" angular_velocity=\"" + numbers({wx, wy, wz}) + "\"";
+        const std::string motion = at(p, {vx, vy, vz}) + " solver=\"exact\" angular_velocity=\"" + text(Vec3{wx, wy, wz}) + "\"";
         const double size = uniform(0.05, 0.15);
         out += boxes && i % 2 == 0 ? box(id, {size, 0.6 * size, 0.3 * size}, motion) : sphere(id, size, motion);
         all += id + " ";

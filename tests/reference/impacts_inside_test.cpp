@@ -20,7 +20,7 @@ TEST_CASE("C10: a bullet of 1 mm at 1000 m/s meets paper of 0.1 mm, 16.7 m per s
     {
         CAPTURE(resolution);
         Scene s(sphere("bullet", 1e-3, at({0, 0, 0}, {1000, 0, 0}, 1e-3)) +
-                    box("paper", {5e-5, 1, 1}, "position=\"" + numbers({1.2345 + 5e-5, 0, 0}) + "\"", "Static") +
+                    box("paper", {5e-5, 1, 1}, "position=\"" + text(Vec3{1.2345 + 5e-5, 0, 0}) + "\"", "Static") +
                     contact("bullet paper", resolution, "0.5"),
                 "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -40,7 +40,7 @@ TEST_CASE("C10: a thousand sheets in one step are met in order, each at its time
     for (int i = 0; i < 1000; ++i)
     {
         const std::string id = "s" + std::to_string(10000 + (i * 617) % 1000);  // ids in another order than places
-        sheets += box(id, {5e-5, 1, 1}, "position=\"" + numbers({1 + 1e-3 * i + 5e-5, 0, 0}) + "\"", "Static");
+        sheets += box(id, {5e-5, 1, 1}, "position=\"" + text(Vec3{1 + 1e-3 * i + 5e-5, 0, 0}) + "\"", "Static");
         all += id + " ";
     }
     Scene s(sphere("bullet", 1e-3, at({0, 0, 0}, {1000, 0, 0}, 1e-3)) + sheets + sensor("bullet", "LocalRoot", all), "dt=\"1/60\"");
@@ -137,7 +137,7 @@ TEST_CASE("a ball thrown up touches a ceiling at the top of its way")
     {
         CAPTURE(over);
         Scene s(sphere("ball", 0.1, at({0, 0, 0}, {0, 0, v})) +
-                    "<component id=\"ceiling\" type=\"State/Static\" shape=\"roof\" position=\"" + numbers({0, 0, 0.1 + top - over}) +
+                    "<component id=\"ceiling\" type=\"State/Static\" shape=\"roof\" position=\"" + text(Vec3{0, 0, 0.1 + top - over}) +
                     "\" orientation=\"0 1 0 0\"/><component id=\"roof\" type=\"Shape/Plane\"/>" + gravity("ball") +
                     contact("ball ceiling", "LocalRoot", "1"),
                 "dt=\"1/10\"");

@@ -112,7 +112,7 @@ TEST_CASE("C3: the end of a rod hits an edge: a quarter of its mass answers")
                 "<component id=\"rod.shape\" type=\"Shape/Box\" half_extents=\"0.5 0.001 0.001\"/>"
                 "<component id=\"rod\" type=\"State/RigidBody\" inertia=\"1e-3 0.083333333333333333 0.083333333333333333\" "
                 "shape=\"rod.shape\" " +
-                    at({0, 0, 0.5}, {0, 0, -1}) + "/>" + sphere("edge", 0.1, "position=\"" + numbers({arm, 0, 0}) + "\"", "Static") +
+                    at({0, 0, 0.5}, {0, 0, -1}) + "/>" + sphere("edge", 0.1, "position=\"" + text(Vec3{arm, 0, 0}) + "\"", "Static") +
                     contact("rod edge", rung, e),
                 "dt=\"1/60\"");
             REQUIRE_MESSAGE(s.loaded(), s.error());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "support/scene.h"
+#include "support/text.h"
 
 namespace plab::test
 {
@@ -31,17 +32,11 @@ inline Vec3 body_spin(const Scene& s, const std::string& body)
 /// m x'' = -k x - c x' along x; the spring hangs so far away that its length is never 0.
 inline std::string spring_scene(const SolverRung& rung, double k, double c, double start = 1)
 {
-    const auto number = [](double v)
-    {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.17g", v);
-        return std::string(text);
-    };
-    return solver(rung) + "<component id=\"mass\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"" + number(start) +
+    return solver(rung) + "<component id=\"mass\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"" + text(start) +
            " 0 0\"/><component id=\"spring\" type=\"Constraint/SpringDamper\" b=\"mass\" anchor_a=\"-2 0 0\" anchor_b=\"0 0 0\" "
            "length=\"2\""
            " stiffness=\"" +
-           number(k) + "\" damping=\"" + number(c) + "\"/>";
+           text(k) + "\" damping=\"" + text(c) + "\"/>";
 }
 
 }  // namespace plab::test

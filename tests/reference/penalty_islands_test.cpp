@@ -1,17 +1,17 @@
 // Contacts that are springs among other things: joints, bodies that move as told, hard contacts, rewinding, several threads.
 #include <numbers>
 
+#include "support/ground.h"
 #include "support/scene.h"
 
 using namespace plab;
+using plab::test::kGround;
 using plab::test::near;
 using plab::test::Scene;
 
 namespace
 {
 
-const char* const kGround =
-    "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>";
 const char* const kGravity = "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>";
 constexpr double kG = 9.81;
 

@@ -105,11 +105,7 @@ TEST_CASE("a heavy load on Hunt and Crossley's law with no rebound settles, in a
 
 TEST_CASE("stiction remembers: a block on a slope of 30 degrees stays where it is")
 {
-    Scene s(gravity("4.905 0 -8.495709211125344") + solid("a", "Box' half_extents='0.2 0.2 0.1'", 1, {0, 0, 0.1}) +
-                ground_and_contact("None", "Penalty",
-                                   "response.stiffness='2e3' response.damping_ratio='1' response.tangential_damping_ratio='1' "
-                                   "response.friction='0.6' response.steps_per_contact='20'"),
-            dt(60));
+    Scene s = block_on_a_slope();
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = true;
     s.run(4);

@@ -1,26 +1,21 @@
 // Contacts that are springs, against closed forms. B2, C14 as in the catalogue of reference problems.
 #include <numbers>
 
+#include "support/ground.h"
 #include "support/scene.h"
+#include "support/text.h"
 
 using namespace plab;
+using plab::test::kGround;
 using plab::test::near;
 using plab::test::Scene;
+using plab::test::text;
 
 namespace
 {
 
-const char* const kGround =
-    "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>";
 const char* const kGravity = "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>";
 constexpr double kG = 9.81;
-
-std::string number(double x)
-{
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", x);
-    return text;
-}
 
 std::string contact(const std::string& between, const std::string& response)
 {
@@ -33,12 +28,12 @@ std::string ball(const std::string& id, const std::string& attributes)
            "\" type=\"State/RigidBody\" shape=\"" + id + ".shape\" " + attributes + "/>";
 }
 
-std::string penalty(double k, const std::string& more = "") { return "Penalty\" response.stiffness=\"" + number(k) + "\"" + more; }
+std::string penalty(double k, const std::string& more = "") { return "Penalty\" response.stiffness=\"" + text(k) + "\"" + more; }
 
 /// A ball of 1 kg that comes down on a floor with 1 m/s, `away` above it.
 std::string bounce(double away, const std::string& response)
 {
-    return kGround + ball("a", "mass=\"1\" linear_velocity=\"0 0 -1\" position=\"0 0 " + number(0.1 + away) + "\"") +
+    return kGround + ball("a", "mass=\"1\" linear_velocity=\"0 0 -1\" position=\"0 0 " + text(0.1 + away) + "\"") +
            contact("a ground", response);
 }
 
@@ -56,7 +51,7 @@ TEST_CASE("B2: a ball bounces on a linear spring, |e - 1| <= 1e-9 for any stiffn
                 CAPTURE(k);
                 CAPTURE(h);
                 CAPTURE(phase);
-                Scene s(bounce((1 + phase) * h, penalty(k)), "dt=\"" + number(h) + "\"");
+                Scene s(bounce((1 + phase) * h, penalty(k)), "dt=\"" + text(h) + "\"");
                 REQUIRE_MESSAGE(s.loaded(), s.error());
                 s.keep_events = true;
                 s.step(static_cast<std::int64_t>(std::ceil(half / h)) + 4);
@@ -165,7 +160,7 @@ TEST_CASE("Hertz: two balls part after 2.9432 (x_m / v), and have pushed as deep
     const double k = 1e8, m = 0.5, v = 2, deepest = std::pow(1.25 * m * v * v / k, 0.4), time = 2.9432749960 * deepest / v;
     Scene s(ball("a", "mass=\"1\" position=\"-0.101 0 0\" linear_velocity=\"1 0 0\"") +
                 ball("b", "mass=\"1\" position=\"0.101 0 0\" linear_velocity=\"-1 0 0\"") +
-                contact("a b", "HuntCrossley\" response.stiffness=\"" + number(k) + "\"") +
+                contact("a b", "HuntCrossley\" response.stiffness=\"" + text(k) + "\"") +
                 "<component id=\"solver\" type=\"Solver/RungeKutta4\"/>",
             "dt=\"1/100\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -187,11 +182,10 @@ TEST_CASE("restitution is what was asked for, whatever the law and the speed")
                 CAPTURE(law);
                 CAPTURE(e);
                 CAPTURE(v);
-                Scene s(
-                    kGround +
-                        ball("a", "mass=\"1\" linear_velocity=\"0 0 " + number(-v) + "\" position=\"0 0 " + number(0.1 + v / 50) + "\"") +
-                        contact("a ground", law + (" response.restitution=\"" + number(e) + "\"")),
-                    "dt=\"1/60\"");
+                Scene s(kGround +
+                            ball("a", "mass=\"1\" linear_velocity=\"0 0 " + text(-v) + "\" position=\"0 0 " + text(0.1 + v / 50) + "\"") +
+                            contact("a ground", law + (" response.restitution=\"" + text(e) + "\"")),
+                        "dt=\"1/60\"");
                 REQUIRE_MESSAGE(s.loaded(), s.error());
                 s.run(0.5);
                 CHECK(std::fabs(s.vec("a", "linear_velocity").z / v - e) <= 1e-6);
@@ -279,7 +273,7 @@ TEST_CASE("fast and thin: nothing passes through unseen")
     for (const double v : {10.0, 1e3, 1e4})
     {
         CAPTURE(v);
-        Scene s(ball("a", "mass=\"1\" position=\"0 0 3\" linear_velocity=\"0 0 " + number(-v) + "\"") +
+        Scene s(ball("a", "mass=\"1\" position=\"0 0 3\" linear_velocity=\"0 0 " + text(-v) + "\"") +
                     "<component id=\"plate.shape\" type=\"Shape/Box\" half_extents=\"1 1 0.05\"/>"
                     "<component id=\"plate\" type=\"State/Static\" shape=\"plate.shape\"/>" +
                     contact("a plate", penalty(1e12)),
@@ -310,7 +304,7 @@ TEST_CASE("many at once: a heap of damped balls settles and stays together")
     {
         const std::string id = "s" + std::to_string(i);
         const double x = 0.21 * (i % 3) + 1e-3 * ((i * 7) % 5), y = 0.21 * (i / 3 % 3) + 1e-3 * ((i * 3) % 4), z = 0.101 + 0.21 * (i / 9);
-        scene += ball(id, "mass=\"1\" position=\"" + number(x) + " " + number(y) + " " + number(z) + "\"");
+        scene += ball(id, "mass=\"1\" position=\"" + text(x) + " " + text(y) + " " + text(z) + "\"");
         who += " " + id;
     }
     Scene s(scene + contact(who, penalty(1e4, " response.restitution=\"0\" response.steps_per_contact=\"20\"")), "dt=\"1/60\"");

@@ -9,12 +9,18 @@
 //
 // | problem | rung                                    | bound                                                               |
 // |---------|-----------------------------------------|---------------------------------------------------------------------|
-// | C23     | impact alone, all that locate           | w'/w to 1e-6 (started 1e-7 rad ahead of it)                         |
+// | C23     | impact alone, all that locate           | w'/w to 6e-8 (started 1e-7 rad ahead of it: the arms are off by it) |
 // |         | quarter period, located + Impulse       | .15 h: an edge that stands is stepped with order 1 (asserted)       |
-// |         | located + Rows                          | .45 h                                                               |
-// |         | None + Impulse; None, Speculative + Rows| 1.15 h; 3 h: a step late, and the edge trembles                     |
-// | C24     | located + Impulse; None + Rows          | fixed point to 12 h rad/s (order 1), contraction .5 -+ .1 at h = .001 |
-// |         | Speculative, LocalRoot + Rows           | 0.1 rad/s: a spoke's two corners may come down one step apart        |
+// |         | located + Rows                          | .45 h: the edge trembles                                            |
+// |         | None, Speculative + either              | 1.15 h: .15 h, found at the end of a step                           |
+// | C24     | located + Impulse                       | fixed point to 12 h rad/s, contraction .5 -+ .035 at h = .001       |
+// |         | None + Rows                             | fixed point to 6 h rad/s                                            |
+// |         | Speculative, LocalRoot + Rows           | 12 h for the largest spin of a walking step; a spoke's two corners  |
+// |         |                                         | may come down one step apart, and between them it dips by 0.1 rad/s |
+//
+// Why 12 h: a stance loses 2.5 h J by its steps of order 1 (measured), 2.3 h rad/s of the fixed point. A corner that comes down is of
+// the pair that stands, so it is not located but met ahead of its step, up to h early: 3.1 h rad/s, twice that at the fixed point (what is
+// off halves from step to step). And the spin is seen at the step's end, up to 3 h rad/s later. In all 11.5 h; reached 10.7 h.
 //
 // Aims not reached: the fixed point to more digits. Standing contacts are held at the level of speeds, with order 1.
 #include <algorithm>
@@ -35,11 +41,11 @@ constexpr double kAlpha = 0.2, kQuarter = .48608973195735393546;
 std::string block(double tilt, double spin, double under, const Rung& rung)
 {
     const Vec3 arm{-std::sin(kAlpha - tilt), 0, std::cos(kAlpha - tilt)};
-    const std::string attitude = " orientation=\"" + number(std::cos(tilt / 2)) + " 0 " + number(std::sin(tilt / 2)) + " 0\"";
-    const std::string turning = " angular_velocity=\"0 " + number(-spin) + " 0\"";
+    const std::string attitude = " orientation=\"" + text(std::cos(tilt / 2)) + " 0 " + text(std::sin(tilt / 2)) + " 0\"";
+    const std::string turning = " angular_velocity=\"0 " + text(-spin) + " 0\"";
     const double left = -2 * std::sin(kAlpha) + under - 1;
-    return box("left", {1, 2, 0.5}, "position=\"" + numbers({left, 0, -0.5}) + "\"", "Static") +
-           box("right", {1, 2, 0.5}, "position=\"" + numbers({1 - under, 0, -0.5}) + "\"", "Static") +
+    return box("left", {1, 2, 0.5}, "position=\"" + text(Vec3{left, 0, -0.5}) + "\"", "Static") +
+           box("right", {1, 2, 0.5}, "position=\"" + text(Vec3{1 - under, 0, -0.5}) + "\"", "Static") +
            box("block", {std::sin(kAlpha), 0.5, std::cos(kAlpha)}, at(arm, cross({0, -spin, 0}, arm)) + attitude + turning) +
            contact("block", rung, 0, 2, "against=\"left right\"");
 }
@@ -56,7 +62,7 @@ TEST_CASE("C23: at the impact of a rocking block the old edge lets go")
         s.warnings_expected = s.keep_events = true;
         s.step();
         CHECK(s.count("contact.impact") >= 2);
-        CHECK(std::fabs(-s.vec("block", "angular_velocity").y - (1 - 1.5 * std::sin(kAlpha) * std::sin(kAlpha))) < 1e-6);
+        CHECK(std::fabs(-s.vec("block", "angular_velocity").y - (1 - 1.5 * std::sin(kAlpha) * std::sin(kAlpha))) < 6e-8);
     }
 }
 
@@ -65,7 +71,7 @@ namespace
 /// s: when the block first meets the other plate, as it is told.
 double first_impact(const Rung& rung, double h)
 {
-    Scene s(block(0.1, 0, 0.1, rung) + gravity("block"), "dt=\"" + number(h) + "\"");
+    Scene s(block(0.1, 0, 0.1, rung) + gravity("block"), "dt=\"" + text(h) + "\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = s.keep_events = true;
     while (s.simulation().time() < 0.6) s.step();
@@ -83,7 +89,7 @@ TEST_CASE("C23: a rocking block comes down after Housner's quarter period")
         double off[3];
         int k = 0;
         for (const double h : {0.01, 0.0025, 0.000625}) off[k] = std::fabs(first_impact(rung, h) - kQuarter), ++k;
-        const double share = rung.rows() ? (rung.locates() ? 0.45 : 3) : (rung.locates() ? 0.15 : 1.15);
+        const double share = !rung.locates() ? 1.15 : rung.rows() ? 0.45 : 0.15;
         for (k = 0; k < 3; ++k) CHECK(off[k] < share * 0.01 / (1 << (2 * k)));
         if (rung.locates() && !rung.rows()) CHECK((off[0] / off[1] > 3 && off[0] / off[1] < 6));
     }
@@ -99,10 +105,10 @@ std::string wheel(const Rung& rung)
     const double alpha = std::numbers::pi / 8, spin = 1.2;
     std::string points;
     for (int i = 0; i < 8; ++i)
-        for (const double y : {-0.3, 0.3}) points += numbers({std::sin(alpha + 2 * alpha * i), y, std::cos(alpha + 2 * alpha * i)}) + " ";
+        for (const double y : {-0.3, 0.3}) points += text(Vec3{std::sin(alpha + 2 * alpha * i), y, std::cos(alpha + 2 * alpha * i)}) + " ";
     return std::string(kGround) + "<component id=\"wheel.shape\" type=\"Shape/ConvexHull\" points=\"" + points +
            "\"/><component id=\"wheel\" type=\"State/RigidBody\" shape=\"wheel.shape\" center_of_mass=\"0 0 0\" inertia=\"" +
-           numbers({1, 1e-3, 1}) + "\" angular_velocity=\"0 " + number(spin) + " 0\" " +
+           text(Vec3{1, 1e-3, 1}) + "\" angular_velocity=\"0 " + text(spin) + " 0\" " +
            at({0, 0, std::cos(alpha)}, {spin * std::cos(alpha), 0, spin * std::sin(alpha)}) + "/>" + gravity("wheel", kDownhill) +
            contact("wheel ground", rung, 0, 3);
 }
@@ -110,7 +116,7 @@ std::string wheel(const Rung& rung)
 /// Spins after each step of a rimless wheel.
 std::vector<double> walk(const Rung& rung, double h, double until)
 {
-    Scene s(wheel(rung), "dt=\"" + number(h) + "\"");
+    Scene s(wheel(rung), "dt=\"" + text(h) + "\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = true;
     std::vector<double> out;
@@ -143,10 +149,16 @@ TEST_CASE("C24: a rimless wheel comes to its limit cycle, half as far away with 
             const std::vector<double> w = walk(rung, h, 8);
             REQUIRE(w.size() >= 7);
             const bool trembles = rung.rows() && !rung.is("None");
-            CHECK(std::fabs(w[6] - kFixed) < (trembles ? 0.1 : 12 * h));
-            if (trembles || rung.rows() || h > 0.001) continue;
+            if (trembles)
+            {
+                CHECK(std::fabs(*std::max_element(w.begin() + 6, w.end()) - kFixed) < 12 * h);
+                CHECK(*std::min_element(w.begin() + 6, w.end()) > kFixed - 0.1);
+            }
+            else
+                CHECK(std::fabs(w[6] - kFixed) < (rung.rows() ? 6 : 12) * h);
+            if (rung.rows() || h > 0.001) continue;
             const double end = w.back() * w.back(), first = w[0] * w[0] - end, second = w[1] * w[1] - end;
-            CHECK(std::fabs(second / first - 0.5) < 0.1);
+            CHECK(std::fabs(second / first - 0.5) < 0.035);
         }
 }
 

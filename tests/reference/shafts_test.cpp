@@ -80,10 +80,9 @@ TEST_CASE("F3: sudden engagement at run time shares the momentum")
     Scene s(shaft("a", 1, 100) + shaft("b", 2), "dt=\"1/100\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     const double before = s.simulation().totals().kinetic;
-    model::Blueprint fragment =
-        *blueprint::read_blueprint("<plab version=\"1\">" + gear("g", "Graph", "a", "b", "-0.5") + "</plab>", "add.xml");
-    auto compiled = model::compile(fragment, test::library(), &s.simulation().world().scene());
-    REQUIRE_MESSAGE(compiled.ok(), (compiled.ok() ? "" : test::first_error(compiled.errors())));
+    const auto compiled =
+        test::compile_text(test::whole_scene(gear("g", "Graph", "a", "b", "-0.5")), "add.xml", &s.simulation().world().scene());
+    REQUIRE_MESSAGE(compiled.ok(), test::reasons(compiled));
     const auto reply = s.ask(simulation::AddOperation{*compiled});
     REQUIRE_MESSAGE(reply.done, test::first_error(reply.errors));
     s.step();

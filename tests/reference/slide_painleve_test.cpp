@@ -36,9 +36,9 @@ Dragged drag(const Rung& rung, bool ahead)
 {
     const double side = ahead ? 1 : -1, half = std::numbers::pi / 4 - 0.5 * kAngle, radius = 1e-3;
     const Vec3 centre{0.5 * std::cos(kAngle) * side, 0, radius + 0.5 * std::sin(kAngle)};
-    Scene s(std::string(kGround) + "<component id=\"rod.shape\" type=\"Shape/Capsule\" radius=\"" + number(radius) + "\" length=\"1\"/>" +
+    Scene s(std::string(kGround) + "<component id=\"rod.shape\" type=\"Shape/Capsule\" radius=\"" + text(radius) + "\" length=\"1\"/>" +
                 "<component id=\"rod\" type=\"State/RigidBody\" shape=\"rod.shape\" center_of_mass=\"0 0 0\" inertia=\"" +
-                numbers({1.0 / 12, 1.0 / 12, 1e-4}) + "\" orientation=\"" + number(std::cos(half)) + " 0 " + number(side * std::sin(half)) +
+                text(Vec3{1.0 / 12, 1.0 / 12, 1e-4}) + "\" orientation=\"" + text(std::cos(half)) + " 0 " + text(side * std::sin(half)) +
                 " 0\" " + at(centre, {-3, 0, 0}) + "/>" + gravity("rod") + contact("rod ground", rung, 0, kFriction),
             "dt=\"1/1000\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());

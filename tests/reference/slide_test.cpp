@@ -1,23 +1,26 @@
 // Sliding, sticking and rolling on a plane. C14, C15 as in the catalogue, and the scene of C15 far away, fast and turned (A11).
 //
-// | problem | rung                              | bound                                                                    |
-// |---------|-----------------------------------|--------------------------------------------------------------------------|
-// | C14a    | Rows/Direct, any resolution       | way 1e-12 m at h = 1/100 and 1/400, any direction; stands in the step of the end |
-// |         | Impulse, located                  | 5e-5 m at 1/100, 1e-5 at 1/400: the end of slip falls within a step      |
-// |         | Impulse, None                     | 1e-3 m at 1/100                                                          |
-// |         | Rows/SequentialImpulse            | 1e-8 m; it creeps on for a tenth of a second                             |
-// |         | Rows/SoftStep                     | 5e-3 m at 1/100                                                          |
-// | C14b    | Rows/Direct; Impulse, located     | x 1e-12 m, v 1e-12                                                       |
-// |         | Impulse, None                     | x 1e-3 m: it begins to press one step late                               |
-// |         | SequentialImpulse; SoftStep       | 1e-8 m; 3e-3 m                                                           |
-// | C14c    | Rows/Direct, any resolution       | mu = tan(1 + 1e-6): 1e-9 m in an hour (h = 0.1); (1 - 1e-6): 1e-5 m of 0.0245 m in 100 s
-// | |         | Impulse                           | holds at mu = 1.01 tan: 1e-4 m, all of it in the first second. At 1e-6 sweeps end
-// early: cm | | C15     | Rows/Direct, any resolution       | x, v 1e-11, spin 1e-10                                                   | |
-// | Impulse, located                  | v 1e-12; x 1e-4 m at 1/100, 5e-6 at 1/400 (the end of slip)              | |         | Impulse,
-// None                     | x 5e-4 m at 1/100                                                        | |         | SequentialImpulse;
-// SoftStep       | 1e-11; x 0.05 m, v 0.2: it sinks in, and rolls at another height         | | A11     | LocalRoot, LocalBisection x both
-// | 1e-7 m at 1e7 m; boosted by 1e3 m/s, turned: 1e-9 m                      | |         | None + Rows                       | the same,
-// boosted 1e-6 m: rounding chooses the step of its last bounces  |
+// | problem | rung                        | bound                                                                  |
+// |---------|-----------------------------|------------------------------------------------------------------------|
+// | C14a    | Rows/Direct, any resolution | way 1e-12 m at h = 1/100 and 1/400, any direction; stands in the step  |
+// |         |                             | of the end                                                             |
+// |         | Impulse, located            | 5e-5 m at 1/100, 1e-5 at 1/400: the end of slip falls within a step    |
+// |         | Impulse, None               | 1e-3 m at 1/100                                                        |
+// |         | Rows/SequentialImpulse      | 1e-8 m; it creeps on for a tenth of a second                           |
+// |         | Rows/SoftStep               | 5e-3 m at 1/100                                                        |
+// | C14b    | Rows/Direct; Impulse located| x 1e-12 m, v 1e-12                                                     |
+// |         | Impulse, None               | x 1e-3 m: it begins to press one step late                             |
+// |         | SequentialImpulse; SoftStep | 1e-8 m; 3e-3 m                                                         |
+// | C14c    | Rows/Direct, any resolution | mu = tan(1 + 1e-6): 1e-9 m in an hour (h = 0.1); (1 - 1e-6): 1e-5 m of |
+// |         |                             | 0.0245 m in 100 s                                                      |
+// |         | Impulse                     | holds at mu = 1.01 tan: 1e-4 m, all of it in the first second. At 1e-6 |
+// |         |                             | sweeps end early: cm                                                   |
+// | C15     | Rows/Direct, any resolution | x, v 1e-11, spin 1e-10                                                 |
+// |         | Impulse, located            | v 1e-12; x 1e-4 m at 1/100, 5e-6 at 1/400 (the end of slip)            |
+// |         | Impulse, None               | x 5e-4 m at 1/100                                                      |
+// |         | SequentialImpulse; SoftStep | 1e-11; x 2e-3 m, v 4e-4                                                |
+// | A11     | LocalRoot, LocalBisection   | 1e-7 m at 1e7 m; boosted by 1e3 m/s 1e-11 m, turned 1e-13 m            |
+// |         | None + Rows                 | the same, boosted 6e-7 m: rounding chooses the step of its last bounces|
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -38,7 +41,7 @@ constexpr Rung kSliding[] = {
 bool direct(const Rung& r) { return r.rows() && std::string(r.manager) == "Direct"; }
 bool soft(const Rung& r) { return r.rows() && std::string(r.manager) == "SoftStep"; }
 
-std::string step_of(double h) { return "dt=\"" + number(h) + "\""; }
+std::string step_of(double h) { return "dt=\"" + text(h) + "\""; }
 /// A ramp that stays level, with gravity leaning along x.
 Vec3 leaning(double angle) { return {kG * std::sin(angle), 0, -kG * std::cos(angle)}; }
 std::string brick(const Vec3& v = {}) { return kGround + box("a", {0.5, 0.5, 0.1}, at({0, 0, 0.1}, v)); }
@@ -145,8 +148,8 @@ TEST_CASE("C15: a sliding ball comes to roll, when and as fast as it should")
                          w = std::fabs(s.vec("a", "angular_velocity").y - 250.0 / 7);
             if (soft(rung))
             {
-                CHECK(off < 0.05);
-                CHECK(v < 0.2);
+                CHECK(off < 2e-3);
+                CHECK(v < 4e-4);
                 continue;
             }
             CHECK(off < (rung.rows() ? 1e-11 : (rung.locates() ? 1e-4 : 5e-4) * share));
@@ -160,9 +163,9 @@ namespace
 /// C15 with a bounce ahead of it, in another frame. Where the ball is, seen from where it began in that frame, turned back.
 std::vector<Vec3> path(const Rung& rung, const Vec3& origin, const Vec3& boost, const Quat& q)
 {
-    const std::string turned = "orientation=\"" + number(q.w) + " " + number(q.x) + " " + number(q.y) + " " + number(q.z) + "\"";
+    const std::string turned = "orientation=\"" + text(q.w) + " " + text(q.x) + " " + text(q.y) + " " + text(q.z) + "\"";
     Scene s("<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Kinematic\" shape=\"floor\" position=\"" +
-                numbers(origin) + "\" linear_velocity=\"" + numbers(boost) + "\" " + turned + "/>" +
+                text(origin) + "\" linear_velocity=\"" + text(boost) + "\" " + turned + "/>" +
                 sphere("a", 0.1, at(origin + rotate(q, {0, 0, 0.3}), boost + rotate(q, {5, 0, 0})) + " " + turned) +
                 gravity("a", rotate(q, {0, 0, -kG})) + contact("a ground", rung, 0.5, 0.3),
             "dt=\"1/100\"");
@@ -192,9 +195,10 @@ TEST_CASE("A11: a ball that bounces, slides and rolls does the same 1e7 m away, 
         CAPTURE(rung.name());
         const std::vector<Vec3> here = path(rung, {}, {}, {1, 0, 0, 0});
         CHECK(here.back().x > 2);
-        // A position is rounded once per step, at 1e7 m by up to 9.3e-10 m, at a constant speed always to the same side.
+        // A position is rounded once per step, at 1e7 m by up to 9.3e-10 m, at a constant speed always to the same side: 100 steps
+        // make 9.7e-8 m of (1e7, 2e6, -3e6). 1e3 m away by up to 5.7e-14 m, and the speed as much: 1e-11 m. Reached 7.5e-8, 3.2e-12.
         CHECK(furthest(here, path(rung, {1e7, 2e6, -3e6}, {}, {1, 0, 0, 0})) < 1e-7);
-        CHECK(furthest(here, path(rung, {}, {1e3, 0, 0}, {1, 0, 0, 0})) < (rung.locates() ? 1e-9 : 1e-6));
-        CHECK(furthest(here, path(rung, {}, {}, turn)) < 1e-9);
+        CHECK(furthest(here, path(rung, {}, {1e3, 0, 0}, {1, 0, 0, 0})) < (rung.locates() ? 1e-11 : 6e-7));
+        CHECK(furthest(here, path(rung, {}, {}, turn)) < 1e-13);
     }
 }

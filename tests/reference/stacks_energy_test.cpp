@@ -66,7 +66,7 @@ std::string thrown(const std::string& manager, double friction, double restituti
         const double x = 0.55 * static_cast<double>(i % 3) + any(0.02), y = 0.55 * static_cast<double>(i / 3 % 3) + any(0.02);
         const double wx = any(3), wy = any(3), wz = any(3);
         body += box(name_of_box(i), {0.25, 0.2, 0.15}, 1, {x, y, 1 + 0.6 * static_cast<double>(i / 9)},
-                    "linear_velocity=\"" + vector({any(1), any(1), -8}) + "\" angular_velocity=\"" + vector({wx, wy, wz}) + "\"");
+                    "linear_velocity=\"" + text(Vec3{any(1), any(1), -8}) + "\" angular_velocity=\"" + text(Vec3{wx, wy, wz}) + "\"");
         ids += name_of_box(i) + " ";
     }
     return body + gravity(ids) + contact(ids + "ground", manager, friction, restitution);

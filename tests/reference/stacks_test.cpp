@@ -68,7 +68,7 @@ TEST_CASE("C14: a box slides to a stop: the way to 1e-12 in any direction at any
                 CAPTURE(dt);
                 CAPTURE(resolution);
                 const Vec3 v{3 * std::cos(angle), 3 * std::sin(angle), 0};
-                Scene s(kGround + box("a", {0.25, 0.25, 0.1}, 1, {0, 0, 0.1}, "linear_velocity=\"" + vector(v) + "\"") + gravity("a") +
+                Scene s(kGround + box("a", {0.25, 0.25, 0.1}, 1, {0, 0, 0.1}, "linear_velocity=\"" + text(v) + "\"") + gravity("a") +
                             contact("a ground", "Direct", 0.4, 0, resolution),
                         std::string("dt=\"") + dt + "\"");
                 REQUIRE_MESSAGE(s.loaded(), s.error());

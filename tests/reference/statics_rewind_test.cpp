@@ -2,6 +2,7 @@
 // manager, on one thread and two. Where nothing is lost, speeds turned round lead back.
 #include "plab/random.h"
 #include "statics_scene.h"
+#include "support/bare_run.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -20,58 +21,12 @@ std::string heap(const std::string& manager, const std::string& resolution)
         const std::string id = name_of_box(i);
         const Vec3 at{0.3 * any(1), 0.3 * any(1), 0.4 + 0.5 * static_cast<double>(i)};
         const std::string moving =
-            "linear_velocity=\"" + vector({any(1), any(1), -1}) + "\" angular_velocity=\"" + vector({any(2), any(2), any(2)}) + "\"";
+            "linear_velocity=\"" + text(Vec3{any(1), any(1), -1}) + "\" angular_velocity=\"" + text(Vec3{any(2), any(2), any(2)}) + "\"";
         body += i % 3 == 2 ? ball(id, 0.15, 1, at, moving) : box(id, {0.2, 0.15, 0.1}, 1 + static_cast<double>(i), at, moving);
         ids += id + " ";
     }
     return body + gravity(ids) + contact(ids + "ground", manager, 0.5, 0.3, resolution);
 }
-
-/// A world with its stepper alone: its state is taken and put back from outside.
-class Run
-{
-public:
-    Run(const std::string& body, int threads) : world_(library())
-    {
-        auto blueprint = blueprint::read_blueprint("<plab version=\"1\"><scene dt=\"1/120\"/>" + body + "</plab>", "scene.xml");
-        REQUIRE(blueprint.ok());
-        auto scene = model::compile(*blueprint, library());
-        REQUIRE(scene.ok());
-        dt_ = scene->settings.dt;
-        world_.describe(scene->settings, scene->file);
-        REQUIRE(world_.add(*scene).ok());
-        stepper_ = std::make_unique<simulation::Stepper>(world_, threads);
-        REQUIRE(stepper_->rebuild().ok());
-    }
-    struct Memento
-    {
-        Tick tick;
-        world::Backup world;
-        simulation::ContactCache contacts;
-    };
-    Memento save() const { return {tick_, world_.backup(), stepper_->contacts()}; }
-    void restore(const Memento& m)
-    {
-        tick_ = m.tick;
-        world_.restore(m.world);
-        stepper_->contacts() = m.contacts;
-    }
-    std::uint64_t step()
-    {
-        const double start = dt_.at(tick_);
-        stepper_->step(tick_, start, dt_.at(tick_ + 1) - start);
-        ++tick_;
-        return stepper_->state_hash();
-    }
-    Tick tick() const { return tick_; }
-    std::size_t pairs() const { return stepper_->contacts().pairs().size(); }
-
-private:
-    model::StepLength dt_;
-    Tick tick_ = 0;
-    world::World world_;
-    std::unique_ptr<simulation::Stepper> stepper_;
-};
 
 }  // namespace
 
@@ -82,20 +37,22 @@ TEST_CASE("A12: ten thousand steps with contacts, put back at random steps and r
     {
         CAPTURE(manager);
         std::vector<std::uint64_t> hashes;
-        Run first(heap(manager, "None"), 1);
-        std::vector<Run::Memento> saved;
+        const auto scene = compile_text(whole_scene(heap(manager, "None"), "dt=\"1/120\""));
+        REQUIRE_MESSAGE(scene.ok(), reasons(scene));
+        BareRun first(*scene, 1);
+        std::vector<BareRun::Memento> saved;
         std::uint64_t random = 5;
         for (Tick next = 0; first.tick() < kSteps;)
         {
             if (first.tick() == next) saved.push_back(first.save()), next += 1 + static_cast<Tick>(next_uniform(random) * 2000);
             hashes.push_back(first.step());
         }
-        CHECK(first.pairs() > 0);
+        CHECK(!first.contacts().pairs().empty());
         REQUIRE(saved.size() > 5);
-        Run other(heap(manager, "None"), 2);
+        BareRun other(*scene, 2);
         for (std::size_t k = saved.size(); k-- > 0;)
         {
-            Run& run = k % 2 == 0 ? first : other;
+            BareRun& run = k % 2 == 0 ? first : other;
             run.restore(saved[k]);
             const Tick from = run.tick(), to = std::min<Tick>(kSteps, from + 300);
             Tick differs = -1;
@@ -136,7 +93,7 @@ TEST_CASE("A12: elastic balls in a box turn round and come back to where they we
     const Vec3 places[] = {{0, 0, 0.5}, {0.31, 0.05, 1.1}, {-0.2, 0.3, 1.6}, {0.1, -0.28, 2.2}};
     for (std::size_t i = 0; i < 4; ++i)
         body += ball(name_of_box(i), 0.1, 1 + static_cast<double>(i), places[i],
-                     "linear_velocity=\"" + vector({0.3 * (i % 2 ? 1 : -1), 0.1, 0}) + "\""),
+                     "linear_velocity=\"" + text(Vec3{0.3 * (i % 2 ? 1 : -1), 0.1, 0}) + "\""),
             ids += name_of_box(i) + " ";
     body += "<component id=\"flight\" type=\"Solver/Exact\"/>";
     Scene s(body + gravity(ids) + contact(ids + "ground", "Direct", 0, 1, "LocalRoot"), "dt=\"1/60\"");

@@ -4,48 +4,38 @@
 #include <string>
 #include <vector>
 
+#include "support/ground.h"
 #include "support/scene.h"
+#include "support/text.h"
 
 namespace plab::test
 {
 
-inline const char* const kGround =
-    "<component id=\"ground\" type=\"State/Static\" shape=\"floor\"/><component id=\"floor\" type=\"Shape/Plane\"/>";
-
-inline std::string number(double x)
-{
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", x);
-    return text;
-}
-
-inline std::string vector(const Vec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
-
 inline std::string box(const std::string& id, const Vec3& half, double mass, const Vec3& at, const std::string& more = "")
 {
-    return "<component id=\"" + id + ".shape\" type=\"Shape/Box\" half_extents=\"" + vector(half) + "\"/><component id=\"" + id +
-           "\" type=\"State/RigidBody\" shape=\"" + id + ".shape\" mass=\"" + number(mass) + "\" position=\"" + vector(at) + "\" " + more +
+    return "<component id=\"" + id + ".shape\" type=\"Shape/Box\" half_extents=\"" + text(half) + "\"/><component id=\"" + id +
+           "\" type=\"State/RigidBody\" shape=\"" + id + ".shape\" mass=\"" + text(mass) + "\" position=\"" + text(at) + "\" " + more +
            "/>";
 }
 
 inline std::string ball(const std::string& id, double radius, double mass, const Vec3& at, const std::string& more = "")
 {
-    return "<component id=\"" + id + ".shape\" type=\"Shape/Sphere\" radius=\"" + number(radius) + "\"/><component id=\"" + id +
-           "\" type=\"State/RigidBody\" shape=\"" + id + ".shape\" mass=\"" + number(mass) + "\" position=\"" + vector(at) + "\" " + more +
+    return "<component id=\"" + id + ".shape\" type=\"Shape/Sphere\" radius=\"" + text(radius) + "\"/><component id=\"" + id +
+           "\" type=\"State/RigidBody\" shape=\"" + id + ".shape\" mass=\"" + text(mass) + "\" position=\"" + text(at) + "\" " + more +
            "/>";
 }
 
 inline std::string gravity(const std::string& between, const Vec3& g = {0, 0, -9.81})
 {
-    return "<component id=\"weight\" type=\"Field/Gravity\" between=\"" + between + "\" acceleration=\"" + vector(g) + "\"/>";
+    return "<component id=\"weight\" type=\"Field/Gravity\" between=\"" + between + "\" acceleration=\"" + text(g) + "\"/>";
 }
 
 inline std::string contact(const std::string& between, const std::string& manager, double friction, double restitution = 0,
                            const std::string& resolution = "None")
 {
     return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + resolution +
-           "\" response=\"Response/Rows\" response.manager=\"Manager/" + manager + "\" response.friction=\"" + number(friction) +
-           "\" response.restitution=\"" + number(restitution) + "\"/>";
+           "\" response=\"Response/Rows\" response.manager=\"Manager/" + manager + "\" response.friction=\"" + text(friction) +
+           "\" response.restitution=\"" + text(restitution) + "\"/>";
 }
 
 inline std::string name_of_box(std::size_t i) { return "b" + std::string(i < 10 ? "00" : i < 100 ? "0" : "") + std::to_string(i); }

@@ -66,30 +66,40 @@ TEST_CASE("D1: r kg on 1 kg, r = 1 to 1e8: reactions (1 + r) m g and r m g to 1e
 }
 
 // Where a cheap rung does not carry the load it says so: `manager.not_converged`, and the figure in `residual`.
-TEST_CASE("D1: the cheap rungs: 1:1 to 1e-5, 10:1 within 2 % and 2 mm, from 1000:1 the light box is crushed, and it is told")
+TEST_CASE("D1: the cheap rungs: 1:1 to their tolerance, 10:1 within 2 % and 2 mm, from 1000:1 the light box is crushed, and it is told")
 {
-    for (const char* manager : {"SequentialImpulse", "SoftStep"})
+    struct Rung
     {
-        CAPTURE(manager);
-        const Loads equal = loads_of({1, 1}, manager, "1/60", 60), ten = loads_of({1, 10}, manager, "1/60", 60);
-        CHECK(equal.worst < 1e-5);
-        CHECK(equal.moved < 1e-3);
+        const char* manager;
+        double equal, moved;  ///< relative, of the loads; m
+    };
+    // Sweeps end when the last one changed less than 1e-7 m/s: with a contraction of cos^2(pi/5) = 0.65 a sweep, 2e-7 m/s are left, of
+    // g dt = 0.16 m/s, on either face: reached 2.2e-6. SoftStep has come to rest: reached 1.1e-8, 0.18 mm deep.
+    for (const Rung rung : {Rung{"SequentialImpulse", 4.5e-6, 1.5e-5}, {"SoftStep", 2.5e-8, 4e-4}})
+    {
+        CAPTURE(rung.manager);
+        const Loads equal = loads_of({1, 1}, rung.manager, "1/60", 60), ten = loads_of({1, 10}, rung.manager, "1/60", 60);
+        CHECK(equal.worst < rung.equal);
+        CHECK(equal.moved < rung.moved);
         CHECK(ten.worst < 0.02);
         CHECK(ten.moved < 2e-3);
-        const Loads heavy = loads_of({1, 1e3}, manager, "1/60", 60);
+        const Loads heavy = loads_of({1, 1e3}, rung.manager, "1/60", 60);
         CHECK(heavy.moved > 0.5);
         CHECK(heavy.told > 0);
     }
 }
 
-TEST_CASE("D2: n cubes: (n - k + 1) m g between them to 1e-11 with Direct")
+TEST_CASE("D2: n cubes: (n - k + 1) m g between them to 6e-12 with Direct")
 {
+    // Newton's method ends within 1e-12 m/s of the law: of the load of one cube, g dt, that is a share of 6.1e-12. Reached 2.6e-12 (50
+    // cubes). Places are rounded to 1.4e-14 m at the top.
+    constexpr double kTolerance = 1e-12 / (kG / 60);
     for (const std::size_t n : {10u, 20u, 50u, 100u})
     {
         CAPTURE(n);
         const Loads loads = loads_of(std::vector<double>(n, 1.0), "Direct", "1/60", 30);
-        CHECK(loads.worst < 1e-11);
-        CHECK(loads.moved < 1e-11);
+        CHECK(loads.worst < kTolerance);
+        CHECK(loads.moved < 1.5e-13);
     }
 }
 
@@ -108,6 +118,7 @@ TEST_CASE("D2: the cheap rungs at 1/60: three cubes to 1 mm; ten sink 1 cm with 
 // A slab on four feet with a heavy box off its centre. Equilibrium gives three equations for four feet; what is left free is the
 // split (+ - - +). Of all splits Direct takes the one with the least sum of squares, which is affine in the feet's places:
 //   f_i = W / 4 (1 + x x_i / a^2 + y y_i / b^2),   (x, y): where the resultant passes, (+-a, +-b): the feet.
+// From nothing it does so to rounding. Later steps look again where rounding has moved the table, and take the split with them: 6e-6.
 TEST_CASE("D6: a table with four feet: the sum and the moments exactly, the split of least norm")
 {
     const double a = 0.6, b = 0.4, mass = 10, load = 30, x = 0.25, y = 0.1;
@@ -116,7 +127,7 @@ TEST_CASE("D6: a table with four feet: the sum and the moments exactly, the spli
     {
         const std::string id = "foot" + std::to_string(i);
         shapes += "<component id=\"" + id + "\" type=\"Shape/Sphere\" radius=\"0.05\" position=\"" +
-                  vector({(i & 1) != 0 ? a : -a, (i & 2) != 0 ? b : -b, -0.05}) + "\"/>";
+                  text(Vec3{(i & 1) != 0 ? a : -a, (i & 2) != 0 ? b : -b, -0.05}) + "\"/>";
         feet += id + " ";
     }
     shapes +=
@@ -129,29 +140,40 @@ TEST_CASE("D6: a table with four feet: the sum and the moments exactly, the spli
     struct Rung
     {
         const char* manager;
-        double moments, split;  ///< relative; m
+        double moments, first_split, split;  ///< relative
     };
-    // Sweeps stop at the first split that they come to.
-    for (const Rung rung : {Rung{"Direct", 1e-13, 1e-4}, {"SequentialImpulse", 1e-5, 1}, {"SoftStep", 1e-4, 1e-3}})
+    // Sweeps stop at the first split that they come to, and at moments within their tolerance (D1): reached 2.2e-6. SoftStep's springs
+    // share evenly once they have come to rest, from 1.5e-4; its sub-steps leave 2e-5 of the moments.
+    constexpr double kAny = 1;
+    for (const Rung rung :
+         {Rung{"Direct", 1e-13, 2e-14, 1.3e-5}, {"SequentialImpulse", 4.5e-6, kAny, kAny}, {"SoftStep", 4e-5, kAny, 3e-4}})
     {
         CAPTURE(rung.manager);
         Scene s(kGround + shapes + box("load", {0.1, 0.1, 0.1}, load, {x, y, 0.25}) + gravity("table load") +
                     contact("table load ground", rung.manager, 0.5),
                 "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
-        s.step(60);
-        const std::vector<double> f = point_forces(s, "ground", "table");
-        REQUIRE(f.size() == 4);
         const double weight = (mass + load) * kG, cx = load * x / (mass + load), cy = load * y / (mass + load);
+        std::vector<double> f;
+        const auto off_least = [&]
+        {
+            f = point_forces(s, "ground", "table");
+            REQUIRE(f.size() == 4);
+            double worst = 0;
+            for (std::size_t i = 0; i < 4; ++i)
+            {
+                const double xi = (i & 1) != 0 ? a : -a, yi = (i & 2) != 0 ? b : -b;
+                worst = std::fmax(worst, std::fabs(f[i] / (weight / 4 * (1 + cx * xi / (a * a) + cy * yi / (b * b))) - 1));
+            }
+            return worst;
+        };
+        s.step();
+        CHECK(off_least() < rung.first_split);
+        s.step(59);
+        CHECK(off_least() < rung.split);
         CHECK(std::fabs((f[0] + f[1] + f[2] + f[3]) / weight - 1) < rung.moments);
         CHECK(std::fabs(a * (f[1] + f[3] - f[0] - f[2]) / weight - cx) < rung.moments);
         CHECK(std::fabs(b * (f[2] + f[3] - f[0] - f[1]) / weight - cy) < rung.moments);
-        for (std::size_t i = 0; i < 4; ++i)
-        {
-            const double xi = (i & 1) != 0 ? a : -a, yi = (i & 2) != 0 ? b : -b;
-            const double least = weight / 4 * (1 + cx * xi / (a * a) + cy * yi / (b * b));
-            CHECK(std::fabs(f[i] / least - 1) < rung.split);
-        }
     }
 }
 
@@ -172,13 +194,13 @@ TEST_CASE("D7: a ladder slips iff tan theta < 1 / (2 mu), to 1e-4 rad either way
             CAPTURE(manager);
             const double theta = limit + off, c = std::cos(theta), sn = std::sin(theta);
             // The capsule's axis is z, tilted towards +x, where the wall is.
-            const std::string turn = "axis 0 1 0 " + number((1.5707963267948966 - theta) * 57.295779513082321) + " deg";
+            const std::string turn = "axis 0 1 0 " + text((1.5707963267948966 - theta) * 57.295779513082321) + " deg";
             const std::string ladder =
                 "<component id=\"wall\" type=\"State/Static\" shape=\"floor\" orientation=\"axis 0 1 0 -90 deg\" position=\"" +
-                vector({0.5 * length * c + r, 0, 0}) + "\" material=\"ice\"/><component id=\"rod\" type=\"Shape/Capsule\" radius=\"" +
-                number(r) + "\" length=\"" + number(length) +
+                text(Vec3{0.5 * length * c + r, 0, 0}) + "\" material=\"ice\"/><component id=\"rod\" type=\"Shape/Capsule\" radius=\"" +
+                text(r) + "\" length=\"" + text(length) +
                 "\"/><component id=\"ladder\" type=\"State/RigidBody\" shape=\"rod\" mass=\"3\" material=\"wood\" orientation=\"" + turn +
-                "\" position=\"" + vector({0, 0, 0.5 * length * sn + r}) +
+                "\" position=\"" + text(Vec3{0, 0, 0.5 * length * sn + r}) +
                 "\"/><component id=\"smooth\" type=\"Material/Pair\" a=\"ice\" b=\"wood\" friction=\"0\" restitution=\"0\"/>";
             Scene s(kGround + ladder + gravity("ladder") + contact("ladder ground wall", manager, mu), "dt=\"1/240\"");
             REQUIRE_MESSAGE(s.loaded(), s.error());

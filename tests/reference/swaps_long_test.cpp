@@ -16,11 +16,7 @@ TEST_CASE("H8: twenty thousand random swaps")
 
 TEST_CASE("stiction remembers: a block on a slope of 30 degrees does not creep in an hour")
 {
-    Scene s(gravity("4.905 0 -8.495709211125344") + solid("a", "Box' half_extents='0.2 0.2 0.1'", 1, {0, 0, 0.1}) +
-                ground_and_contact("None", "Penalty",
-                                   "response.stiffness='2e3' response.damping_ratio='1' response.tangential_damping_ratio='1' "
-                                   "response.friction='0.6' response.steps_per_contact='20'"),
-            dt(60));
+    Scene s = block_on_a_slope();
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = true;
     s.run(5);

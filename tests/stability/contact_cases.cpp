@@ -45,19 +45,21 @@ Case overlap()
 Case painleve()
 {
     const std::vector<double> frictions{0.5, 1, 4.0 / 3, 2, 5};
-    Case c{"painleve",
-           "Painleve's rod",
-           "A rod of 2 m and 1 kg at 60 degrees touches the floor with its lower end, which slides ahead with 5 m/s: beyond a friction of "
-           "about 4/3 no "
-           "finite force solves its equations, and an impulse has to. 1 s at 1/240 s, no restitution. Error: deepest the rod's axis gets "
-           "below the "
-           "floor, m, or energy that it gains, relative. Stable to 0.03 (the way of a step or two), bounded to 0.5.",
-           "contact",
-           "friction",
-           names_of(contact_rungs()),
-           brief(frictions),
-           {},
-           {}};
+    Case c{
+        "painleve",
+        "Painleve's rod",
+        "A rod of 2 m and 1 kg at 60 degrees touches the floor with its lower end, which slides ahead with 5 m/s: beyond a friction of "
+        "about 4/3 no "
+        "finite force solves its equations, and an impulse has to. 1 s at 1/240 s, no restitution. Error: deepest the rod's axis gets "
+        "below the "
+        "floor, m, or energy that it gains, relative. Stable to 0.03 (the way of a step at 7.1 m/s, with which the upper end comes down), "
+        "bounded to 0.1.",
+        "contact",
+        "friction",
+        names_of(contact_rungs()),
+        brief(frictions),
+        {},
+        {}};
     c.run = [frictions](std::size_t r, std::size_t v)
     {
         const ContactRung& rung = contact_rungs()[r];
@@ -68,7 +70,7 @@ Case painleve()
                     component("rod", "State/RigidBody",
                               attribute("shape", std::string("rod.shape")) + attribute("mass", 1) +
                                   attribute("inertia", Vec3{1.0 / 3, 1.0 / 3, 1e-4}) + attribute("position", middle) +
-                                  attribute("orientation", number(std::cos(tilt)) + " 0 " + number(std::sin(tilt)) + " 0") +
+                                  attribute("orientation", text(std::cos(tilt)) + " 0 " + text(std::sin(tilt)) + " 0") +
                                   attribute("linear_velocity", Vec3{-5, 0, 0})) +
                     contact(rung, attribute("response.friction", frictions[v]) +
                                       (rung.spring() ? attribute("response.stiffness", 1e6) + attribute("response.restitution", 0.2) : "")),
@@ -83,7 +85,7 @@ Case painleve()
                   worst = std::fmax(worst, std::fabs(axis.z) - p.z);
                   worst = std::fmax(worst, energy() / start - 1);
               });
-        return t.judge(worst, {0.03, 0.5});
+        return t.judge(worst, {0.03, 0.1});
     };
     c.quick = [](std::size_t r, std::size_t v) { return r >= 3 && v == 4; };
     return c;

@@ -5,36 +5,31 @@
 #include <string>
 #include <vector>
 
-#include "plab/vector.h"
+#include "support/text.h"
 
 namespace plab::stability
 {
 
 inline constexpr double kG = 9.81;  // m/s^2
 
-inline std::string number(double x)
-{
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", x);
-    return text;
-}
+using test::text;
+
 /// For headings.
 inline std::string brief(double x)
 {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%.3g", x);
+    return buffer;
 }
-inline std::string vector(const Vec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
-inline std::string dt(double h) { return "dt=\"" + number(h) + "\""; }
+inline std::string dt(double h) { return "dt=\"" + text(h) + "\""; }
 
 inline std::string component(const std::string& id, const std::string& type, const std::string& more = "")
 {
     return "<component id=\"" + id + "\" type=\"" + type + "\" " + more + "/>";
 }
 inline std::string attribute(const std::string& name, const std::string& value) { return " " + name + "=\"" + value + "\""; }
-inline std::string attribute(const std::string& name, double value) { return attribute(name, number(value)); }
-inline std::string attribute(const std::string& name, const Vec3& value) { return attribute(name, vector(value)); }
+inline std::string attribute(const std::string& name, double value) { return attribute(name, text(value)); }
+inline std::string attribute(const std::string& name, const Vec3& value) { return attribute(name, text(value)); }
 
 inline std::string body(const std::string& id, double mass, const Vec3& inertia, const Vec3& at, const std::string& more = "")
 {

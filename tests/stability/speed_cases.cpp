@@ -43,7 +43,7 @@ Case wall(bool spins)
               "0.1 s "
               "at 1/60 s: its ends would be through the wall and out again many times. Error: how far its middle has gone through the "
               "wall, or "
-              "how deep it is in it at the end, m; 1 where its ends should have hit the wall and did not. Stable to 1e-3, bounded to 1: "
+              "how deep it is in it at the end, m; 1 where its ends should have hit the wall and did not. Stable to 1e-6, bounded to 1: "
               "what "
               "looks only at the ends of a step (None, the bisections, springs) or at speeds of gaps then (Speculative) can miss a corner."
             : "A ball of 5 cm radius flies at a wall of 1 cm, restitution 1, no weight; 20 steps of 1/60 s. Error: how far its surface is "
@@ -73,7 +73,7 @@ Case wall(bool spins)
         const double front = -0.005 - (spins ? 0.01 : 0.05);
         const double through = std::fmax(0.0, worst - front);
         const bool should_hit = 0.1 * speed > 0.7, hit = length(t.vec("flyer", "linear_velocity")) > 0;
-        if (spins) return t.judge(should_hit && !hit ? 1 : std::fmax(through, t.simulation().stepper().report().deepest), {1e-3, 1});
+        if (spins) return t.judge(should_hit && !hit ? 1 : std::fmax(through, t.simulation().stepper().report().deepest), {1e-6, 1});
         const double lost = std::fabs(t.vec("flyer", "linear_velocity").x + speed) / speed;
         return t.judge(std::fmax(std::fmax(0.0, t.vec("flyer", "position").x - front), lost), {1e-6, 0.5});
     };

@@ -1,31 +1,12 @@
 #include "trial.h"
 
-#include "blueprint/reader.h"
-#include "model/compile.h"
-#include "plugins/library.h"
+#include "support/load.h"
 
 namespace plab::stability
 {
 
 namespace
 {
-
-plugins::PluginLibrary& library()
-{
-    static plugins::PluginLibrary instance({PLAB_BINARY_DIR "/lib/plab"});
-    return instance;
-}
-
-Result<std::unique_ptr<simulation::Simulation>> load(const std::string& text)
-{
-    const auto blueprint = blueprint::read_blueprint(text, "case.xml");
-    if (!blueprint) return blueprint.errors();
-    const auto scene = model::compile(*blueprint, library());
-    if (!scene) return scene.errors();
-    auto simulation = std::make_unique<simulation::Simulation>(library());
-    if (auto loaded = simulation->load(*scene); !loaded) return loaded.errors();
-    return simulation;
-}
 
 /// The place in a text that nobody sees is left out.
 std::string without_place(const std::string& message)
@@ -38,7 +19,7 @@ std::string without_place(const std::string& message)
 
 Trial::Trial(const std::string& body, const std::string& settings, std::uint64_t most_evaluations) : most_evaluations_(most_evaluations)
 {
-    auto loaded = load("<plab version=\"1\"><scene " + settings + "/>" + body + "</plab>");
+    auto loaded = test::load_text(test::whole_scene(body, settings), "case.xml");
     if (loaded)
         simulation_ = std::move(*loaded);
     else
@@ -104,14 +85,14 @@ Outcome Trial::judge(double error, Bounds bounds) const
 std::vector<std::string> rungs_of(const std::string& family)
 {
     std::vector<std::string> out;
-    for (const std::string& name : library().names())
+    for (const std::string& name : test::library().names())
         if (name.rfind(family + "/", 0) == 0) out.push_back(name.substr(family.size() + 1));
     return out;
 }
 
 void load_plugins()
 {
-    for (const std::string& name : library().names()) (void)library().require(name);
+    for (const std::string& name : test::library().names()) (void)test::library().require(name);
 }
 
 }  // namespace plab::stability

@@ -4,17 +4,11 @@
 #include <string>
 
 #include "support/scene.h"
+#include "support/text.h"
 
 namespace plab::test
 {
 
-inline std::string text(double x)
-{
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.17g", x);
-    return buffer;
-}
-inline std::string text(const Vec3& v) { return text(v.x) + " " + text(v.y) + " " + text(v.z); }
 inline std::string dt(int per_second) { return "dt='1/" + std::to_string(per_second) + "'"; }
 inline std::string solver_is(const std::string& type) { return "<component id='solver' type='Solver/" + type + "'/>"; }
 inline std::string gravity(const std::string& g = "0 0 -9.81")

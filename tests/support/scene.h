@@ -6,20 +6,10 @@
 #include <cmath>
 #include <string>
 
-#include "blueprint/reader.h"
-#include "model/compile.h"
-#include "plugins/library.h"
-#include "simulation/simulation.h"
+#include "support/load.h"
 
 namespace plab::test
 {
-
-/// The plugins of this build, shared by all scenes of a test binary.
-inline plugins::PluginLibrary& library()
-{
-    static plugins::PluginLibrary instance({PLAB_BINARY_DIR "/lib/plab"});
-    return instance;
-}
 
 inline std::string first_error(const Errors& errors)
 {
@@ -28,13 +18,26 @@ inline std::string first_error(const Errors& errors)
     return all;
 }
 
+/// Why something was refused; empty if it was not.
+template <class T>
+std::string reasons(const Result<T>& result)
+{
+    return result.ok() ? std::string() : first_error(result.errors());
+}
+
+/// A file of the project, `name` from its root.
+inline Result<model::SceneSpec> compile_file(const std::string& name)
+{
+    return compile_read(blueprint::read_blueprint_file(std::string(PLAB_SOURCE_DIR) + "/" + name));
+}
+
 class Scene
 {
 public:
     /// `body` is what stands inside <plab>; dt and more go into `settings`, e.g. "dt='1/60'".
     explicit Scene(const std::string& body, const std::string& settings = "dt=\"1/240\"", int threads = 1) : simulation_(library(), threads)
     {
-        load_text("<plab version=\"1\"><scene " + settings + "/>" + body + "</plab>", "scene.xml");
+        load(compile_text(whole_scene(body, settings)));
     }
     static Scene file(const std::string& name, int threads = 1) { return Scene(FromFile{}, name, threads); }
 
@@ -94,32 +97,8 @@ private:
     struct FromFile
     {
     };
-    Scene(FromFile, const std::string& name, int threads) : simulation_(library(), threads)
-    {
-        auto blueprint = blueprint::read_blueprint_file(std::string(PLAB_SOURCE_DIR) + "/" + name);
-        if (blueprint)
-            build(*blueprint);
-        else
-            error_ = first_error(blueprint.errors());
-    }
-    void load_text(const std::string& text, const std::string& name)
-    {
-        auto blueprint = blueprint::read_blueprint(text, name);
-        if (blueprint)
-            build(*blueprint);
-        else
-            error_ = first_error(blueprint.errors());
-    }
-    void build(const model::Blueprint& blueprint)
-    {
-        auto scene = model::compile(blueprint, library());
-        if (!scene)
-        {
-            error_ = first_error(scene.errors());
-            return;
-        }
-        if (auto loaded = simulation_.load(*scene); !loaded) error_ = first_error(loaded.errors());
-    }
+    Scene(FromFile, const std::string& name, int threads) : simulation_(library(), threads) { load(compile_file(name)); }
+    void load(const Result<model::SceneSpec>& scene) { error_ = scene ? reasons(simulation_.load(*scene)) : reasons(scene); }
 
     simulation::Simulation simulation_;
     std::string error_;

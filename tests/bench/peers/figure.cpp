@@ -5,19 +5,19 @@
 #include <cmath>
 #include <fstream>
 
-#include "study/plot/axes.h"
-#include "study/plot/drawing.h"
+#include "figures/axes.h"
+#include "figures/drawing.h"
 
 namespace plab::peers
 {
 namespace
 {
 
-using study::plot::Drawing;
-using study::plot::Ink;
-using study::plot::Panel;
-using study::plot::Scale;
-using study::plot::Spot;
+using figures::Drawing;
+using figures::Ink;
+using figures::Panel;
+using figures::Scale;
+using figures::Spot;
 
 constexpr double kWidth = 480, kHeight = 400;                               // px, of a panel with its margins
 constexpr double kLeft = 72, kRight = 18, kTop = 34, kBottom = 52;          // px
@@ -75,7 +75,7 @@ private:
         const Look& look = look_of(p.run.engine);
         drawing_->marker(
             place_of(p), look.shape, filled ? 5 : 3.5, Ink::series(look.series), filled,
-            p.run.label() + ": " + study::plot::short_number(p.figures[metric_]) + " at " + study::plot::short_number(p.cost) + " ms/s");
+            p.run.label() + ": " + figures::short_number(p.figures[metric_]) + " at " + figures::short_number(p.cost) + " ms/s");
     }
     /// A staircase: the least error that is to be had at no more cost.
     void draw_front(bool of_plab, const Ink& ink)
@@ -105,9 +105,9 @@ private:
             const std::string name = of_plab ? p.run.settings : std::string(look_of(p.run.engine).text) + " " + p.run.settings;
             const Spot at = place_of(p);
             if (name == last || std::fabs(at.y - low) < 12) continue;
-            const bool left = at.x + study::plot::text_width(name, 10) + 8 > panel_.right();
+            const bool left = at.x + figures::text_width(name, 10) + 8 > panel_.right();
             const Spot where{at.x + (left ? -8 : 8), at.y + (of_plab ? 12 : -6)};
-            drawing_->words(where, name, {10, {Ink::Role::Text}, left ? study::plot::Anchor::End : study::plot::Anchor::Start});
+            drawing_->words(where, name, {10, {Ink::Role::Text}, left ? figures::Anchor::End : figures::Anchor::Start});
             last = name, low = at.y;
         }
     }
@@ -138,7 +138,7 @@ bool draw_case(const CaseResult& result, const std::string& path)
     const double width = kWidth * static_cast<double>(std::clamp<std::size_t>(n, 2, 3));
     const double height = kHead + kHeight * static_cast<double>((n + 2) / 3) + kFoot;
     Drawing drawing(width, height, result.which.title + ": error against processor time, one thread");
-    drawing.words({kLeft, 26}, drawing.title(), {16, {Ink::Role::Text}, study::plot::Anchor::Start, true});
+    drawing.words({kLeft, 26}, drawing.title(), {16, {Ink::Role::Text}, figures::Anchor::Start, true});
     for (std::size_t m = 0; m < n; ++m)
         Diagram(drawing, result, m, {kWidth * static_cast<double>(m % 3), kHead + kHeight * static_cast<double>(m / 3)}).draw();
     draw_legend(drawing, height - 16);

@@ -4,32 +4,21 @@
 #include <cctype>
 #include <string_view>
 
-#include "blueprint/reader.h"
-#include "model/compile.h"
-#include "plugins/library.h"
-#include "simulation/simulation.h"
+#include "support/load.h"
 
 namespace plab::peers
 {
 namespace
 {
 
-plugins::PluginLibrary& library()
-{
-    static plugins::PluginLibrary instance({PLAB_BINARY_DIR "/lib/plab"});
-    return instance;
-}
-
 class PlabEngine final : public Engine
 {
 public:
-    PlabEngine() : simulation_(library(), 1) {}
+    PlabEngine() : simulation_(test::library(), 1) {}
 
     Result<void> load(const std::string& text, std::size_t bodies)
     {
-        const auto blueprint = blueprint::read_blueprint(text, "scene.xml");
-        if (!blueprint) return blueprint.errors();
-        const auto scene = model::compile(*blueprint, library());
+        const auto scene = test::compile_text(text);
         if (!scene) return scene.errors();
         if (auto loaded = simulation_.load(*scene); !loaded) return loaded;
         const world::World& world = simulation_.world();
@@ -82,7 +71,7 @@ Result<std::unique_ptr<Engine>> make_plab_engine(const std::string& text, std::s
 
 std::vector<std::string> missing_types(const std::string& text)
 {
-    const std::vector<std::string> known = library().names();
+    const std::vector<std::string> known = test::library().names();
     std::vector<std::string> missing;
     for (std::size_t open = text.find('"'); open != std::string::npos;)
     {

@@ -5,12 +5,13 @@
 #include <fstream>
 #include <limits>
 
-#include "study/plot/axes.h"
+#include "figures/axes.h"
 #include "study/plot/figures.h"
 #include "study/write.h"
 
 using namespace plab;
 using namespace plab::study;
+using namespace plab::figures;
 using namespace plab::study::plot;
 
 namespace

@@ -19,10 +19,8 @@ namespace
 
 model::SceneSpec compiled(const std::string& body, const std::string& settings = "dt='1/100'")
 {
-    auto blueprint = blueprint::read_blueprint("<plab version='1'><scene " + settings + "/>" + body + "</plab>", "scene.xml");
-    REQUIRE_MESSAGE(blueprint.ok(), (blueprint ? "" : blueprint.error().text()));
-    auto scene = model::compile(*blueprint, library());
-    REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().text()));
+    auto scene = test::compile_text(test::whole_scene(body, settings));
+    REQUIRE_MESSAGE(scene.ok(), test::reasons(scene));
     return scene.take();
 }
 
@@ -52,9 +50,7 @@ TEST_CASE("a recorded run ends in the state that the scene ends in; so does a ti
     const std::string file = "scenes/fan_and_balloons.xml";
     Scene scene = Scene::file(file);
     scene.run(4);
-    auto blueprint = blueprint::read_blueprint_file(std::string(PLAB_SOURCE_DIR) + "/" + file);
-    REQUIRE(blueprint.ok());
-    const auto spec = model::compile(*blueprint, library());
+    const auto spec = test::compile_file(file);
     REQUIRE(spec.ok());
     RunOptions how;
     how.until = 4, how.quantities = {"red.position", "fan.angle", "contact.penetration", "red.orientation.w"};
@@ -109,9 +105,7 @@ namespace
 
 model::SceneSpec compiled_file(const std::string& file)
 {
-    auto blueprint = blueprint::read_blueprint_file(std::string(PLAB_SOURCE_DIR) + "/" + file);
-    REQUIRE(blueprint.ok());
-    auto scene = model::compile(*blueprint, library());
+    auto scene = test::compile_file(file);
     REQUIRE(scene.ok());
     return scene.take();
 }

@@ -15,9 +15,7 @@ namespace
 
 model::SceneSpec scene_of(const std::string& file)
 {
-    auto blueprint = blueprint::read_blueprint_file(std::string(PLAB_SOURCE_DIR) + "/" + file);
-    REQUIRE(blueprint.ok());
-    auto scene = model::compile(*blueprint, library());
+    auto scene = test::compile_file(file);
     REQUIRE(scene.ok());
     return scene.take();
 }

@@ -1,0 +1,52 @@
+/// From blueprint text to a scene that runs, with the plugins of this build. Without a test framework, so that measuring
+/// programs use it too. Errors are those of the reader, of the compiler and of loading.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "blueprint/reader.h"
+#include "model/compile.h"
+#include "plugins/library.h"
+#include "simulation/simulation.h"
+
+namespace plab::test
+{
+
+/// The plugins of this build, shared by all scenes of a program.
+inline plugins::PluginLibrary& library()
+{
+    static plugins::PluginLibrary instance({PLAB_BINARY_DIR "/lib/plab"});
+    return instance;
+}
+
+/// <plab> around `body`; dt and more go into `settings`, e.g. "dt='1/60'".
+inline std::string whole_scene(const std::string& body, const std::string& settings = "")
+{
+    return "<plab version=\"1\">" + (settings.empty() ? "" : "<scene " + settings + "/>") + body + "</plab>";
+}
+
+/// `existing`: the scene that a fragment may refer to.
+inline Result<model::SceneSpec> compile_read(const Result<model::Blueprint>& blueprint, const model::SceneSpec* existing = nullptr)
+{
+    if (!blueprint) return blueprint.errors();
+    return model::compile(*blueprint, library(), existing);
+}
+
+/// `name` stands for the file in error messages.
+inline Result<model::SceneSpec> compile_text(const std::string& text, const std::string& name = "scene.xml",
+                                             const model::SceneSpec* existing = nullptr)
+{
+    return compile_read(blueprint::read_blueprint(text, name), existing);
+}
+
+inline Result<std::unique_ptr<simulation::Simulation>> load_text(const std::string& text, const std::string& name = "scene.xml")
+{
+    const auto scene = compile_text(text, name);
+    if (!scene) return scene.errors();
+    auto simulation = std::make_unique<simulation::Simulation>(library());
+    if (auto loaded = simulation->load(*scene); !loaded) return loaded.errors();
+    return simulation;
+}
+
+}  // namespace plab::test
