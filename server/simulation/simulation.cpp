@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/watch/divergence_watch.h"
 #include "simulation/requests/field_change.h"
 #include "simulation/requests/transaction.h"
+#include "simulation/snapshot/history.h"
+#include "simulation/watch/divergence_watch.h"
 
 namespace plab::simulation
 {
 
-Simulation::Simulation(model::TypeSource& types, int threads) : types_(&types), threads_(threads), watch_(std::make_unique<DivergenceWatch>())
+Simulation::Simulation(model::TypeSource& types, int threads)
+    : types_(&types), threads_(threads), watch_(std::make_unique<DivergenceWatch>()), history_(std::make_unique<History>())
 {
 }
 Simulation::~Simulation() = default;
@@ -32,13 +34,13 @@ Result<Simulation::Live> Simulation::build(const model::SceneSpec& scene)
     return live;
 }
 
-void Simulation::begin_run(Live live, const model::SceneSpec& scene)
+void Simulation::begin_run(Live live, std::shared_ptr<const model::SceneSpec> scene)
 {
     stepper_ = std::move(live.stepper);
     world_ = std::move(live.world);
     stepper_->on_changes(&Simulation::apply_script_changes, this);
-    loaded_ = scene;
-    dt_ = scene.settings.dt;
+    loaded_ = std::move(scene);
+    dt_ = loaded_->settings.dt;
     tick_ = base_tick_ = 0;
     base_time_ = 0;
     events_.clear();
@@ -54,7 +56,8 @@ Result<void> Simulation::load(const model::SceneSpec& scene)
 {
     auto live = build(scene);
     if (!live) return live.errors();
-    begin_run(live.take(), scene);
+    begin_run(live.take(), std::make_shared<const model::SceneSpec>(scene));
+    history_->begin(*this);
     return {};
 }
 
@@ -64,7 +67,7 @@ double Simulation::time_at(Tick tick) const
     return base_tick_ == 0 ? dt_.at(tick) : base_time_ + dt_.at(tick - base_tick_);
 }
 
-void Simulation::post(Request request) { requests_.push_back({std::move(request), run_}); }
+void Simulation::post(Request request) { requests_.push_back({std::make_shared<const Request>(std::move(request)), run_}); }
 
 std::vector<Reply> Simulation::take_replies()
 {
@@ -89,7 +92,8 @@ Reply Simulation::carry_out(const Request& request)
         return reply;
     }
     Reply done = Transaction(*this, request).run();
-    if (done.done) watch_->begin_anew();
+    if (done.done && concerns_the_course(request)) watch_->begin_anew();
+    if (done.done) history_->note(*this, request);
     return done;
 }
 
@@ -106,14 +110,14 @@ bool Simulation::apply_due()
     for (std::size_t k = 0; k < requests_.size();)
     {
         const Waiting& w = requests_[k];
-        if (w.request.at && w.run == run_ && *w.request.at > tick_)
+        if (w.request->at && w.run == run_ && *w.request->at > tick_)
         {
             ++k;
             continue;
         }
         const Waiting due = std::move(requests_[k]);
         requests_.erase(requests_.begin() + static_cast<std::ptrdiff_t>(k));
-        replies_.push_back(due.request.at && due.run != run_ ? outlived(due.request) : carry_out(due.request));
+        replies_.push_back(due.request->at && due.run != run_ ? outlived(*due.request) : carry_out(*due.request));
         any = true;
         // A new run concerns those that wait: from the front again.
         k = 0;
@@ -136,7 +140,19 @@ bool Simulation::step()
     run_step(false);
     ++tick_;
     if (steps_left_ > 0) --steps_left_;
+    history_->follow(*this);
     return true;
+}
+
+void Simulation::step_once()
+{
+    run_step(false);
+    ++tick_;
+}
+
+void Simulation::forget_late_requests()
+{
+    std::erase_if(requests_, [&](const Waiting& w) { return w.run == run_ && w.request->at && *w.request->at < tick_; });
 }
 
 void Simulation::run_step(bool trial)

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "simulation/requests/requests.h"
+#include "simulation/snapshot/snapshot.h"
 #include "simulation/step/stepper.h"
 
 namespace plab::simulation
@@ -22,7 +23,7 @@ struct Totals
     double shaft_momentum = 0;  ///< N m s, sum over shafts about their own axles
 };
 
-class DivergenceWatch;
+class History;
 
 class Simulation
 {
@@ -35,6 +36,14 @@ public:
     /// Replaces whatever is there. On error what was there goes on.
     Result<void> load(const model::SceneSpec& scene);
 
+    /// The run at the present boundary, as a value; none before the first load. Costs a copy of its state, and the state's hash.
+    Snapshot capture() const;
+    /// Goes on from a snapshot, of this or another Simulation, as if it had never been left; types that are not loaded are.
+    /// A new run begins, and the revision goes on counting. Requests that wait for a step are refused, but those that waited at
+    /// the snapshot wait again.
+    /// On error nothing has changed.
+    Result<void> restore(const Snapshot& snapshot);
+
     /// Queues a request for the boundary before the next step, or the step that it names; that is a step of the present
     /// run: if another run begins before, the request is refused.
     void post(Request request);
@@ -42,6 +51,8 @@ public:
     Reply carry_out_now(const Request& request) { return carry_out(request); }
     /// Requests that are due take effect; then, unless paused, one step. False if paused.
     bool step();
+    /// One step, paused or not; nothing that waits takes effect. For steps of the past that are made again.
+    void step_once();
     /// Requests that wait for their step.
     std::size_t pending_requests() const { return requests_.size(); }
     /// Requests that are due take effect now, at the boundary between two steps, paused or not. True if there were any.
@@ -58,10 +69,14 @@ public:
     double dt() const { return dt_.seconds; }
     bool paused() const { return paused_ && steps_left_ == 0; }
     double rate() const { return rate_; }
-    /// Counts loads and resets.
+    /// Counts loads, resets and restored snapshots.
     std::uint64_t run() const { return run_; }
     /// Counts structural requests (add, remove, swap, reset, load) that were carried out; never starts again.
     std::uint64_t revision() const { return revision_; }
+
+    /// Snapshots by name, and how far the run can be rewound.
+    History& history() { return *history_; }
+    const History& history() const { return *history_; }
 
     const world::World& world() const { return *world_; }
     world::World& world() { return *world_; }
@@ -78,6 +93,7 @@ public:
 
 private:
     friend class Transaction;
+    friend class History;
 
     struct Live
     {
@@ -85,10 +101,13 @@ private:
         std::unique_ptr<Stepper> stepper;
     };
     Result<Live> build(const model::SceneSpec& scene);
-    void begin_run(Live live, const model::SceneSpec& scene);
+    Result<Live> revive(const SnapshotContent& from) const;
+    void begin_run(Live live, std::shared_ptr<const model::SceneSpec> scene);
+    void continue_from(const SnapshotContent& from);
     Reply carry_out(const Request& request);
     Reply outlived(const Request& request) const;
     void run_step(bool trial);
+    void forget_late_requests();
     void freeze_lost_objects();
     void quarantine_failed();
     double time_at(Tick tick) const;
@@ -98,7 +117,7 @@ private:
     int threads_;
     std::unique_ptr<world::World> world_;
     std::unique_ptr<Stepper> stepper_;
-    model::SceneSpec loaded_;
+    std::shared_ptr<const model::SceneSpec> loaded_;
 
     Tick tick_ = 0;
     model::StepLength dt_;
@@ -112,8 +131,8 @@ private:
 
     struct Waiting
     {
-        Request request;
-        std::uint64_t run = 0;  ///< in which it was posted
+        std::shared_ptr<const Request> request;  ///< snapshots share it
+        std::uint64_t run = 0;                   ///< in which it was posted
     };
     std::deque<Waiting> requests_;
     std::vector<Reply> replies_;
@@ -122,6 +141,7 @@ private:
     std::vector<Event> events_;
     std::set<std::uint32_t> changed_by_scripts_;
     std::unique_ptr<DivergenceWatch> watch_;
+    std::unique_ptr<History> history_;
 };
 
 }  // namespace plab::simulation

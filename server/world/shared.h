@@ -2,31 +2,44 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 namespace plab::world
 {
 
 /// Backups of a world hold its structure this way: a copy costs a pointer, and only a change of structure costs more.
-/// Not for use by several threads.
+/// Not for use by several threads; what is lent may be.
 template <class T>
 class Shared
 {
 public:
-    Shared() : value_(std::make_shared<T>()) {}
+    Shared() : holder_(std::make_shared<Holder>()) {}
 
-    const T& operator*() const { return *value_; }
-    const T* operator->() const { return value_.get(); }
+    const T& operator*() const { return holder_->value; }
+    const T* operator->() const { return &holder_->value; }
     /// For changes; whoever shares the old value keeps it.
     T& edit()
     {
-        if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
-        return *value_;
+        // Who else holds a lent value is not looked at: another thread may let go of it at this moment.
+        if (holder_->lent || holder_.use_count() > 1) holder_ = std::make_shared<Holder>(Holder{holder_->value, false});
+        return holder_->value;
+    }
+    /// The present value, for any thread: it never changes again.
+    std::shared_ptr<const T> lend() const
+    {
+        holder_->lent = true;
+        return {holder_, &holder_->value};
     }
     /// Whether both are the same value, unchanged since one was copied from the other.
-    bool same_as(const Shared& other) const { return value_ == other.value_; }
+    bool same_as(const Shared& other) const { return holder_ == other.holder_; }
 
 private:
-    std::shared_ptr<T> value_;
+    struct Holder
+    {
+        T value;
+        bool lent = false;
+    };
+    std::shared_ptr<Holder> holder_;
 };
 
 }  // namespace plab::world

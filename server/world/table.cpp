@@ -2,10 +2,25 @@
 
 namespace plab::world
 {
+namespace
+{
+
+std::shared_ptr<const Layout> layout_of(const TypeInfo& info, const Schema& schema)
+{
+    auto out = std::make_shared<Layout>();
+    out->type = info.name, out->facet = info.facet;
+    for (const Field& field : schema.fields())
+        if ((kLiveKinds & kind_bit(field.kind)) && !field.hosted && field.type != FieldType::Opaque)
+            out->fields.push_back({field.name, field.kind, field.type});
+    return out;
+}
+
+}  // namespace
 
 Table::Table(const model::ComponentType& type) : type_(&type), storage_(type.info.make())
 {
     storage_->describe(schema_);
+    layout_ = layout_of(type.info, schema_);
     columns_ = schema_.columns();
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/type_registry.h"
+#include "world/layout.h"
 
 namespace plab::world
 {
@@ -16,6 +17,8 @@ public:
 
     const model::ComponentType& type() const { return *type_; }
     const Schema& schema() const { return schema_; }
+    /// What save() writes for kLiveKinds; shared with whoever keeps such bytes.
+    const std::shared_ptr<const Layout>& layout() const { return layout_; }
     void* rows() const { return storage_->rows(); }
 
     /// A row with the declared defaults, for the component with this directory index and host row.
@@ -37,6 +40,7 @@ private:
     const model::ComponentType* type_;
     std::unique_ptr<TableBase> storage_;
     Schema schema_;
+    std::shared_ptr<const Layout> layout_;
     std::vector<ColumnBase*> columns_;
     std::vector<std::uint32_t> component_of_row_;
     std::vector<std::uint32_t> host_of_row_;

@@ -154,15 +154,9 @@ void World::initialize_motion(std::uint32_t component)
     }
 }
 
-Result<void> World::add(const model::SceneSpec& scene)
+/// Rows for all components of `scene`, their values and roles; nothing is prepared yet.
+std::vector<World::Created> World::create_all(const model::SceneSpec& scene, Errors& errors)
 {
-    const Backup before = backup();
-    Errors errors;
-    struct Created
-    {
-        std::uint32_t component;
-        const model::ComponentSpec* spec;
-    };
     std::vector<Created> created;
     for (const model::ComponentSpec& spec : scene.components)
     {
@@ -177,7 +171,15 @@ Result<void> World::add(const model::SceneSpec& scene)
     }
     sort_by_id();
     for (const Created& c : created)
-        if (directory_->components[c.component].table != kNoIndex) bind(c.component, *c.spec);
+        if (component(c.component).table != kNoIndex) bind(c.component, *c.spec);
+    return created;
+}
+
+Result<void> World::add(const model::SceneSpec& scene)
+{
+    const Backup before = backup();
+    Errors errors;
+    std::vector<Created> created = create_all(scene, errors);
     if (errors.empty())
     {
         std::sort(created.begin(), created.end(),

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,8 @@ struct Backup
     std::vector<std::uint8_t> cells;  ///< params, state and outputs of all rows, in directory order
 };
 
+struct Image;
+
 class World
 {
 public:
@@ -90,6 +93,14 @@ public:
 
     Backup backup() const;
     void restore(const Backup& backup);
+
+    /// Everything as a value (image.h), for this or another world.
+    Image image() const;
+    /// Makes a world without components into that of the image, under new directory indices and rows. Opaque parts are made
+    /// by Prepare. On error the world is of no use any more.
+    Result<void> revive(const Image& image);
+    /// Host rows as they are in the image, again: what a stepper derives from structure may touch them.
+    void load_host(const Image& image);
 
     // Looking things up ----------------------------------------------------------------------------------------------
     std::uint32_t find(const std::string& id) const;
@@ -133,6 +144,13 @@ public:
     void save_state(std::uint32_t component, ByteWriter& out) const;
 
 private:
+    struct Created
+    {
+        std::uint32_t component;
+        const model::ComponentSpec* spec;
+    };
+    std::vector<Created> create_all(const model::SceneSpec& scene, Errors& errors);
+    void load_cells(const Image& image, Errors& errors);
     Result<std::uint32_t> create(const model::ComponentSpec& spec);
     Result<std::uint32_t> table_for(const std::string& type);
     void fill_fields(Table& table, Row row, const model::ComponentSpec& spec);
@@ -160,6 +178,6 @@ private:
 };
 
 /// Adds bytes to a running 64-bit hash (FNV-1a over 8-byte words, then bytes).
-std::uint64_t hash_bytes(std::uint64_t h, const std::vector<std::uint8_t>& bytes);
+std::uint64_t hash_bytes(std::uint64_t h, std::span<const std::uint8_t> bytes);
 
 }  // namespace plab::world

@@ -171,7 +171,7 @@ std::uint64_t World::state_hash(std::uint64_t h) const
     return hash_bytes(h, bytes.bytes());
 }
 
-std::uint64_t hash_bytes(std::uint64_t h, const std::vector<std::uint8_t>& bytes)
+std::uint64_t hash_bytes(std::uint64_t h, std::span<const std::uint8_t> bytes)
 {
     constexpr std::uint64_t kPrime = 0x100000001b3ull;
     std::size_t i = 0;

@@ -19,10 +19,8 @@ SwapOperation swap(const std::string& id, const std::string& type, std::vector<N
 
 model::SceneSpec fragment(Scene& s, const std::string& body)
 {
-    auto blueprint = blueprint::read_blueprint("<plab version=\"1\">" + body + "</plab>", "request.xml");
-    REQUIRE_MESSAGE(blueprint.ok(), (blueprint.ok() ? "" : first_error(blueprint.errors())));
-    auto scene = model::compile(*blueprint, test::library(), &s.simulation().world().scene());
-    REQUIRE_MESSAGE(scene.ok(), (scene.ok() ? "" : first_error(scene.errors())));
+    const auto scene = test::compile_text(test::whole_scene(body), "request.xml", &s.simulation().world().scene());
+    REQUIRE_MESSAGE(scene.ok(), test::reasons(scene));
     return *scene;
 }
 

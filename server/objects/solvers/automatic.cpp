@@ -107,18 +107,24 @@ private:
     bool is_free() const { return system_.forces_are_uniform() && !system_.is_constrained(); }
     void begin_turn()
     {
-        if (!trial_ && m_.tick != start_.tick) m_.tick = start_.tick, m_.before = m_.now, m_.now = 0, m_.call = 0;
+        if (trial_ || rows_.step[row_] == start_.tick) return;
+        rows_.step[row_] = start_.tick, m_.before = rows_.last_methods[row_], rows_.last_methods[row_] = 0, m_.call = 0;
     }
 
     /// Whether the group that was advanced as this one's turn came in the last step was not stiff. That changes no result: then
     /// the step of RungeKutta4 is booked at once; else it is looked at first, for what is booked along a step that blows up
     /// is taken back with rounding errors as large as that.
-    bool expects_soft() const { return trial_ || (m_.call < m_.was_soft.size() && m_.was_soft[m_.call] != 0); }
+    bool expects_soft() const
+    {
+        const Integers& soft = rows_.soft_turns[row_];
+        return trial_ || (m_.call < soft.size() && soft[m_.call] != 0);
+    }
     void remember(bool soft)
     {
         if (trial_) return;
-        if (m_.call == m_.was_soft.size()) m_.was_soft.push_back(0);
-        m_.was_soft[m_.call++] = soft ? 1 : 0;
+        Integers& turns = rows_.soft_turns[row_];
+        if (m_.call == turns.size()) turns.push_back(0);
+        turns[m_.call++] = soft ? 1 : 0;
     }
 
     void advance_stiff()
@@ -161,8 +167,8 @@ private:
     {
         if (trial_) return;
         if (spin_ >= 0) rows_.spin[row_] = std::min(spin_, 1e300), rows_.stiffness[row_] = std::min(stiffness_, 1e300);
-        m_.now |= bit_of(method);
-        if (const std::int64_t all = m_.before | m_.now; all != m_.shown) show(all);
+        rows_.last_methods[row_] |= bit_of(method);
+        if (const std::int64_t all = m_.before | rows_.last_methods[row_]; all != m_.shown) show(all);
         if ((rows_.methods[row_] & bit_of(method)) != 0) return;
         rows_.methods[row_] |= bit_of(method);
         rows_.reason[row_] = std::string(kNames[static_cast<std::size_t>(method)]) + ": " + why(method);
@@ -201,6 +207,10 @@ void AutomaticRows::describe(Schema& schema)
     schema.output(
         methods, "methods", unit::one,
         "used since the run began, a sum: 1 Exact, 2 RungeKutta4, 4 RotationSplitting, 8 Exponential, 16 Radau5, 32 DormandPrince54");
+    schema.output(last_methods, "last_methods", unit::one, "used in the last step, as the same sum");
+    schema.output(step, "step", unit::one, "the step that these are of; -1: none yet").or_else(-1);
+    schema.output(soft_turns, "soft_turns", unit::one,
+                  "group by group in the order of the last steps, 1: was not stiff, so its next step is booked at once");
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 

@@ -29,17 +29,17 @@ struct AutomaticMemory
 {
     ExponentialMemory exponential;  ///< Radau5's too
     DormandPrinceMemory dormand;
-    std::int64_t now = 0, before = 0, shown = 0;  ///< methods of this step, the last one, and those that `resolved` names, as bits
-    Tick tick = 0;
-    std::vector<std::uint8_t> was_soft;  ///< by turn in the step
+    std::int64_t before = 0, shown = 0;  ///< methods of the step before, and those that `resolved` names, as bits
     std::size_t call = 0;                ///< turns in this step
 };
 
 struct AutomaticRows
 {
     Column<std::string> resolved, reason;
-    Column<double> spin, stiffness;  ///< h |w|, |h lambda|
-    Column<std::int64_t> methods;    ///< used since the run began, as bits
+    Column<double> spin, stiffness;              ///< h |w|, |h lambda|
+    Column<std::int64_t> methods, last_methods;  ///< used since the run began; in the last step; as bits
+    Column<Tick> step;                           ///< the last one
+    Column<Integers> soft_turns;                 ///< by turn in the last step: 1 where the group was not stiff
     Column<AutomaticMemory> memory;
 
     void describe(Schema& schema);

@@ -72,7 +72,7 @@ void ContactForces::emit_happenings()
 
 void ContactForces::emit_stiff()
 {
-    const bool told = std::exchange(stiff_told_, stiff_ != kNoIndex);
+    const bool told = std::exchange(s_->told_.stiff, stiff_ != kNoIndex);
     if (stiff_ == kNoIndex || told) return;
     Event e;
     e.time = s_->frame_.start_time, e.kind = "contact.stiff", e.severity = Severity::Warning, e.component = stiff_;

@@ -48,18 +48,22 @@ struct ForceContact
     bool dormant = false;
 };
 
-/// A pair of bodies with contact points that push.
-struct ForcePair
+/// A pair of bodies with contact points that push, without those.
+struct ForcePairHead
 {
-    static constexpr std::size_t kMostContacts = 16;
-
     std::uint32_t detector = kNoIndex;  ///< component
     Ref a, b;
     Tick since = 0;
     std::uint64_t law_type = 0;  ///< which law made it what it is: the type
     std::uint64_t law = 0;       ///< type and parameters
     Vec3 normal;
-    std::uint32_t count = 0;
+    std::uint32_t count = 0;  ///< of its contacts
+};
+
+struct ForcePair : ForcePairHead
+{
+    static constexpr std::size_t kMostContacts = 16;
+
     std::array<ForceContact, kMostContacts> contacts;
 
     std::span<ForceContact> all() { return {contacts.data(), count}; }

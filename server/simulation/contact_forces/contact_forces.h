@@ -229,8 +229,7 @@ private:
     std::array<std::vector<double>, 3> sums_;  ///< by body, of ContactRates: normal, tangential, damping
     double pieces_needed_ = 0;                 ///< the most that a step of an island asked for beyond what it may have
     std::uint32_t stiff_ = kNoIndex;           ///< response that asked
-    bool stiff_told_ = false;
-    std::vector<std::size_t> converted_;  ///< contact points, by detector
+    std::vector<std::size_t> converted_;       ///< contact points, by detector
     struct Law
     {
         std::uint64_t type = 0, values = 0;

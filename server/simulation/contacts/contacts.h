@@ -64,10 +64,9 @@ struct BounceHistory
     friend bool operator==(const BounceHistory&, const BounceHistory&) = default;
 };
 
-struct PairState
+/// A pair without its contacts.
+struct PairHead
 {
-    static constexpr std::size_t kMostContacts = 16;
-
     std::uint32_t detector = kNoIndex;  ///< component
     Ref a, b;
     Tick since = 0;
@@ -77,13 +76,19 @@ struct PairState
     bool overlapping = false;  ///< at the end of the last advance: it cannot be
                                ///< bracketed from there
     Vec3 normal;               ///< of the last contact seen, a to b
-    std::uint32_t count = 0;
-    std::array<KnownContact, kMostContacts> contacts;
+    std::uint32_t count = 0;   ///< of its contacts
     BounceHistory bounces;
-    std::uint32_t impacts = 0;  ///< in the step `impacts_tick`; not saved: a step begins with none
+    std::uint32_t impacts = 0;  ///< in the step `impacts_tick`; not hashed: a step begins with none
     Tick impacts_tick = -1;
     Tick paradox_tick = -2;  ///< last step in which pressing harder would have
-                             ///< closed it faster; not saved either
+                             ///< closed it faster; not hashed either
+};
+
+struct PairState : PairHead
+{
+    static constexpr std::size_t kMostContacts = 16;
+
+    std::array<KnownContact, kMostContacts> contacts;
 };
 
 /// All known pairs, sorted by detector, a and b in id order.
@@ -104,13 +109,18 @@ public:
     void refresh(const world::World& world, const std::vector<Detector>& detectors);
     void clear() { *this = {}; }
     std::uint64_t new_id() { return next_id_++; }
+    std::uint64_t next_id() const { return next_id_; }
+    /// Ids go on where those of a snapshot ended.
+    void continue_ids(std::uint64_t next) { next_id_ = next; }
     /// Pairs whose contacts are forces, in the same order.
     std::vector<ForcePair>& force_pairs() { return force_pairs_; }
     const std::vector<ForcePair>& force_pairs() const { return force_pairs_; }
     /// Pairs as they were before a swap made other ones of them at the present
     /// boundary: swapping back brings them back.
     std::vector<PairState>& parked_pairs() { return parked_pairs_; }
+    const std::vector<PairState>& parked_pairs() const { return parked_pairs_; }
     std::vector<ForcePair>& parked_force_pairs() { return parked_force_pairs_; }
+    const std::vector<ForcePair>& parked_force_pairs() const { return parked_force_pairs_; }
     void forget_parked() { parked_pairs_.clear(), parked_force_pairs_.clear(); }
     void save(const world::World& world, ByteWriter& out) const;
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "simulation/groups/groups.h"
+#include "simulation/groups/stage_scratch.h"
 #include "simulation/rows/row_system.h"
 #include "simulation/shafts/shaft_system.h"
-#include "simulation/groups/stage_scratch.h"
 
 namespace plab::simulation
 {
@@ -28,6 +28,7 @@ struct StepFrame
     double step = 0;                              ///< s
     Tick tick = 0;
     std::uint64_t seed = 0;
+    std::vector<std::uint8_t>* told_contradictory = nullptr;  ///< by component: joints that an event told of; each system writes its own
 };
 
 /// Where the work of force components goes while an advance is booked.
@@ -165,7 +166,7 @@ private:
     ShaftSystem shaft_system_;
     std::unique_ptr<RowSystem> rows_;
     bool rows_held_ = false;
-    std::vector<std::uint32_t> contradictory_;  ///< joints, as last announced
+    std::vector<std::uint32_t> joints_;  ///< components of rows_
 
     std::vector<double> coordinates_, speeds_, coordinate_rates_, speed_rates_;
     std::array<std::vector<double>, 32> workspace_;

@@ -9,7 +9,7 @@ namespace plab::simulation
 
 void GroupSystem::configure_rows()
 {
-    merged_.clear(), contradictory_.clear();
+    merged_.clear(), joints_.clear();
     for (const std::uint32_t g : groups_)
     {
         const auto& rows = frame_.groups->all[g].rows;
@@ -21,6 +21,8 @@ void GroupSystem::configure_rows()
     if (merged_.empty()) return;
     rows_ = std::make_unique<RowSystem>();
     rows_->configure(*frame_.world, *frame_.schedule, merged_, *frame_.graph);
+    const auto& blocks = frame_.schedule->of(Phase::Constrain);
+    for (const BlockRow& row : merged_) joints_.push_back(frame_.world->tables()[blocks[row.block].table]->component_of_row()[row.row]);
 }
 
 void GroupSystem::join()
@@ -58,20 +60,22 @@ std::string left_over(const ProjectionReport& report)
 void GroupSystem::announce_contradictions(const ProjectionReport& report)
 {
     if (!context_.events) return;
+    std::vector<std::uint8_t>& told = *frame_.told_contradictory;
     for (const std::uint32_t component : report.contradictory)
     {
-        if (std::find(contradictory_.begin(), contradictory_.end(), component) != contradictory_.end()) continue;
+        if (told[component] != 0) continue;
         Event e;
         e.time = context_.time, e.kind = "constraint.contradiction", e.severity = Severity::Warning, e.component = component;
         std::string others;
         for (const std::uint32_t other : report.contradictory)
             if (other != component) others += (others.empty() ? "" : ", ") + frame_.world->id_of(other);
-        e.message = "cannot hold" + (others.empty() ? std::string() : " together with " + others) + ": " +
-                    left_over(report) + ", shared out by least squares";
+        e.message = "cannot hold" + (others.empty() ? std::string() : " together with " + others) + ": " + left_over(report) +
+                    ", shared out by least squares";
         e.values = {report.position_error, report.speed_error};
         context_.events->emit(std::move(e));
     }
-    contradictory_ = report.contradictory;
+    for (const std::uint32_t component : joints_) told[component] = 0;
+    for (const std::uint32_t component : report.contradictory) told[component] = 1;
 }
 
 void GroupSystem::add_reports(RowReportTable& reports) const

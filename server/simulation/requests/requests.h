@@ -91,10 +91,36 @@ struct StepLengthOperation
 {
     model::StepLength dt;
 };
+/// Keeps the state at the boundary under a name; one that was kept under it before is replaced.
+struct SnapshotOperation
+{
+    std::string name;
+};
+/// Goes on from a snapshot that was kept; a new run begins. Pause and rate stay as they are.
+struct RestoreOperation
+{
+    std::string name;
+};
+/// Gives up a snapshot that was kept.
+struct ForgetOperation
+{
+    std::string name;
+};
+/// Back to a time of this run; a new run begins there, and what was asked at that time or later is forgotten.
+struct RewindOperation
+{
+    double time = 0;    ///< s
+    bool back = false;  ///< `time` counts back from the present
+};
 
-using Operation =
-    std::variant<AddOperation, AddBlueprintOperation, RemoveOperation, SwapOperation, SetOperation, PushOperation, PauseOperation,
-                 ResumeOperation, StepOperation, RateOperation, ResetOperation, LoadOperation, StepLengthOperation>;
+using Operation = std::variant<AddOperation, AddBlueprintOperation, RemoveOperation, SwapOperation, SetOperation, PushOperation,
+                               PauseOperation, ResumeOperation, StepOperation, RateOperation, ResetOperation, LoadOperation,
+                               StepLengthOperation, SnapshotOperation, RestoreOperation, ForgetOperation, RewindOperation>;
+
+/// False for what only concerns the clock, or what is kept: pause, rate, snapshot, ...
+bool concerns_the_course(const Operation& operation);
+/// reset, load, restore, rewind.
+bool begins_a_run(const Operation& operation);
 
 struct Request
 {
@@ -103,6 +129,8 @@ struct Request
     std::optional<Tick> at;                 ///< takes effect before this step; one that has passed is refused as late
     std::optional<std::uint64_t> revision;  ///< refused if structural requests came between
 };
+
+bool concerns_the_course(const Request& request);
 
 enum class Fate : std::uint8_t
 {

@@ -6,6 +6,7 @@
 #include "model/compile.h"
 #include "model/values.h"
 #include "simulation/requests/field_change.h"
+#include "simulation/snapshot/history.h"
 
 namespace plab::simulation
 {
@@ -28,7 +29,8 @@ Transaction::Transaction(Simulation& simulation, const Request& request) : s_(&s
 Transaction::State Transaction::capture() const
 {
     Stepper& stepper = *s_->stepper_;
-    return {s_->world_->backup(), stepper.contacts(), stepper.work(), stepper.departed_work(), stepper.requests_work(), stepper.cost()};
+    return {s_->world_->backup(),    stepper.contacts(), stepper.work(), stepper.departed_work(),
+            stepper.requests_work(), stepper.told(),     stepper.cost()};
 }
 
 void Transaction::restore(const State& state, bool structure_changed)
@@ -44,6 +46,8 @@ void Transaction::restore(const State& state, bool structure_changed)
     s_->world_->host() = state.world.host;
     s_->stepper_->contacts() = state.contacts;
     s_->stepper_->work() = state.work;
+    s_->stepper_->told() = state.told;
+    s_->stepper_->told().contradictory.resize(s_->world_->components().size(), 0);
     s_->stepper_->cost() = state.cost;
     s_->stepper_->cost().by_table.resize(s_->world_->tables().size());
     s_->stepper_->departed_work() = state.departed_work, s_->stepper_->requests_work() = state.requests_work;
@@ -68,6 +72,26 @@ Result<std::uint32_t> Transaction::find_typed(const std::string& id) const
         if (s_->world_->component(k).table != kNoIndex) known.push_back(s_->world_->id_of(k));
     if (i != kNoIndex) return Error{{}, id, "is a group; name one of its components"};
     return Error{{}, {}, "no component has the id '" + id + "'" + model::did_you_mean(id, known)};
+}
+
+/// The state is that of the past; pause and rate are the present's.
+template <class Op>
+Result<void> Transaction::go_back(const Op& op)
+{
+    const std::tuple clock(s_->paused_, s_->steps_left_, s_->rate_);
+    const auto go = [&]() -> Result<void>
+    {
+        if constexpr (std::is_same_v<Op, RestoreOperation>)
+        {
+            auto found = s_->history().find(op.name);
+            return found ? s_->restore(*found) : found.errors();
+        }
+        else
+            return s_->history().rewind(*s_, op.back ? s_->time() - op.time : op.time);
+    };
+    auto done = go();
+    if (done) std::tie(s_->paused_, s_->steps_left_, s_->rate_) = clock;
+    return done;
 }
 
 Result<void> Transaction::apply(const Operation& operation)
@@ -100,6 +124,12 @@ Result<void> Transaction::apply(const Operation& operation)
                 s_->base_time_ = s_->time(), s_->base_tick_ = s_->tick_;
                 s_->dt_ = op.dt;
             }
+            else if constexpr (std::is_same_v<T, SnapshotOperation>)
+                return s_->history().keep(op.name, s_->capture());
+            else if constexpr (std::is_same_v<T, ForgetOperation>)
+                return s_->history().forget(op.name);
+            else if constexpr (std::is_same_v<T, RestoreOperation> || std::is_same_v<T, RewindOperation>)
+                return go_back(op);
             else
             {
                 const model::SceneSpec scene = [&]
@@ -107,7 +137,7 @@ Result<void> Transaction::apply(const Operation& operation)
                     if constexpr (std::is_same_v<T, LoadOperation>)
                         return op.scene;
                     else
-                        return s_->loaded_;
+                        return *s_->loaded_;
                 }();
                 return s_->load(scene);
             }

@@ -26,12 +26,15 @@ private:
         ContactCache contacts;
         std::vector<double> work;
         double departed_work, requests_work;
+        Told told;
         CostBook cost;
     };
     State capture() const;
     void restore(const State& state, bool structure_changed);
 
     Result<void> apply(const Operation& operation);
+    template <class Op>
+    Result<void> go_back(const Op& op);
     Result<void> apply_one(const AddOperation& op);
     Result<void> apply_one(const AddBlueprintOperation& op);
     Result<void> apply_one(const RemoveOperation& op);

@@ -17,8 +17,6 @@ bool concerns_the_scene(const Operation& op)
            std::holds_alternative<SetOperation>(op) || std::holds_alternative<PushOperation>(op);
 }
 
-bool starts_anew(const Operation& op) { return std::holds_alternative<ResetOperation>(op) || std::holds_alternative<LoadOperation>(op); }
-
 std::string failure_in(const std::vector<Event>& events)
 {
     for (const Event& e : events)
@@ -138,13 +136,13 @@ Reply Transaction::run()
     bool scene = false, anew = false, swaps = false;
     for (const Operation& op : request_->operations)
     {
-        scene = scene || concerns_the_scene(op), anew = anew || starts_anew(op);
+        scene = scene || concerns_the_scene(op), anew = anew || begins_a_run(op);
         swaps = swaps || std::holds_alternative<SwapOperation>(op);
     }
     if (request_->operations.empty())
         reply_.errors = {reason("a request without operations")};
     else if (anew && request_->operations.size() > 1)
-        reply_.errors = {reason("reset and load stand alone in a request")};
+        reply_.errors = {reason("reset, load, restore and rewind stand alone in a request")};
     else if (scene)
         run_on_scene(swaps);
     else
@@ -182,7 +180,7 @@ void Transaction::apply_all()
 void Transaction::run_on_clock()
 {
     const Clock clock = read_clock();
-    const bool anew = starts_anew(request_->operations.front());
+    const bool anew = begins_a_run(request_->operations.front());
     apply_all();
     if (!reply_.errors.empty() && !anew) write_clock(clock);
 }

@@ -1,6 +1,7 @@
 // The whole step in one go for everybody: groups in batches, one batch for each thread.
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "simulation/step/stepper.h"
 
@@ -69,12 +70,12 @@ std::vector<std::uint32_t> half_of(const Groups& groups, std::vector<std::uint32
     return taken;
 }
 
-/// Which solver advances what in which batch together, unless it refuses.
-using SharedParts = std::map<std::pair<const Batch*, std::uint32_t>, std::size_t>;
+/// Which solver advances what in which batch together, unless it refuses: by batch, solver, and split_.
+using SharedParts = std::map<std::tuple<const Batch*, std::uint32_t, std::uint32_t>, std::size_t>;
 
-void share(Batch& batch, std::span<const std::uint32_t> cluster, std::uint32_t solver, SharedParts& parts)
+void share(Batch& batch, std::span<const std::uint32_t> cluster, std::uint32_t solver, std::uint32_t split, SharedParts& parts)
 {
-    const auto [place, fresh] = parts.try_emplace({&batch, solver}, batch.parts.size());
+    const auto [place, fresh] = parts.try_emplace({&batch, solver, split}, batch.parts.size());
     if (fresh) batch.parts.emplace_back().solver = solver;
     auto& groups = batch.parts[place->second].groups;
     groups.insert(groups.end(), cluster.begin(), cluster.end());
@@ -119,7 +120,7 @@ void Stepper::plan_batches()
         if (keeps) home.emplace(c.solver, static_cast<std::size_t>(&batch - batches_.data()));
         batch.load += c.load;
         if (c.sharing == Sharing::UnlessRefused)
-            share(batch, c.groups, c.solver, shared);
+            share(batch, c.groups, c.solver, split_[groups_.all[c.groups.front()].cluster], shared);
         else
             batch.add(c.groups, c.solver, c.sharing == Sharing::Always);
     }
@@ -165,6 +166,8 @@ void Stepper::run_batch(Batch& batch, std::vector<double>& work)
             Batch::Part& rest = batch.parts.emplace_back();
             rest.solver = batch.parts[i].solver;
             rest.groups = half_of(groups_, batch.parts[i].groups);
+            for (const std::uint32_t g : rest.groups) split_[groups_.all[g].cluster] = groups_.all[rest.groups.front()].cluster;
+            batch.split = true;
             rest.system = std::make_unique<GroupSystem>(*batch.scratch);
             rest.system->configure(frame_, rest.groups);
             batch.parts[i].system->configure(frame_, batch.parts[i].groups);
@@ -207,13 +210,14 @@ void Stepper::emit_in_order()
 void Stepper::advance_batches()
 {
     if (!batches_ready_) plan_batches();
-    batches_ready_ = true;
     const bool alone = batches_.size() == 1;
     if (alone)
         run_batch(batches_.front(), work_);
     else
         workers_.run(batches_.size(), [this](std::size_t b) { run_batch(batches_[b], batches_[b].work); });
     emit_in_order();
+    // After a split they are planned anew: parts in the order that the split itself gives, not in that of their history.
+    batches_ready_ = std::none_of(batches_.begin(), batches_.end(), [](const Batch& b) { return b.split; });
     for (Batch& batch : batches_)
     {
         for (Batch::Part& part : batch.parts)

@@ -28,7 +28,7 @@ void Stepper::step(Tick tick, double start_time, double dt)
     report_ = {};
     reactions_.clear();
     if (!schedule_.of(Phase::Constrain).empty()) row_reports_.clear(world_.components().size());
-    frame_ = {&world_, &schedule_, &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed};
+    frame_ = {&world_, &schedule_, &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed, &told_.contradictory};
     for (const StepNode& node : kStepTree)
         if ((this->*node.needed)()) (this->*node.run)();
     collect_cost();

@@ -36,6 +36,13 @@ struct CostBook
     std::uint64_t total = 0;
 };
 
+/// What events told of already and would tell again only when it ends and comes back.
+struct Told
+{
+    bool stiff = false;                       ///< contact.stiff
+    std::vector<std::uint8_t> contradictory;  ///< constraint.contradiction, by component
+};
+
 /// Events of one thread, until all threads are done.
 class EventBuffer final : public EventSink
 {
@@ -59,6 +66,7 @@ struct Batch
 
     std::vector<Part> parts;
     std::size_t load = 0;
+    bool split = false;  ///< a part was refused in this step
     std::vector<double> work;
     std::unique_ptr<StageScratch> scratch;
     EventBuffer events;
@@ -99,6 +107,7 @@ public:
         if (component >= work_.size()) return;
         departed_work_ += work_[component];
         work_[component] = 0;
+        told_.contradictory[component] = 0;
     }
     /// J, by components that were removed since.
     double& departed_work() { return departed_work_; }
@@ -109,6 +118,20 @@ public:
     CostBook& cost() { return cost_; }
     const CostBook& cost() const { return cost_; }
     std::uint64_t state_hash() const;
+    /// Who shares systems with whom shows in the last digits of the ledger, so a snapshot keeps it.
+    const std::vector<std::uint32_t>& split() const { return split_; }
+    void continue_split(const std::vector<std::uint32_t>& split)
+    {
+        split_ = split, split_.resize(groups_.clusters, 0), batches_ready_ = false;
+    }
+    Told& told() { return told_; }
+    const Told& told() const { return told_; }
+    /// The last step's time and length: what a swap at the boundary after it takes forces from.
+    const StepFrame& frame() const { return frame_; }
+    void continue_after(Tick tick, double start_time, double step)
+    {
+        frame_.tick = tick, frame_.start_time = start_time, frame_.step = step;
+    }
     /// Where parameter changes of scripts go at the end of the drive phase.
     using ApplyChanges = void (*)(void* owner, std::vector<ParameterChange>& changes);
     void on_changes(ApplyChanges apply, void* owner) { apply_changes_ = apply, changes_owner_ = owner; }
@@ -246,6 +269,7 @@ private:
 
     std::vector<Batch> batches_;
     bool batches_ready_ = false;
+    std::vector<std::uint32_t> split_;  ///< by cluster: 0, or which part it went to when its solver refused to advance it with others
     SystemPool pool_;
 
     // Working lists, kept warm.
@@ -274,6 +298,7 @@ private:
     void* changes_owner_ = nullptr;
     std::vector<double> work_;
     double departed_work_ = 0, requests_work_ = 0;
+    Told told_;
     CostBook cost_;
     StepReport report_;
     ImageSink* images_ = nullptr;

@@ -104,11 +104,13 @@ Result<void> Stepper::rebuild()
     speed_system_.configure(world_, schedule_, groups_, island_all_, graph_);
     rewinds_possible_ = std::any_of(detectors_.begin(), detectors_.end(), [](const Detector& d) { return d.locates; });
     work_.resize(world_.components().size(), 0.0);
+    told_.contradictory.resize(world_.components().size(), 0);
     cost_.by_table.resize(world_.tables().size());
     segment_begin_.assign(groups_.all.size(), 0.0);
     found_.clear();
     pool_.clear(world_);
     batches_ready_ = false;
+    split_.assign(groups_.clusters, 0);
     row_reports_.clear(world_.components().size());
     sight_.structure_changed();
     start_.save(world_.host()), segment_.save(world_.host()), end_.save(world_.host());

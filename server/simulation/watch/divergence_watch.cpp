@@ -76,7 +76,7 @@ Ref fastest(const world::HostTables& host)
 
 }  // namespace
 
-bool DivergenceWatch::Growth::runs_away(double speed_squared, double least)
+bool DivergenceMemory::Growth::runs_away(double speed_squared, double least)
 {
     ++age;
     if (speed_squared > 4 * reference)
@@ -89,53 +89,67 @@ bool DivergenceWatch::Growth::runs_away(double speed_squared, double least)
     return doublings >= kMostDoublings;
 }
 
+DivergenceMemory DivergenceWatch::memory() const
+{
+    DivergenceMemory out = m_;
+    out.tunnels = tunnels_.memory();
+    return out;
+}
+
+void DivergenceWatch::recall(DivergenceMemory memory)
+{
+    tunnels_.recall(std::move(memory.tunnels));
+    m_ = std::move(memory);
+    m_.tunnels = {};
+}
+
 void DivergenceWatch::size_for(const Simulation& s)
 {
     const world::HostTables& host = s.world().host();
-    if (way_.size() != host.bodies.size()) way_.assign(host.bodies.size(), {}), spin_.assign(host.bodies.size(), {});
-    if (turn_.size() != host.shafts.size()) turn_.assign(host.shafts.size(), {});
-    bodies_told_.resize(host.bodies.size()), shafts_told_.resize(host.shafts.size());
+    if (m_.way.size() != host.bodies.size()) m_.way.assign(host.bodies.size(), {}), m_.spin.assign(host.bodies.size(), {});
+    if (m_.turn.size() != host.shafts.size()) m_.turn.assign(host.shafts.size(), {});
+    m_.bodies_told.resize(host.bodies.size()), m_.shafts_told.resize(host.shafts.size());
 }
 
 /// Whether this is the first word about `who`.
 bool DivergenceWatch::tell(Ref who)
 {
-    std::uint8_t& told = who.facet == Facet::Body ? bodies_told_[who.index] : shafts_told_[who.index];
+    std::uint8_t& told = who.facet == Facet::Body ? m_.bodies_told[who.index] : m_.shafts_told[who.index];
     return std::exchange(told, std::uint8_t{1}) == 0;
 }
 
 void DivergenceWatch::before_step(const Simulation& s)
 {
     tunnels_.before_step(s);
-    if (counting_) return;
+    if (m_.counting) return;
     const Stepper& stepper = s.stepper();
     const world::HostTables& host = s.world().host();
-    counting_ = true, told_ = false, sealed_ = sealed(host), gaining_since_ = -1, gaining_steps_ = 0;
+    m_.counting = true, m_.told = false, m_.sealed = sealed(host), m_.gaining_since = -1, m_.gaining_steps = 0;
     size_for(s);
-    start_work_ = stepper.work();
-    start_other_work_ = stepper.departed_work() + stepper.requests_work();
-    passive_.assign(start_work_.size(), 0);
-    if (sealed_)
+    m_.start_work = stepper.work();
+    m_.start_other_work = stepper.departed_work() + stepper.requests_work();
+    m_.passive.assign(m_.start_work.size(), 0);
+    if (m_.sealed)
     {
         for (const Block& block : stepper.schedule().of(Phase::Potential))
-            for (const Row row : block.rows) passive_[s.world().tables()[block.table]->component_of_row()[row]] = 1;
+            for (const Row row : block.rows) m_.passive[s.world().tables()[block.table]->component_of_row()[row]] = 1;
         for (const Detector& d : stepper.detectors())
-            if (d.response != kNoIndex) passive_[d.response] = 0;
+            if (d.response != kNoIndex) m_.passive[d.response] = 0;
     }
-    last_kinetic_ = kinetic(host);
-    start_energy_ = energy(s, last_kinetic_);
+    m_.last_kinetic = kinetic(host);
+    m_.start_energy = energy(s, m_.last_kinetic);
 }
 
-double DivergenceWatch::energy(const Simulation& s, double kinetic) const { return sealed_ ? kinetic + s.stored_energy() : kinetic; }
+double DivergenceWatch::energy(const Simulation& s, double kinetic) const { return m_.sealed ? kinetic + s.stored_energy() : kinetic; }
 
 DivergenceWatch::Sources DivergenceWatch::sources(const Simulation& s) const
 {
     const Stepper& stepper = s.stepper();
-    const double other = stepper.departed_work() + stepper.requests_work() - start_other_work_;
+    const double other = stepper.departed_work() + stepper.requests_work() - m_.start_other_work;
     Sources out{other, std::fabs(other)};
-    for (std::size_t c = 0; c < std::min(start_work_.size(), stepper.work().size()); ++c)
+    for (std::size_t c = 0; c < std::min(m_.start_work.size(), stepper.work().size()); ++c)
     {
-        const double work = passive_[c] != 0 ? 0 : stepper.work()[c] - start_work_[c];
+        const double work = m_.passive[c] != 0 ? 0 : stepper.work()[c] - m_.start_work[c];
         out.net += work, out.gross += std::fabs(work);
     }
     return out;
@@ -143,61 +157,66 @@ DivergenceWatch::Sources DivergenceWatch::sources(const Simulation& s) const
 
 void DivergenceWatch::after_step(const Simulation& s, std::vector<Event>& events)
 {
-    if (way_.empty() && turn_.empty()) return;
+    if (m_.way.empty() && m_.turn.empty()) return;
     tunnels_.after_step(s, events);
     look_at_growth(s, events);
-    if (!told_) look_at_energy(s, events);
+    if (!m_.told) look_at_energy(s, events);
 }
 
 void DivergenceWatch::look_at_growth(const Simulation& s, std::vector<Event>& events)
 {
     const world::HostTables& host = s.world().host();
     const double turn = kSmallTurn / s.dt();
-    const auto look = [&](Growth& growth, double speed_squared, double least, Ref who)
+    const auto look = [&](DivergenceMemory::Growth& growth, double speed_squared, double least, Ref who)
     {
         if (growth.runs_away(speed_squared, least) && tell(who))
             events.push_back(warning(s, who, "doubles its speed every few steps, on and on", {std::sqrt(speed_squared)}));
     };
-    for (std::uint32_t b = 0; b < host.bodies.size(); ++b)
+    // In the order of ids, as events stand.
+    for (const std::uint32_t i : s.world().in_id_order())
     {
-        if (!host.bodies.dynamic(b)) continue;
-        const double gyration = trace(host.bodies.inertia_B[b]) / 2 * host.bodies.inverse_mass[b];
-        look(way_[b], length_squared(host.bodies.velocity[b]), gyration * turn * turn, {Facet::Body, b});
-        look(spin_[b], length_squared(host.bodies.angular_velocity[b]), turn * turn, {Facet::Body, b});
+        const world::Component& c = s.world().component(i);
+        const std::uint32_t k = c.host_index;
+        if (c.facet == Facet::Body && host.bodies.dynamic(k))
+        {
+            const double gyration = trace(host.bodies.inertia_B[k]) / 2 * host.bodies.inverse_mass[k];
+            look(m_.way[k], length_squared(host.bodies.velocity[k]), gyration * turn * turn, c.ref(i));
+            look(m_.spin[k], length_squared(host.bodies.angular_velocity[k]), turn * turn, c.ref(i));
+        }
+        if (c.facet == Facet::Shaft && host.shafts.dynamic(k))
+            look(m_.turn[k], host.shafts.speed[k] * host.shafts.speed[k], turn * turn, c.ref(i));
     }
-    for (std::uint32_t k = 0; k < host.shafts.size(); ++k)
-        if (host.shafts.dynamic(k)) look(turn_[k], host.shafts.speed[k] * host.shafts.speed[k], turn * turn, {Facet::Shaft, k});
 }
 
 void DivergenceWatch::look_at_energy(const Simulation& s, std::vector<Event>& events)
 {
     const world::HostTables& host = s.world().host();
     const double now = kinetic(host);
-    if (now <= kLook * last_kinetic_ && gaining_steps_ == 0) return;
+    if (now <= kLook * m_.last_kinetic && m_.gaining_steps == 0) return;
     if (!std::isfinite(now))
     {
-        told_ = true;
+        m_.told = true;
         if (const Ref who = fastest(host); tell(who))
             events.push_back(warning(s, who, "moves faster than energies can be computed with", {now}));
         return;
     }
-    last_kinetic_ = std::max(now, last_kinetic_);
+    m_.last_kinetic = std::max(now, m_.last_kinetic);
     const Sources given = sources(s);
-    const double scale = std::fabs(start_energy_) + given.gross, gain = energy(s, now) - start_energy_ - given.net;
+    const double scale = std::fabs(m_.start_energy) + given.gross, gain = energy(s, now) - m_.start_energy - given.net;
     if (!(gain > kMostGain * scale + least_energy(host, s.dt())))
     {
-        gaining_steps_ = 0;
+        m_.gaining_steps = 0;
         return;
     }
-    if (gaining_steps_ == 0) gaining_since_ = s.tick();
-    if (++gaining_steps_ < kPatience) return;
-    told_ = true;
+    if (m_.gaining_steps == 0) m_.gaining_since = s.tick();
+    if (++m_.gaining_steps < kPatience) return;
+    m_.told = true;
     char text[160];
     std::snprintf(text, sizeof text,
                   "is the fastest where energy comes from nowhere: %.3g J since step %lld, while %.3g J were there or put in", gain,
-                  static_cast<long long>(gaining_since_), scale);
+                  static_cast<long long>(m_.gaining_since), scale);
     if (const Ref who = fastest(host); tell(who))
-        events.push_back(warning(s, who, text, {gain, scale, static_cast<double>(gaining_since_)}));
+        events.push_back(warning(s, who, text, {gain, scale, static_cast<double>(m_.gaining_since)}));
 }
 
 }  // namespace plab::simulation

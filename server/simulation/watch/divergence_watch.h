@@ -26,16 +26,9 @@ namespace plab::simulation
 
 class Simulation;
 
-class DivergenceWatch
+/// What a watch remembers from step to step.
+struct DivergenceMemory
 {
-public:
-    /// Something was changed from outside: energy is counted from the next step on, who collides is looked up anew.
-    void begin_anew() { counting_ = false, tunnels_.begin_anew(); }
-    void before_step(const Simulation& s);
-    /// Adds to `events`; once per run and object.
-    void after_step(const Simulation& s, std::vector<Event>& events);
-
-private:
     struct Growth
     {
         double reference = 0;  ///< the speed's square when it doubled last, (m/s)^2 or (rad/s)^2
@@ -43,6 +36,31 @@ private:
         /// Whether the speed grows without hold; `least`: what counts as moving.
         bool runs_away(double speed_squared, double least);
     };
+    bool counting = false, told = false, sealed = false;
+    double start_energy = 0, last_kinetic = 0;  ///< J
+    double start_other_work = 0;                ///< J, of requests and of components that are gone
+    Tick gaining_since = -1;
+    std::int64_t gaining_steps = 0;
+    std::vector<double> start_work;       ///< J, by component
+    std::vector<std::uint8_t> passive;    ///< by component: gives no energy of its own
+    std::vector<Growth> way, spin, turn;  ///< by body, body, shaft
+    std::vector<std::uint8_t> bodies_told, shafts_told;
+    TunnelMemory tunnels;
+};
+
+class DivergenceWatch
+{
+public:
+    /// Something was changed from outside: energy is counted from the next step on, who collides is looked up anew.
+    void begin_anew() { m_.counting = false, tunnels_.begin_anew(); }
+    DivergenceMemory memory() const;
+    /// Goes on as the watch that remembered this did.
+    void recall(DivergenceMemory memory);
+    void before_step(const Simulation& s);
+    /// Adds to `events`; once per run and object.
+    void after_step(const Simulation& s, std::vector<Event>& events);
+
+private:
     struct Sources
     {
         double net = 0, gross = 0;  ///< J
@@ -56,15 +74,7 @@ private:
     double energy(const Simulation& s, double kinetic) const;
 
     TunnelWatch tunnels_;
-    bool counting_ = false, told_ = false, sealed_ = false;
-    double start_energy_ = 0, last_kinetic_ = 0;  ///< J
-    double start_other_work_ = 0;                 ///< J, of requests and of components that are gone
-    Tick gaining_since_ = -1;
-    int gaining_steps_ = 0;
-    std::vector<double> start_work_;         ///< J, by component
-    std::vector<std::uint8_t> passive_;      ///< by component: gives no energy of its own
-    std::vector<Growth> way_, spin_, turn_;  ///< by body, body, shaft
-    std::vector<std::uint8_t> bodies_told_, shafts_told_;
+    DivergenceMemory m_;  ///< but m_.tunnels: those are in tunnels_
 };
 
 }  // namespace plab::simulation

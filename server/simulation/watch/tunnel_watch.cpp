@@ -103,13 +103,13 @@ void TunnelWatch::look_up(const Simulation& s)
                 if (r.facet == Facet::Body) crowd.bodies.push_back(r.index);
         if (crowd.bodies.size() > 1) crowds_.push_back(std::move(crowd));
     }
-    told_.assign(host.bodies.size(), 0);
+    memory_.told.resize(host.bodies.size(), 0);
     start_.resize(host.bodies.size());
     least_width_.assign(host.bodies.size(), std::numeric_limits<double>::infinity());
     for (std::size_t b = 0; b < least_width_.size(); ++b)
         for (const Ref shape : host.bodies.shapes[b])
             least_width_[b] = std::min(least_width_[b], half_width(host.shapes.geometry[shape.index]));
-    sinking_.resize(host.bodies.size());
+    memory_.sinking.resize(host.bodies.size());
     shallow_ = std::numeric_limits<double>::infinity();
     for (const double width : least_width_)
         if (width > 0) shallow_ = std::min(shallow_, kDeep * width);
@@ -152,7 +152,7 @@ bool TunnelWatch::sweep(const Simulation& s, const Crowd& crowd)
     const std::span<const double> radius = s.stepper().radius_of_body();
     const auto is_fast = [&](std::uint32_t b)
     {
-        return bodies.dynamic(b) && told_[b] == 0 &&
+        return bodies.dynamic(b) && memory_.told[b] == 0 &&
                length_squared(bodies.position[b] - start_[b].position) > least_width_[b] * least_width_[b];
     };
     if (std::none_of(crowd.bodies.begin(), crowd.bodies.end(), is_fast)) return false;
@@ -201,8 +201,8 @@ void TunnelWatch::tell(const Simulation& s, const Crowd& crowd, std::vector<Even
     for (const Passage& p : passages_)
     {
         const std::uint32_t body = crowd.bodies[p.body];
-        if (told_[body] != 0) continue;
-        told_[body] = 1;
+        if (memory_.told[body] != 0) continue;
+        memory_.told[body] = 1;
         const Ref a{Facet::Body, body}, b{Facet::Body, crowd.bodies[p.other]};
         Event e;
         e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "contact.missed", e.severity = Severity::Warning;
@@ -237,7 +237,7 @@ void TunnelWatch::look_for_overlaps(const Simulation& s, std::vector<Event>& eve
         const double one = least_width_[c.a.index], two = least_width_[c.b.index];
         if (!(c.depth > kDeep * std::min(one > 0 ? one : two, two > 0 ? two : one))) continue;
         const Ref who = bodies.dynamic(c.a.index) ? c.a : c.b;
-        Sinking& sinking = sinking_[who.index];
+        TunnelMemory::Sinking& sinking = memory_.sinking[who.index];
         if (sinking.last == s.tick()) continue;
         sinking.steps = sinking.last + 1 == s.tick() ? sinking.steps + 1 : 1;
         sinking.last = s.tick();

@@ -15,6 +15,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "plab/context.h"
@@ -25,11 +26,26 @@ namespace plab::simulation
 
 class Simulation;
 
+/// What a watch for tunnelling remembers from step to step.
+struct TunnelMemory
+{
+    struct Sinking
+    {
+        Tick last = -2;  ///< step at whose end it was deep
+        int steps = 0;   ///< in a row
+    };
+    std::vector<std::uint8_t> told;  ///< by body; empty: nothing was told since the structure changed
+    std::vector<Sinking> sinking;    ///< by body
+};
+
 class TunnelWatch
 {
 public:
     /// The structure has changed: who collides with whom is looked up anew.
-    void begin_anew() { ready_ = false; }
+    void begin_anew() { ready_ = false, memory_.told.clear(); }
+    const TunnelMemory& memory() const { return memory_; }
+    /// Goes on as the watch that remembered this did.
+    void recall(TunnelMemory memory) { ready_ = false, memory_ = std::move(memory); }
     void before_step(const Simulation& s);
     /// Adds to `events`; once per body until begin_anew().
     void after_step(const Simulation& s, std::vector<Event>& events);
@@ -39,11 +55,6 @@ private:
     {
         Vec3 position;
         Quat orientation;
-    };
-    struct Sinking
-    {
-        Tick last = -2;  ///< step at whose end it was deep
-        int steps = 0;   ///< in a row
     };
     struct Crowd
     {
@@ -77,9 +88,8 @@ private:
     std::vector<Crowd> crowds_;
     std::vector<Place> start_;         ///< by body
     std::vector<double> least_width_;  ///< half of it, by body, m
-    std::vector<std::uint8_t> told_;   ///< by body
-    std::vector<Sinking> sinking_;     ///< by body
-    double shallow_ = 0;               ///< m: no overlap up to here is deep for anybody
+    TunnelMemory memory_;
+    double shallow_ = 0;  ///< m: no overlap up to here is deep for anybody
     // Of the crowd that is looked at.
     std::vector<Swept> swept_;          ///< by lower.x
     std::vector<const Swept*> active_;  ///< those that x has come to and not left

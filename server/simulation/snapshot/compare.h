@@ -1,0 +1,44 @@
+/// Where two runs differ: the first component in the order of ids, the first of its fields, both values.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "simulation/snapshot/snapshot.h"
+
+namespace plab::simulation
+{
+
+struct Difference
+{
+    std::string component;      ///< id; "pair A B" for contacts, empty for what belongs to nobody (the clock)
+    std::string field;          ///< of its type, or of its host row ("angular_momentum"), or of a contact
+    std::string first, second;  ///< values as text that reads back to the same bits; "-" where one side has none
+
+    std::string text() const;
+};
+
+struct Comparison
+{
+    bool params = true, outputs = false;  ///< beside the state, which always counts
+    bool ledger = false;                  ///< and what events are told from; its last digits depend on the number of threads
+    std::size_t most = 1;                 ///< differences to look for
+};
+
+/// Bitwise: 0 and -0 differ, a NaN equals itself. Components in id order, then contacts, then the clock.
+std::vector<Difference> differences(const SnapshotContent& first, const SnapshotContent& second, const Comparison& how = {});
+
+/// The first difference, if there is one.
+inline std::optional<Difference> compare(const Snapshot& first, const Snapshot& second, const Comparison& how = {})
+{
+    const auto all = differences(*first, *second, how);
+    return all.empty() ? std::nullopt : std::optional(all.front());
+}
+class Simulation;
+std::optional<Difference> compare(const Simulation& first, const Simulation& second, const Comparison& how = {});
+
+/// Of state alone, without a clock.
+std::optional<Difference> compare_worlds(const world::Image& first, const ContactsImage& first_contacts, const world::Image& second,
+                                         const ContactsImage& second_contacts);
+
+}  // namespace plab::simulation

@@ -1,0 +1,149 @@
+#include "simulation/snapshot/history.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/values.h"
+#include "simulation/simulation.h"
+
+namespace plab::simulation
+{
+std::size_t bytes_of(const Snapshot& snapshot)
+{
+    if (!snapshot) return 0;
+    const SnapshotContent& s = *snapshot;
+    const auto pairs = [](const auto& p) { return p.heads.size() * sizeof p.heads[0] + p.points.size() * sizeof p.points[0]; };
+    constexpr std::size_t kBody = 600, kShaft = 120;  // of all columns
+    return sizeof s + s.world.cells.size() + s.world.bodies.size() * kBody + s.world.shafts.size() * kShaft + pairs(s.contacts.pairs) +
+           pairs(s.contacts.parked) + pairs(s.contacts.force_pairs) + pairs(s.contacts.parked_force_pairs) +
+           s.ledger.work.size() * sizeof(double);
+}
+
+void History::configure(const HistoryOptions& options) { options_ = options, interval_ = options.interval; }
+
+Result<void> History::keep(const std::string& name, const Snapshot& snapshot)
+{
+    if (name.empty()) return reason("a snapshot needs a name");
+    const std::size_t bytes = bytes_of(snapshot);
+    std::size_t all = bytes;
+    for (const auto& [other, kept] : named_) all += other == name ? 0 : kept.bytes;
+    if (!named_.contains(name) && named_.size() >= options_.most_named)
+        return reason("there are " + std::to_string(named_.size()) + " snapshots already, no more are kept: forget one");
+    if (all > options_.most_named_bytes)
+        return reason("snapshots would take " + std::to_string(all >> 20) + " MB, more than the " +
+                      std::to_string(options_.most_named_bytes >> 20) + " MB that are kept: forget one");
+    named_[name] = {snapshot, bytes};
+    return {};
+}
+
+Result<Snapshot> History::find(const std::string& name) const
+{
+    if (const auto found = named_.find(name); found != named_.end()) return found->second.snapshot;
+    std::vector<std::string> known;
+    for (const auto& [other, kept] : named_) known.push_back(other);
+    return reason("no snapshot has the name '" + name + "'" + model::did_you_mean(name, known));
+}
+
+Result<void> History::forget(const std::string& name)
+{
+    if (auto found = find(name); !found) return found.errors();
+    named_.erase(name);
+    return {};
+}
+
+void History::begin(const Simulation& simulation)
+{
+    if (is_rewinding_) return;
+    course_.clear(), asked_.clear();
+    bytes_ = 0, interval_ = options_.interval;
+    if (options_.interval > 0) add_point(simulation);
+}
+
+void History::follow(const Simulation& simulation)
+{
+    if (options_.interval <= 0 || is_rewinding_ || simulation.time() < next_) return;
+    add_point(simulation);
+}
+
+void History::note(const Simulation& simulation, const Request& request)
+{
+    if (options_.interval <= 0 || is_rewinding_) return;
+    // Pause and rate are the present's: they are not asked again.
+    if (!concerns_the_course(request)) return;
+    if (begins_a_run(request.operations.front())) return;  // begin() was told of it
+    Asked asked{request, simulation.tick()};
+    asked.request.at.reset(), asked.request.revision.reset();
+    asked_.push_back(std::move(asked));
+}
+
+void History::add_point(const Simulation& simulation)
+{
+    Point point{simulation.capture(), simulation.tick(), simulation.time(), 0};
+    point.bytes = bytes_of(point.snapshot);
+    bytes_ += point.bytes, next_ = point.time + interval_;
+    course_.push_back(std::move(point));
+    while (bytes_ > options_.most_bytes && course_.size() > 2) thin();
+}
+
+/// The first one stays: the whole run can be made again, with more steps in between.
+void History::thin()
+{
+    std::vector<Point> kept;
+    bytes_ = 0;
+    for (std::size_t i = 0; i < course_.size(); i += 2)
+    {
+        bytes_ += course_[i].bytes;
+        kept.push_back(std::move(course_[i]));
+    }
+    course_ = std::move(kept);
+    interval_ *= 2;
+    next_ = course_.back().time + interval_;
+}
+
+Result<void> History::rewind(Simulation& simulation, double time)
+{
+    if (options_.interval <= 0) return reason("no history is kept: start plabd with --history SECONDS");
+    const double half = 0.5 * simulation.dt();
+    if (!(time <= simulation.time() + half))
+        return reason("t = " + model::format_real(time) + " s is ahead: the run is at " + model::format_real(simulation.time()) + " s");
+    if (!(time >= earliest() - half))
+        return reason("t = " + model::format_real(time) + " s is before what is kept of this run, which begins at " +
+                      model::format_real(earliest()) + " s");
+    const auto after = std::find_if(course_.begin(), course_.end(), [&](const Point& p) { return p.time > time + half; });
+    const Point from = *(after - 1);
+    std::vector<Asked> again;
+    for (const Asked& a : asked_)
+        if (a.step >= from.step) again.push_back(a);
+    const Snapshot present = simulation.capture();
+    is_rewinding_ = true;
+    auto done = simulation.restore(from.snapshot);
+    if (done) done = go_forward(simulation, again, time);
+    if (!done) (void)simulation.restore(present);
+    is_rewinding_ = false;
+    if (!done) return done;
+    const Tick step = simulation.tick();
+    std::erase_if(course_, [&](const Point& p) { return p.step > step; });
+    std::erase_if(asked_, [&](const Asked& a) { return a.step >= step; });
+    bytes_ = 0;
+    for (const Point& p : course_) bytes_ += p.bytes;
+    next_ = course_.back().time + interval_;
+    return {};
+}
+
+Result<void> History::go_forward(Simulation& simulation, const std::vector<Asked>& asked, double time)
+{
+    std::size_t next = 0;
+    while (simulation.time() < time - 0.5 * simulation.dt())
+    {
+        for (; next < asked.size() && asked[next].step == simulation.tick(); ++next)
+            if (const Reply reply = simulation.carry_out_now(asked[next].request); !reply.done)
+                return reason("a request of step " + std::to_string(asked[next].step) +
+                              " cannot be carried out again: " + (reply.errors.empty() ? std::string() : reply.errors.front().text()));
+        simulation.step_once();
+    }
+    // Whoever waited for a step that was made again was among those that were asked again.
+    simulation.forget_late_requests();
+    return {};
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,178 @@
+// Going back: snapshots by name, and rewinding a run, with what was asked in between.
+#include "simulation/snapshot/history.h"
+
+#include "support/scene.h"
+
+namespace plab::test
+{
+namespace
+{
+
+constexpr const char* kBalls = R"(
+  <component id="earth" type="Field/Gravity" between="ball"/>
+  <component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
+  <component id="round" type="Shape/Sphere" radius="0.1"/>
+  <component id="ball" type="State/RigidBody" shape="round" mass="1" position="0 0 0.5" linear_velocity="0.3 0 0"/>
+  <component id="contact" type="CDetection/ODE" between="*"/>
+  <component id="wind" type="Field/Drag" between="ball" linear="0.01"/>)";
+simulation::HistoryOptions every(double interval, std::size_t bytes = 64u << 20)
+{
+    simulation::HistoryOptions options;
+    options.interval = interval, options.most_bytes = bytes;
+    return options;
+}
+
+/// A scene whose run keeps its history from the beginning on.
+struct Kept
+{
+    explicit Kept(const simulation::HistoryOptions& options) : scene(kBalls, "dt=\"1/100\"")
+    {
+        REQUIRE_MESSAGE(scene.loaded(), scene.error());
+        scene.simulation().history().configure(options);
+        REQUIRE(scene.ask(simulation::ResetOperation{}).done);
+    }
+    simulation::Simulation& s() { return scene.simulation(); }
+    Scene scene;
+};
+
+std::string refusal(const simulation::Reply& reply)
+{
+    CHECK(!reply.done);
+    return reply.errors.empty() ? "" : reply.errors.front().text();
+}
+
+}  // namespace
+
+TEST_CASE("a rewound run stands where it stood, to the last bit, and goes on as it went")
+{
+    Kept kept(every(0.1));
+    std::vector<std::uint64_t> hashes{kept.scene.hash()};
+    for (int i = 0; i < 100; ++i)
+    {
+        if (i == 37) CHECK(kept.scene.ask(simulation::SetOperation{"ball", "mass", std::string("2")}).done);
+        if (i == 61) CHECK(kept.scene.ask(simulation::PushOperation{"ball", {0.2, 0, 0}, {}}).done);
+        kept.scene.step();
+        hashes.push_back(kept.scene.hash());
+    }
+    const std::uint64_t run = kept.s().run();
+    // Before both requests, between them, on a snapshot of its own, after both.
+    for (const int step : {93, 70, 62, 60, 50, 38, 36, 20, 3, 0})
+    {
+        REQUIRE(kept.scene.ask(simulation::RewindOperation{step / 100.0, false}).done);
+        CHECK(kept.s().tick() == step);
+        CHECK(kept.scene.hash() == hashes[static_cast<std::size_t>(step)]);
+    }
+    CHECK(kept.s().run() > run);
+    // What came later is forgotten: without the requests the run takes another course from step 37 on, the same until then.
+    for (int i = 1; i <= 37; ++i)
+    {
+        kept.scene.step();
+        CHECK(kept.scene.hash() == hashes[static_cast<std::size_t>(i)]);
+    }
+    kept.scene.step(30);
+    CHECK(kept.scene.hash() != hashes[67]);
+}
+
+TEST_CASE("what is asked at the step that is rewound to can be asked otherwise")
+{
+    Kept kept(every(0.1));
+    kept.scene.step(50);
+    const std::uint64_t before = kept.scene.hash();
+    REQUIRE(kept.scene.ask(simulation::SetOperation{"ball", "mass", std::string("3")}).done);
+    kept.scene.step(25);
+    REQUIRE(kept.scene.ask(simulation::RewindOperation{0.25, true}).done);
+    CHECK(kept.s().tick() == 50);
+    CHECK(kept.scene.hash() == before);
+    CHECK(kept.scene.real("ball", "mass") == 1.0);
+}
+
+TEST_CASE("pause and rate stay those of the present, and no request is answered twice")
+{
+    Kept kept(every(0.1));
+    simulation::Request later;
+    later.id = 7, later.at = 30;
+    later.operations.push_back(simulation::SetOperation{"ball", "mass", std::string("2")});
+    kept.s().post(later);
+    kept.scene.step(60);
+    CHECK(kept.s().take_replies().size() == 1);
+    const std::uint64_t at_40 = [&]
+    {
+        Kept again(every(0.1));
+        again.s().post(later);
+        again.scene.step(40);
+        return again.scene.hash();
+    }();
+    REQUIRE(kept.scene.ask_all({simulation::PauseOperation{}, simulation::RateOperation{3}}).done);
+    REQUIRE(kept.scene.ask(simulation::RewindOperation{0.4, false}).done);
+    CHECK(kept.s().paused());
+    CHECK(kept.s().rate() == 3);
+    CHECK(kept.scene.hash() == at_40);
+    CHECK(kept.s().pending_requests() == 0);
+    // Before the request took effect it waits again, as it did then.
+    REQUIRE(kept.scene.ask(simulation::RewindOperation{0.2, false}).done);
+    CHECK(kept.s().pending_requests() == 1);
+}
+
+TEST_CASE("what cannot be reached is refused, and nothing has changed")
+{
+    Kept kept(every(0.1));
+    kept.scene.step(20);
+    const std::uint64_t hash = kept.scene.hash(), run = kept.s().run();
+    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{0.3, false})).find("is ahead") != std::string::npos);
+    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{-0.1, false})).find("before what is kept") != std::string::npos);
+    CHECK(refusal(kept.scene.ask(simulation::RestoreOperation{"nobody"})).find("no snapshot has the name 'nobody'") != std::string::npos);
+    CHECK(refusal(kept.scene.ask(simulation::ForgetOperation{"nobody"})).find("no snapshot has the name") != std::string::npos);
+    CHECK(kept.scene.hash() == hash);
+    CHECK(kept.s().run() == run);
+
+    Scene plain(kBalls);
+    REQUIRE(plain.loaded());
+    plain.step(5);
+    CHECK(refusal(plain.ask(simulation::RewindOperation{0, false})).find("no history is kept") != std::string::npos);
+}
+
+TEST_CASE("named snapshots outlive runs and swaps, and are given up by name")
+{
+    Kept kept(every(0));
+    kept.scene.step(30);
+    const std::uint64_t hash = kept.scene.hash();
+    REQUIRE(kept.scene.ask(simulation::SnapshotOperation{"s30"}).done);
+    CHECK(kept.scene.hash() == hash);
+    kept.scene.step(10);
+    const std::uint64_t then = kept.scene.hash();
+    REQUIRE(kept.scene.ask(simulation::RemoveOperation{"wind"}).done);
+    kept.scene.step(10);
+    REQUIRE(kept.scene.ask(simulation::ResetOperation{}).done);
+    REQUIRE(kept.scene.ask(simulation::RestoreOperation{"s30"}).done);
+    CHECK(kept.s().tick() == 30);
+    CHECK(kept.scene.hash() == hash);
+    kept.scene.step(10);
+    CHECK(kept.scene.hash() == then);
+    REQUIRE(kept.s().history().named().size() == 1);
+    REQUIRE(kept.scene.ask(simulation::ForgetOperation{"s30"}).done);
+    CHECK(kept.s().history().named().empty());
+}
+
+TEST_CASE("memory stays bounded, and the whole run stays within reach")
+{
+    constexpr std::size_t kBytes = 200'000;
+    Kept kept(every(0.01, kBytes));
+    std::vector<std::uint64_t> hashes{kept.scene.hash()};
+    for (int i = 0; i < 1500; ++i)
+    {
+        kept.scene.step();
+        hashes.push_back(kept.scene.hash());
+    }
+    const std::size_t each = simulation::bytes_of(kept.s().capture());
+    REQUIRE(each > 0);
+    CHECK_MESSAGE(each * 1500 > 2 * kBytes, "the bound was never met: ", each);
+    CHECK(kept.s().history().earliest() == 0);
+    CHECK(kept.s().history().bytes() <= kBytes);
+    for (const int step : {1400, 777, 12})
+    {
+        REQUIRE(kept.scene.ask(simulation::RewindOperation{step / 100.0, false}).done);
+        CHECK(kept.scene.hash() == hashes[static_cast<std::size_t>(step)]);
+    }
+}
+
+}  // namespace plab::test
