@@ -8,7 +8,7 @@ namespace plab::wire
 namespace
 {
 
-constexpr std::array<Topic, 13> kTopics{{
+constexpr std::array<Topic, 17> kTopics{{
     {"plab/server", &plab_v1_Server_desc, Delivery::Catalogue, "the server's state, at least once a second"},
     {"plab/scene", &plab_v1_Scene_desc, Delivery::Catalogue, "what is loaded, and its cameras"},
     {"plab/objects", &plab_v1_Object_desc, Delivery::Catalogue, "bodies and shafts"},
@@ -22,6 +22,10 @@ constexpr std::array<Topic, 13> kTopics{{
     {"plab/requests", &plab_v1_Request_desc, Delivery::Request, "what clients ask for"},
     {"plab/replies", &plab_v1_Reply_desc, Delivery::Reply, "answers, each for one client"},
     {"plab/images", &plab_v1_Image_desc, Delivery::Newest, "pictures of cameras in the scene"},
+    {"plab/journal", &plab_v1_Journal_desc, Delivery::Log, "requests that took effect, in words"},
+    {"plab/hashes", &plab_v1_Hashes_desc, Delivery::Log, "the state hash of every step"},
+    {"plab/snapshots", &plab_v1_Snapshot_desc, Delivery::Newest, "everything that a run needs to go on from there"},
+    {"plab/gone", &plab_v1_Gone_desc, Delivery::Log, "in recordings only: catalogue entries that were disposed of"},
 }};
 
 }  // namespace
@@ -48,6 +52,10 @@ PLAB_TOPIC(plab_v1_Metrics, 9)
 PLAB_TOPIC(plab_v1_Request, 10)
 PLAB_TOPIC(plab_v1_Reply, 11)
 PLAB_TOPIC(plab_v1_Image, 12)
+PLAB_TOPIC(plab_v1_Journal, 13)
+PLAB_TOPIC(plab_v1_Hashes, 14)
+PLAB_TOPIC(plab_v1_Snapshot, 15)
+PLAB_TOPIC(plab_v1_Gone, 16)
 #undef PLAB_TOPIC
 
 Qos qos_of(Delivery delivery)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "bus/wire_view.h"
+#include "wire/wire_view.h"
 
 namespace plab::bus
 {
@@ -59,7 +59,7 @@ template <class T, char* T::*Key, class Sample>
 void Shelf<T, Key, Sample>::dispose_key(const std::string& id, Trouble& trouble)
 {
     T key{};
-    key.*Key = text(id);
+    key.*Key = wire::text(id);
     (void)trouble.check(wire::topic_of<T>().name, writer_.dispose(key));
 }
 
@@ -122,7 +122,7 @@ void Catalogue::dispose_all(Trouble& trouble)
     types_.dispose_all_but(
         std::vector<std::string>{}, [](const std::string& s) -> std::string_view { return s; }, trouble);
     plab_v1_Scene key{};
-    key.server = text(server_);
+    key.server = wire::text(server_);
     (void)trouble.check(wire::topic_of<plab_v1_Scene>().name, scene_.dispose(key));
 }
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "bus/samples.h"
 #include "bus/trouble.h"
 #include "idl/entity.h"
+#include "wire/samples.h"
 
 namespace plab::bus
 {
@@ -54,11 +54,11 @@ private:
 
     std::string server_;
     wire::Writer<plab_v1_Scene> scene_;
-    SceneSample scene_sample_;
-    Shelf<plab_v1_Object, &plab_v1_Object::component, ObjectSample> objects_;
-    Shelf<plab_v1_Shape, &plab_v1_Shape::component, ShapeSample> shapes_;
-    Shelf<plab_v1_Interaction, &plab_v1_Interaction::component, InteractionSample> interactions_;
-    Shelf<plab_v1_Type, &plab_v1_Type::type_name, TypeSample> types_;
+    wire::SceneSample scene_sample_;
+    Shelf<plab_v1_Object, &plab_v1_Object::component, wire::ObjectSample> objects_;
+    Shelf<plab_v1_Shape, &plab_v1_Shape::component, wire::ShapeSample> shapes_;
+    Shelf<plab_v1_Interaction, &plab_v1_Interaction::component, wire::InteractionSample> interactions_;
+    Shelf<plab_v1_Type, &plab_v1_Type::type_name, wire::TypeSample> types_;
 };
 
 }  // namespace plab::bus

@@ -1,9 +1,6 @@
 #include "bus/presence.h"
 
-#include <string_view>
-#include <tuple>
-
-#include "bus/wire_view.h"
+#include "wire/wire_view.h"
 
 namespace plab::bus
 {
@@ -13,13 +10,6 @@ namespace
 constexpr std::chrono::seconds kHeartbeat(1);
 
 }  // namespace
-
-bool keeps_the_name(const plab_v1_Server& other, const Identity& self)
-{
-    if (other.started_ns <= 0 || other.host == nullptr || other.name == nullptr || self.name != other.name) return false;
-    const auto order = [](std::int64_t started, std::string_view host, std::int32_t process) { return std::tuple(started, host, process); };
-    return order(other.started_ns, other.host, other.process) < order(self.started_ns, self.host, self.process);
-}
 
 Result<void> Presence::open(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber)
 {
@@ -37,7 +27,7 @@ void Presence::push(const publish::Status& status)
     ring_.end_push();
 }
 
-void Presence::send(Clock::time_point now, std::span<const Dropped> dropped, Trouble& trouble)
+void Presence::send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble)
 {
     bool is_new = false;
     while (publish::Status* status = ring_.begin_pop())
@@ -61,7 +51,7 @@ std::optional<std::string> Presence::look_for_rival()
     std::optional<std::string> why;
     const auto compare = [&](const plab_v1_Server& other, const dds_sample_info_t& info)
     {
-        if (why || !info.valid_data || info.instance_state != DDS_IST_ALIVE || !keeps_the_name(other, identity_)) return;
+        if (why || !info.valid_data || info.instance_state != DDS_IST_ALIVE || !wire::keeps_the_name(other, identity_)) return;
         why = "a server '" + identity_.name + "' runs already on host " + other.host + " (process " + std::to_string(other.process) +
               ") and started earlier: give this one another name";
     };
@@ -72,7 +62,7 @@ std::optional<std::string> Presence::look_for_rival()
 void Presence::dispose(Trouble& trouble)
 {
     plab_v1_Server key{};
-    key.name = text(identity_.name);
+    key.name = wire::text(identity_.name);
     if (status_) (void)trouble.check(wire::topic_of<plab_v1_Server>().name, writer_.dispose(key));
 }
 

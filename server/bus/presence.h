@@ -4,10 +4,10 @@
 #include <chrono>
 #include <optional>
 
-#include "bus/samples.h"
 #include "bus/trouble.h"
 #include "idl/entity.h"
 #include "publish/ring.h"
+#include "wire/samples.h"
 
 namespace plab::bus
 {
@@ -16,13 +16,13 @@ class Presence
 {
 public:
     using Clock = std::chrono::steady_clock;
-    explicit Presence(Identity identity) : identity_(std::move(identity)) {}
+    explicit Presence(wire::Identity identity) : identity_(std::move(identity)) {}
 
     Result<void> open(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber);
     /// Step thread.
     void push(const publish::Status& status);
     /// The newest status if there is a new one, and the last one again when nobody heard of it for a second.
-    void send(Clock::time_point now, std::span<const Dropped> dropped, Trouble& trouble);
+    void send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble);
     /// Until send() is due without a new status.
     Clock::duration due_in(Clock::time_point now) const;
     /// Why this server has to go, if it has: the first one keeps the name.
@@ -31,17 +31,13 @@ public:
     dds_entity_t writer() const { return writer_.entity().get(); }
 
 private:
-    Identity identity_;
+    wire::Identity identity_;
     publish::Ring<publish::Status> ring_{4};
     wire::Writer<plab_v1_Server> writer_;
     wire::Reader<plab_v1_Server> reader_;
-    ServerSample sample_;
+    wire::ServerSample sample_;
     std::optional<publish::Status> status_;
     Clock::time_point written_{};
 };
-
-/// Whether `other` is another server of this name, and may keep it: it started earlier, or at the same time and comes
-/// first by host and process.
-bool keeps_the_name(const plab_v1_Server& other, const Identity& self);
 
 }  // namespace plab::bus

@@ -3,9 +3,9 @@
 
 #include "bus/outbox.h"
 #include "bus/request_book.h"
-#include "bus/samples.h"
 #include "idl/entity.h"
 #include "publish/ring.h"
+#include "wire/samples.h"
 
 namespace plab::bus
 {
@@ -45,7 +45,7 @@ private:
     publish::Ring<publish::RequestText> requests_;
     publish::Ring<publish::Answer> answers_;
     publish::Answer answer_;
-    ReplySample sample_;
+    wire::ReplySample sample_;
     wire::Writer<plab_v1_Reply> writer_;
     wire::Reader<plab_v1_Request> reader_;
     Outbox outbox_;

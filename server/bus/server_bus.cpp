@@ -1,7 +1,6 @@
 #include "bus/server_bus.h"
 
 #include <pthread.h>
-#include <unistd.h>
 
 #include <csignal>
 
@@ -14,14 +13,6 @@ namespace
 
 constexpr std::size_t kChanges = 1024;  ///< of the catalogue, that may wait
 
-Identity identity_of(const BusOptions& options)
-{
-    std::array<char, 256> host{};
-    (void)gethostname(host.data(), host.size() - 1);
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return {options.name, options.version, host.data(), getpid(), std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()};
-}
-
 struct ListenerDeleter
 {
     void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
@@ -31,7 +22,7 @@ struct ListenerDeleter
 struct Bell
 {
     std::atomic<bool>* mark;
-    WakeUp* wake_up;
+    publish::WakeUp* wake_up;
     void ring() const
     {
         mark->store(true, std::memory_order_release);
@@ -45,7 +36,7 @@ Result<std::unique_ptr<ServerBus>> ServerBus::open(const BusOptions& options)
 {
     if (!wire::is_server_name(options.name))
         return reason("'" + options.name + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
-    auto lock = NameLock::take(options.domain, options.name);
+    auto lock = wire::NameLock::take(options.domain, options.name);
     if (!lock) return lock.errors();
     std::unique_ptr<ServerBus> bus(new ServerBus(options, lock.take()));
     if (auto joined = bus->join(); !joined) return joined.errors();
@@ -53,13 +44,13 @@ Result<std::unique_ptr<ServerBus>> ServerBus::open(const BusOptions& options)
     return bus;
 }
 
-ServerBus::ServerBus(const BusOptions& options, NameLock lock)
+ServerBus::ServerBus(const BusOptions& options, wire::NameLock lock)
     : options_(options),
       lock_(std::move(lock)),
       trouble_(options.log, options.log_argument),
       changes_(kChanges),
       catalogue_(options.name),
-      presence_(identity_of(options)),
+      presence_(wire::identify(options.name, options.version)),
       desk_(trouble_)
 {
 }
@@ -95,6 +86,9 @@ Result<void> ServerBus::join()
     if (auto opened = states_.be(true, participant_, publisher_); !opened) return opened;
     if (auto opened = events_.be(true, participant_, publisher_); !opened) return opened;
     if (auto opened = metrics_.be(true, participant_, publisher_); !opened) return opened;
+    if (auto opened = journal_.be(true, participant_, publisher_); !opened) return opened;
+    if (auto opened = hashes_.be(true, participant_, publisher_); !opened) return opened;
+    if (auto opened = snapshots_.be(true, participant_, publisher_); !opened) return opened;
     if (auto opened = desk_.open(participant_, publisher_, subscriber_); !opened) return opened;
     return presence_.open(participant_, publisher_, subscriber_);
 }
@@ -133,6 +127,12 @@ auto ServerBus::of(publish::Stream stream, Function function) const
             return function(metrics_);
         case publish::Stream::Images:
             return function(images_);
+        case publish::Stream::Journal:
+            return function(journal_);
+        case publish::Stream::Hashes:
+            return function(hashes_);
+        case publish::Stream::Snapshots:
+            return function(snapshots_);
         case publish::Stream::States:
             break;
     }
@@ -183,8 +183,34 @@ void ServerBus::image(publish::Image&& image)
     wake_up_.ring();
 }
 
+void ServerBus::journal(publish::JournalRecord&& entry)
+{
+    journal_.begin_push() = std::move(entry);
+    journal_.end_push();
+    wake_up_.ring();
+}
+
+void ServerBus::hash(std::uint64_t run, Tick step, std::uint64_t hash) { push(hash_batch_.add(run, step, hash, publish::monotonic_now())); }
+
+void ServerBus::push(std::optional<publish::HashRecord> record)
+{
+    if (!record) return;
+    hashes_.begin_push() = *std::move(record);
+    hashes_.end_push();
+    wake_up_.ring();
+}
+
+void ServerBus::snapshot(publish::SnapshotRecord&& snapshot)
+{
+    snapshots_.begin_push() = std::move(snapshot);
+    snapshots_.end_push();
+    wake_up_.ring();
+}
+
 void ServerBus::status(const publish::Status& status)
 {
+    // A run that stands still completes no batch; a status comes ten times a second at most.
+    push(status.paused ? hash_batch_.flush() : hash_batch_.flush_old(publish::monotonic_now()));
     presence_.push(status);
     wake_up_.ring();
 }

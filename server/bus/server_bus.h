@@ -7,11 +7,12 @@
 
 #include "bus/bus.h"
 #include "bus/catalogue.h"
-#include "bus/name_lock.h"
 #include "bus/presence.h"
 #include "bus/request_desk.h"
 #include "bus/stream.h"
-#include "bus/wake_up.h"
+#include "idl/name_lock.h"
+#include "publish/hash_batch.h"
+#include "publish/wake_up.h"
 
 namespace plab::bus
 {
@@ -31,6 +32,9 @@ public:
     void events(publish::Batch<publish::EventRecord>&& batch) override;
     void metrics(publish::Metrics&& metrics) override;
     void image(publish::Image&& image) override;
+    void journal(publish::JournalRecord&& entry) override;
+    void hash(std::uint64_t run, Tick step, std::uint64_t hash) override;
+    void snapshot(publish::SnapshotRecord&& snapshot) override;
     void status(const publish::Status& status) override;
     bool catalogue(publish::CatalogueChange&& change) override;
     bool take(publish::RequestText& request) override { return desk_.take(request); }
@@ -39,7 +43,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    ServerBus(const BusOptions& options, NameLock lock);
+    ServerBus(const BusOptions& options, wire::NameLock lock);
 
     Result<void> join();
     void start();
@@ -53,15 +57,16 @@ private:
     void look_at_readers();
     void send_catalogue();
     void follow_scene();
-    std::vector<Dropped> dropped() const;
+    void push(std::optional<publish::HashRecord> record);
+    std::vector<wire::Dropped> dropped() const;
     void say_goodbye();
     Clock::duration idle_time(Clock::time_point now) const;
 
     BusOptions options_;
-    NameLock lock_;
+    wire::NameLock lock_;
     Trouble trouble_;
 
-    WakeUp wake_up_;
+    publish::WakeUp wake_up_;
     std::atomic<bool> matched_{true}, arrived_{true};  ///< set by listeners of DDS, on its threads
     std::atomic<bool> stop_{false};
     std::atomic<bool> is_lost_{false};
@@ -72,11 +77,15 @@ private:
 
     publish::Ring<publish::CatalogueChange> changes_;
     std::atomic<std::size_t> changes_waiting_{0};
-    Stream<plab_v1_Frame, FrameSample, publish::Frame> states_{8};
-    Stream<plab_v1_Collisions, CollisionsSample, publish::Batch<publish::CollisionRecord>> collisions_{1024};
-    Stream<plab_v1_Events, EventsSample, publish::Batch<publish::EventRecord>> events_{1024};
-    Stream<plab_v1_Metrics, MetricsSample, publish::Metrics> metrics_{4};
-    Stream<plab_v1_Image, ImageSample, publish::Image> images_{2};
+    Stream<plab_v1_Frame, wire::FrameSample, publish::Frame> states_{8};
+    Stream<plab_v1_Collisions, wire::CollisionsSample, publish::Batch<publish::CollisionRecord>> collisions_{1024};
+    Stream<plab_v1_Events, wire::EventsSample, publish::Batch<publish::EventRecord>> events_{1024};
+    Stream<plab_v1_Metrics, wire::MetricsSample, publish::Metrics> metrics_{4};
+    Stream<plab_v1_Image, wire::ImageSample, publish::Image> images_{2};
+    Stream<plab_v1_Journal, wire::JournalSample, publish::JournalRecord> journal_{1024};
+    Stream<plab_v1_Hashes, wire::HashesSample, publish::HashRecord> hashes_{1024};
+    Stream<plab_v1_Snapshot, wire::SnapshotSample, publish::SnapshotRecord> snapshots_{2};
+    publish::HashBatch hash_batch_;  ///< step thread's
 
     Catalogue catalogue_;
     Presence presence_;

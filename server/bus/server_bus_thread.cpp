@@ -36,7 +36,7 @@ bool ServerBus::pass()
     }
     if (matched_.exchange(false, std::memory_order_acquire)) look_at_readers();
     send_catalogue();
-    const std::vector<Dropped> given_up = dropped();
+    const std::vector<wire::Dropped> given_up = dropped();
     presence_.send(now, given_up, trouble_);
     desk_.retry(now);
     // The catalogue was handed over before the answer: whoever has the reply finds in it what the request did.
@@ -45,6 +45,9 @@ bool ServerBus::pass()
     more = collisions_.send(kBurst, trouble_) || more;
     more = states_.send(kBurst, trouble_) || more;
     more = metrics_.send(kBurst, trouble_) || more;
+    more = journal_.send(kBurst, trouble_) || more;
+    more = hashes_.send(kBurst, trouble_) || more;
+    more = snapshots_.send(1, trouble_) || more;
     return images_.send(1, trouble_) || more;
 }
 
@@ -70,6 +73,9 @@ void ServerBus::look_at_readers()
     first = events_.look() || first;
     first = metrics_.look() || first;
     first = images_.look() || first;
+    first = journal_.look() || first;
+    first = hashes_.look() || first;
+    first = snapshots_.look() || first;
     if (first && options_.wake != nullptr) options_.wake(options_.wake_argument);
 }
 
@@ -97,15 +103,15 @@ void ServerBus::follow_scene()
     follow(images_, "Camera/");
 }
 
-std::vector<Dropped> ServerBus::dropped() const
+std::vector<wire::Dropped> ServerBus::dropped() const
 {
-    std::vector<Dropped> out;
+    std::vector<wire::Dropped> out;
     const auto add = [&](const auto& stream)
     {
         const std::uint64_t samples = stream.dropped() + trouble_.lost(stream.topic());
         if (samples > 0) out.push_back({stream.topic(), samples});
     };
-    add(states_), add(collisions_), add(events_), add(metrics_), add(images_);
+    add(states_), add(collisions_), add(events_), add(metrics_), add(images_), add(journal_), add(hashes_), add(snapshots_);
     return out;
 }
 
@@ -127,6 +133,7 @@ void ServerBus::say_goodbye()
         if (writer > 0 && left.count() > 0) (void)dds_wait_for_acks(writer, left.count());
     };
     flush(desk_.writer()), flush(events_.writer().get()), flush(collisions_.writer().get());
+    flush(journal_.writer().get()), flush(hashes_.writer().get());
     for (const dds_entity_t writer : catalogue_.writers()) flush(writer);
     flush(presence_.writer());
     trouble_.report();

@@ -14,12 +14,14 @@ namespace
 constexpr Nanoseconds kSecond = 1'000'000'000;
 /// Between samples of metrics that requests ask for: a client that sends a thousand a second does not get as many.
 constexpr Nanoseconds kShortestSample = 50'000'000;
+/// Between samples for those who count simulated time: a run that is faster than the clock is not held up by its figures.
+constexpr Nanoseconds kShortestOwnSample = 1'000'000;
 
 /// What makes a status news.
 auto matter_of(const Status& s)
 {
     return std::tie(s.scene_file, s.run, s.revision, s.dt, s.paused, s.rate_asked, s.slipping, s.threads, s.requests_done,
-                    s.requests_refused);
+                    s.requests_refused, s.snapshots, s.recording.file, s.recording.trouble);
 }
 
 }  // namespace
@@ -29,7 +31,8 @@ Collector::Collector(const CollectorOptions& options, std::vector<model::TypeSum
       catalogue_(std::move(types)),
       states_(options.states_per_second),
       metrics_(options.metrics_per_second),
-      scripted_(options.metrics_per_second)
+      scripted_(options.metrics_per_second),
+      snapshots_(options.seconds_between_snapshots > 0 ? 1 / options.seconds_between_snapshots : 0)
 {
 }
 
@@ -48,6 +51,26 @@ bool Collector::fresh(const Observer& observer, Stream stream, Wish& wish)
     return out;
 }
 
+/// Whether something is due by the observer's own interval of simulated time, or by the server's turn if it has none.
+bool Collector::in_turn(const Observer& observer, Stream stream, double time, double& next, bool servers_turn)
+{
+    const std::optional<double> interval = observer.interval(stream);
+    if (!interval) return servers_turn;
+    // Steps do not fall on the grid: the nearest one is taken.
+    if (time < next - 1e-6 * *interval) return false;
+    next += *interval;
+    if (next <= time) next = time + *interval;
+    return true;
+}
+
+void Collector::begin_run(const simulation::Simulation& s)
+{
+    if (s.run() == run_) return;
+    run_ = s.run();
+    // Time has begun again.
+    for (Watcher& w : watchers_) w.next_frame = w.next_metrics = s.time();
+}
+
 void Collector::collect(const simulation::Simulation& s, const simulation::Changes& changes, bool stepped)
 {
     // Events are numbered whether anybody reads them or not.
@@ -55,6 +78,8 @@ void Collector::collect(const simulation::Simulation& s, const simulation::Chang
     if (!watchers_.empty())
     {
         const Nanoseconds now = monotonic_now();
+        begin_run(s);
+        tell_moment(s);
         const bool requested = !stepped || changes.everything || !changes.touched.empty();
         catalogue_.follow(s, changes, stepped ? s.tick() - 1 : s.tick());
         if (scripted_.due(now)) catalogue_.release_scripted(s);
@@ -63,6 +88,7 @@ void Collector::collect(const simulation::Simulation& s, const simulation::Chang
         tell_states(s, now, s.paused() ? When::Now : When::InTurn);
         tell_events(s, counts);
         tell_metrics(s, now, requested ? When::Now : When::InTurn);
+        if (stepped) tell_hash(s);
     }
     next_collision_ += counts.collisions, next_event_ += counts.others;
 }
@@ -71,9 +97,15 @@ void Collector::idle(const simulation::Simulation& s)
 {
     if (watchers_.empty()) return;
     const Nanoseconds now = monotonic_now();
+    tell_moment(s);
     tell_catalogue(s, now);
     tell_states(s, now, When::ForNewcomers);
     tell_metrics(s, now, When::ForNewcomers);
+}
+
+void Collector::tell_moment(const simulation::Simulation& s)
+{
+    for (const Watcher& w : watchers_) w.observer->moment(s.run(), s.time());
 }
 
 void Collector::tell_catalogue(const simulation::Simulation& s, Nanoseconds now)
@@ -92,24 +124,77 @@ void Collector::tell_catalogue(const simulation::Simulation& s, Nanoseconds now)
 
 void Collector::tell_states(const simulation::Simulation& s, Nanoseconds now, When when)
 {
-    bool wanted = false, due = when == When::Now;
+    bool wanted = false, for_all = when == When::Now;
     for (Watcher& w : watchers_)
     {
-        due = fresh(*w.observer, Stream::States, w.states) || due;
+        for_all = fresh(*w.observer, Stream::States, w.states) || for_all;
         wanted = wanted || w.states.wanted;
     }
     if (!wanted) return;
-    due = (when == When::InTurn && states_.due(now)) || due;
-    if (!due) return;
-    ++frames_;
-    for (const Watcher& w : watchers_)
+    const bool servers_turn = when == When::InTurn && states_.due(now);
+    bool counted = false;
+    for (Watcher& w : watchers_)
     {
-        if (!w.states.wanted) continue;
+        const bool due = for_all || (when == When::InTurn && in_turn(*w.observer, Stream::States, s.time(), w.next_frame, servers_turn));
+        if (!w.states.wanted || !due) continue;
+        frames_ += counted ? 0 : 1;
+        counted = true;
         Frame& frame = w.observer->begin_frame();
         fill_frame(s, catalogue_.roster(), frame);
         frame.number = frames_;
         w.observer->end_frame();
+        // Out of turn: the next one is due an interval from here.
+        if (const auto interval = w.observer->interval(Stream::States); for_all && interval) w.next_frame = s.time() + *interval;
     }
+}
+
+void Collector::tell_hash(const simulation::Simulation& s)
+{
+    const auto wants = [](const Watcher& w) { return w.observer->wants(Stream::Hashes); };
+    if (std::none_of(watchers_.begin(), watchers_.end(), wants)) return;
+    const std::uint64_t hash = s.state_hash();
+    for (const Watcher& w : watchers_)
+        if (wants(w)) w.observer->hash(s.run(), s.tick(), hash);
+}
+
+void Collector::journal(JournalRecord entry)
+{
+    entry.number = next_journal_++;
+    for (const Watcher& w : watchers_)
+        if (w.observer->wants(Stream::Journal)) w.observer->journal(JournalRecord(entry));
+}
+
+std::optional<const char*> Collector::wants_snapshot(const simulation::Simulation& s)
+{
+    bool begin = false, periodic = false, wanted = false;
+    for (Watcher& w : watchers_)
+    {
+        begin = fresh(*w.observer, Stream::Snapshots, w.snapshots) || begin;
+        wanted = wanted || w.snapshots.wanted;
+        begin = begin || (w.snapshots.wanted && w.snapshot_run != s.run());
+    }
+    if (!wanted) return {};
+    const bool servers_turn = snapshots_.due(monotonic_now());
+    for (Watcher& w : watchers_)
+    {
+        if (!w.snapshots.wanted) continue;
+        if (std::exchange(w.snapshot_run, s.run()) != s.run()) w.next_snapshot = s.time();
+        periodic = in_turn(*w.observer, Stream::Snapshots, s.time(), w.next_snapshot, servers_turn) || periodic;
+    }
+    if (begin) return "begin";
+    if (periodic) return "periodic";
+    return {};
+}
+
+bool Collector::anybody_reads_snapshots() const
+{
+    return std::any_of(watchers_.begin(), watchers_.end(), [](const Watcher& w) { return w.observer->wants(Stream::Snapshots); });
+}
+
+void Collector::snapshot(const SnapshotRecord& snapshot)
+{
+    for (const Watcher& w : watchers_)
+        if (w.observer->wants(Stream::Snapshots)) w.observer->snapshot(SnapshotRecord(snapshot));
 }
 
 void Collector::tell_events(const simulation::Simulation& s, const Counts& counts)
@@ -124,18 +209,21 @@ void Collector::tell_events(const simulation::Simulation& s, const Counts& count
 
 void Collector::tell_metrics(const simulation::Simulation& s, Nanoseconds now, When when)
 {
-    bool wanted = false;
+    bool wanted = false, own_turn = false;
     metrics_asked_ = metrics_asked_ || when == When::Now;
     for (Watcher& w : watchers_)
     {
         metrics_asked_ = fresh(*w.observer, Stream::Metrics, w.metrics) || metrics_asked_;
         wanted = wanted || w.metrics.wanted;
+        const bool may = w.metrics.wanted && when != When::ForNewcomers && now - sampled_ >= kShortestOwnSample;
+        own_turn = (may && in_turn(*w.observer, Stream::Metrics, s.time(), w.next_metrics, false)) || own_turn;
     }
     if (!wanted) metrics_asked_ = false;
     const bool out_of_turn = metrics_asked_ && now - sampled_ >= kShortestSample;
-    if (!wanted || !(out_of_turn || (when != When::ForNewcomers && metrics_.due(now)))) return;
+    if (!wanted || !(out_of_turn || own_turn || (when != When::ForNewcomers && metrics_.due(now)))) return;
     if (out_of_turn) metrics_.restart(now);
-    metrics_asked_ = false, sampled_ = now;
+    if (out_of_turn || !own_turn) metrics_asked_ = false;
+    sampled_ = now;
     const Metrics metrics = sampler_.sample(s, now);
     for (const Watcher& w : watchers_)
         if (w.metrics.wanted) w.observer->metrics(Metrics(metrics));
@@ -144,6 +232,7 @@ void Collector::tell_metrics(const simulation::Simulation& s, Nanoseconds now, W
 void Collector::note(const simulation::Simulation& s, EventRecord event)
 {
     Batch<EventRecord> batch;
+    tell_moment(s);
     batch.run = s.run(), batch.first = next_event_++, batch.step = s.tick();
     event.time = s.time();
     batch.entries.push_back(std::move(event));

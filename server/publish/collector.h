@@ -1,6 +1,7 @@
 /// Turns the state of a simulation into records, on the step thread, as far as observers want them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "publish/catalogue.h"
@@ -15,8 +16,9 @@ namespace plab::publish
 
 struct CollectorOptions
 {
-    double states_per_second = 60;  ///< of real time; 0: each step
-    double metrics_per_second = 4;  ///< of real time
+    double states_per_second = 60;         ///< of real time; 0: each step
+    double metrics_per_second = 4;         ///< of real time
+    double seconds_between_snapshots = 5;  ///< of real time, for observers without an interval of their own
 };
 
 class Collector
@@ -36,6 +38,13 @@ public:
     void idle(const simulation::Simulation& simulation);
     /// What a request did, as an event ("request.swap", ...), for everybody who watches. Its time is the present one.
     void note(const simulation::Simulation& simulation, EventRecord event);
+    /// A request took effect; its place in the order of all is filled in here.
+    void journal(JournalRecord entry);
+    /// Why a snapshot of the present state is wanted, if somebody wants one now: "begin" of a run or of an observer's
+    /// interest, or "periodic". Whoever asks must then hand one over.
+    std::optional<const char*> wants_snapshot(const simulation::Simulation& simulation);
+    bool anybody_reads_snapshots() const;
+    void snapshot(const SnapshotRecord& snapshot);
     /// Cheap enough to be called at each step: sends on change and once a second. What only counts on (step, time, rate
     /// reached, time slipped, numbers of events) is no change. States per second and those numbers are filled in here.
     void status(const Status& status);
@@ -55,7 +64,9 @@ private:
         Observer* observer = nullptr;
         bool needs_everything = true;
         Pace retry{1};
-        Wish states, metrics;
+        Wish states, metrics, snapshots;
+        double next_frame = 0, next_metrics = 0, next_snapshot = 0;  ///< s, simulated: of those with intervals of their own
+        std::uint64_t snapshot_run = 0;
     };
     enum class When
     {
@@ -64,21 +75,26 @@ private:
         ForNewcomers,
     };
     static bool fresh(const Observer& observer, Stream stream, Wish& wish);
+    static bool in_turn(const Observer& observer, Stream stream, double time, double& next, bool servers_turn);
 
+    void tell_moment(const simulation::Simulation& simulation);
     void tell_catalogue(const simulation::Simulation& simulation, Nanoseconds now);
     void tell_states(const simulation::Simulation& simulation, Nanoseconds now, When when);
     void tell_events(const simulation::Simulation& simulation, const Counts& counts);
     void tell_metrics(const simulation::Simulation& simulation, Nanoseconds now, When when);
+    void tell_hash(const simulation::Simulation& simulation);
+    void begin_run(const simulation::Simulation& simulation);
 
     CollectorOptions options_;
     Catalogue catalogue_;
     Sampler sampler_;
     std::vector<Watcher> watchers_;
-    Pace states_, metrics_, scripted_;
+    Pace states_, metrics_, scripted_, snapshots_;
+    std::uint64_t run_ = 0;
     Nanoseconds sampled_ = 0;     ///< when metrics went out last
     bool metrics_asked_ = false;  ///< out of turn
     std::uint64_t frames_ = 0;
-    std::uint64_t next_event_ = 1, next_collision_ = 1;
+    std::uint64_t next_event_ = 1, next_collision_ = 1, next_journal_ = 1;
     Status told_;
     Nanoseconds told_at_ = 0;
 };

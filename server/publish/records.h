@@ -155,6 +155,25 @@ struct Metrics
     std::vector<InteractionMetrics> interactions;
 };
 
+/// A snapshot that is kept under a name.
+struct KeptSnapshot
+{
+    std::string name;
+    std::uint64_t run = 0;
+    Tick step = 0;
+    double time = 0;
+    std::uint64_t bytes = 0;
+    friend bool operator==(const KeptSnapshot&, const KeptSnapshot&) = default;
+};
+
+/// What the server writes to a file.
+struct RecordingStatus
+{
+    std::string file;
+    std::uint64_t bytes = 0, messages = 0, dropped = 0;
+    std::string trouble;
+};
+
 /// The server's own state.
 struct Status
 {
@@ -169,6 +188,9 @@ struct Status
     std::uint32_t threads = 1;
     std::uint64_t last_event = 0, last_collision = 0;
     std::uint64_t requests_done = 0, requests_refused = 0;
+    double rewind_from = -1;  ///< s; < 0: it cannot be rewound
+    std::vector<KeptSnapshot> snapshots;
+    RecordingStatus recording;
 };
 
 struct Image
@@ -195,6 +217,41 @@ struct RequestText
     std::int64_t at = -1, revision = -1;
     std::int64_t arrived_ns = 0;  ///< monotonic
     std::vector<OperationText> operations;
+};
+
+/// A request that took effect.
+struct JournalRecord
+{
+    std::uint64_t run = 0, revision = 0;
+    std::uint64_t number = 0;  ///< counts entries
+    Tick step = 0;
+    double time = 0;
+    const char* origin = "";  ///< "client", "command line"
+    ClientId client{};
+    std::uint64_t request = 0;  ///< the client's number
+    std::vector<OperationText> operations;
+};
+
+/// State hashes of consecutive steps of one run.
+struct HashRecord
+{
+    std::uint64_t run = 0;
+    std::uint64_t first = 0;  ///< counts hashes
+    Tick step = 0;
+    std::vector<std::uint64_t> hashes;
+};
+
+/// Everything that a run needs to go on from there.
+struct SnapshotRecord
+{
+    std::uint64_t run = 0, revision = 0;
+    Tick step = 0;
+    double time = 0;
+    std::string name;
+    const char* cause = "";  ///< "begin", "periodic", "request"
+    std::uint64_t state_hash = 0;
+    std::string blueprint;
+    std::vector<std::uint8_t> data;
 };
 
 struct Answer

@@ -4,17 +4,12 @@
 
 namespace plab::publish
 {
-namespace
-{
 
-/// Pose and velocity of the frame B that the author sees; the tables keep those of the centre of mass C.
-BodyState state_of(const Bodies& bodies, const Roster::Place& body)
+BodyState state_of(const Bodies& bodies, std::uint32_t row, std::uint32_t handle)
 {
-    const Pose X_WB = bodies.pose(body.row);
-    return {body.handle, X_WB.p, X_WB.q, bodies.velocity_at(body.row, X_WB.p), bodies.angular_velocity[body.row]};
+    const Pose X_WB = bodies.pose(row);
+    return {handle, X_WB.p, X_WB.q, bodies.velocity_at(row, X_WB.p), bodies.angular_velocity[row]};
 }
-
-}  // namespace
 
 void fill_frame(const simulation::Simulation& s, const Roster& roster, Frame& frame)
 {
@@ -25,7 +20,7 @@ void fill_frame(const simulation::Simulation& s, const Roster& roster, Frame& fr
     const Bodies& bodies = s.world().host().bodies;
     const Shafts& shafts = s.world().host().shafts;
     for (const Roster::Place& body : roster.bodies())
-        if (bodies.motion[body.row] != Motion::Static) frame.bodies.push_back(state_of(bodies, body));
+        if (bodies.motion[body.row] != Motion::Static) frame.bodies.push_back(state_of(bodies, body.row, body.handle));
     for (const Roster::Place& shaft : roster.shafts())
         frame.shafts.push_back({shaft.handle, shafts.angle[shaft.row], shafts.speed[shaft.row]});
 }

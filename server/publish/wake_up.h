@@ -1,4 +1,4 @@
-/// What the bus thread sleeps on. Any thread may ring; many rings before it wakes are one.
+/// What a thread that serves the step thread sleeps on. Any thread may ring; many rings before it wakes are one.
 #pragma once
 
 #include <semaphore.h>
@@ -7,7 +7,7 @@
 #include <chrono>
 #include <ctime>
 
-namespace plab::bus
+namespace plab::publish
 {
 
 class WakeUp
@@ -40,4 +40,4 @@ private:
     std::atomic<bool> rung_{false};
 };
 
-}  // namespace plab::bus
+}  // namespace plab::publish

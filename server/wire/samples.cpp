@@ -1,12 +1,12 @@
-#include "bus/samples.h"
+#include "wire/samples.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "bus/wire_view.h"
 #include "simulation/requests/request_words.h"
+#include "wire/wire_view.h"
 
-namespace plab::bus
+namespace plab::wire
 {
 namespace
 {
@@ -104,6 +104,14 @@ const plab_v1_Server& ServerSample::of(const Identity& identity, const publish::
     wire_.last_event = status.last_event, wire_.last_collision = status.last_collision;
     wire_.requests_done = status.requests_done, wire_.requests_refused = status.requests_refused;
     view(wire_.dropped, dropped_);
+    convert_each(snapshots_, status.snapshots,
+                 [](const publish::KeptSnapshot& k) {
+                     return plab_v1_KeptSnapshot{text(k.name), k.run, k.step, k.time, k.bytes};
+                 });
+    view(wire_.snapshots, snapshots_);
+    const publish::RecordingStatus& r = status.recording;
+    wire_.playback = text(""), wire_.rewind_from = status.rewind_from;
+    wire_.recording = {text(r.file), r.bytes, r.messages, r.dropped, text(r.trouble)};
     return wire_;
 }
 
@@ -246,6 +254,40 @@ const plab_v1_Image& ImageSample::of(const publish::Image& image)
     return wire_;
 }
 
+const plab_v1_Journal& JournalSample::of(const publish::JournalRecord& entry)
+{
+    values_.resize(std::max(values_.size(), entry.operations.size()));
+    operations_.clear();
+    for (std::size_t i = 0; i < entry.operations.size(); ++i)
+    {
+        const publish::OperationText& op = entry.operations[i];
+        convert_each(values_[i], op.values, [](const auto& v) { return plab_v1_NamedText{text(v.first), text(v.second)}; });
+        operations_.push_back({text(op.verb), text(op.target), text(op.argument), text(op.blueprint), {}});
+        view(operations_.back().values, values_[i]);
+    }
+    wire_.run = entry.run, wire_.revision = entry.revision, wire_.sequence_number = entry.number;
+    wire_.step = entry.step, wire_.time = entry.time, wire_.origin = text(entry.origin), wire_.number = entry.request;
+    std::copy(entry.client.begin(), entry.client.end(), wire_.client);
+    view(wire_.operations, operations_);
+    return wire_;
+}
+
+const plab_v1_Hashes& HashesSample::of(const publish::HashRecord& record)
+{
+    wire_.run = record.run, wire_.sequence_number = record.first, wire_.step = record.step;
+    view(wire_.values, record.hashes);
+    return wire_;
+}
+
+const plab_v1_Snapshot& SnapshotSample::of(const publish::SnapshotRecord& snapshot)
+{
+    wire_.run = snapshot.run, wire_.revision = snapshot.revision, wire_.step = snapshot.step, wire_.time = snapshot.time;
+    wire_.name = text(snapshot.name), wire_.cause = text(snapshot.cause), wire_.state_hash = snapshot.state_hash;
+    wire_.blueprint = text(snapshot.blueprint);
+    view(wire_.data, snapshot.data);
+    return wire_;
+}
+
 const plab_v1_Reply& ReplySample::of(const publish::Answer& answer, bool repeated)
 {
     const simulation::Reply& r = answer.reply;
@@ -272,4 +314,4 @@ const plab_v1_Reply& ReplySample::of(const publish::Answer& answer, bool repeate
     return wire_;
 }
 
-}  // namespace plab::bus
+}  // namespace plab::wire

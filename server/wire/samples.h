@@ -8,19 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "idl/plab.h"
+#include "idl/identity.h"
 #include "publish/records.h"
 
-namespace plab::bus
+namespace plab::wire
 {
-
-/// What a server says of itself beside its status.
-struct Identity
-{
-    std::string name, version, host;
-    std::int32_t process = 0;
-    std::int64_t started_ns = 0;  ///< since 1970
-};
 
 /// Samples of a topic that a ring gave up.
 struct Dropped
@@ -37,6 +29,7 @@ public:
 private:
     plab_v1_Server wire_{};
     std::vector<plab_v1_Dropped> dropped_;
+    std::vector<plab_v1_KeptSnapshot> snapshots_;
 };
 
 class SceneSample
@@ -141,6 +134,35 @@ private:
     plab_v1_Image wire_{};
 };
 
+class JournalSample
+{
+public:
+    const plab_v1_Journal& of(const publish::JournalRecord& entry);
+
+private:
+    plab_v1_Journal wire_{};
+    std::vector<std::vector<plab_v1_NamedText>> values_;
+    std::vector<plab_v1_Operation> operations_;
+};
+
+class HashesSample
+{
+public:
+    const plab_v1_Hashes& of(const publish::HashRecord& record);
+
+private:
+    plab_v1_Hashes wire_{};
+};
+
+class SnapshotSample
+{
+public:
+    const plab_v1_Snapshot& of(const publish::SnapshotRecord& snapshot);
+
+private:
+    plab_v1_Snapshot wire_{};
+};
+
 class ReplySample
 {
 public:
@@ -154,4 +176,4 @@ private:
     std::vector<plab_v1_SwapReport> swaps_;
 };
 
-}  // namespace plab::bus
+}  // namespace plab::wire

@@ -9,7 +9,7 @@
 #include "idl/plab.h"
 #include "publish/records.h"
 
-namespace plab::bus
+namespace plab::wire
 {
 
 // A frame's arrays go out as they are. Whoever changes one side meets these lines.
@@ -57,4 +57,4 @@ void view(Sequence& sequence, const std::vector<T>& elements)
     sequence._release = false;
 }
 
-}  // namespace plab::bus
+}  // namespace plab::wire

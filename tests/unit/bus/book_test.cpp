@@ -2,9 +2,9 @@
 #include "bus/outbox.h"
 #include "bus/request_book.h"
 #include "bus/request_check.h"
-#include "bus/wire_view.h"
 #include "doctest/doctest.h"
 #include "idl/topics.h"
+#include "wire/wire_view.h"
 
 using namespace plab;
 using bus::RequestBook;
@@ -34,8 +34,8 @@ std::string why(const RequestBook::Decision& decision) { return decision.answer.
 /// A request with one operation and one value, whose texts are the caller's.
 struct RawRequest
 {
-    plab_v1_NamedText value{bus::text("name"), bus::text("1")};
-    plab_v1_Operation operation{bus::text("set"), bus::text("ball"), bus::text(""), bus::text(""), {1, 1, &value, false}};
+    plab_v1_NamedText value{wire::text("name"), wire::text("1")};
+    plab_v1_Operation operation{wire::text("set"), wire::text("ball"), wire::text(""), wire::text(""), {1, 1, &value, false}};
     plab_v1_Request wire{{1}, 1, -1, -1, {1, 1, &operation, false}};
 
     std::string refusal() const
@@ -256,7 +256,7 @@ TEST_CASE("the form of a request is checked")
     many.wire.operations._length = 256;
     CHECK(many.refusal().empty());
     RawRequest latin;
-    latin.operation.target = bus::text("b\xe4ll");
+    latin.operation.target = wire::text("b\xe4ll");
     CHECK(latin.refusal() == "a target is not UTF-8");
 }
 
@@ -264,12 +264,12 @@ TEST_CASE("the text of a request is limited, and so is the number of its values"
 {
     RawRequest r;
     const std::string below(wire::kMostRequestBytes - 100, 'x'), above(wire::kMostRequestBytes, 'x');
-    r.operation.blueprint = bus::text(below);
+    r.operation.blueprint = wire::text(below);
     CHECK(r.refusal().empty());
-    r.operation.blueprint = bus::text(above);
+    r.operation.blueprint = wire::text(above);
     CHECK(r.refusal() == "the request has more than 4194304 bytes of text");
     RawRequest empties;
-    const std::vector<plab_v1_NamedText> values(wire::kMostValues + 1, {bus::text(""), bus::text("")});
+    const std::vector<plab_v1_NamedText> values(wire::kMostValues + 1, {wire::text(""), wire::text("")});
     empties.operation.values = {257, 257, const_cast<plab_v1_NamedText*>(values.data()), false};
     CHECK(empties.refusal() == "operation 1 has 257 values: at most 256 may be given at once");
     empties.operation.values._length = 256;

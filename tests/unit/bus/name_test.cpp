@@ -1,6 +1,6 @@
 // One server for each name.
-#include "bus/wire_view.h"
 #include "support.h"
+#include "wire/wire_view.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -11,7 +11,7 @@ namespace
 plab_v1_Server server_sample(const std::string& name, const std::string& host, std::int32_t process, std::int64_t started)
 {
     plab_v1_Server s{};
-    s.name = bus::text(name), s.host = bus::text(host), s.process = process, s.started_ns = started;
+    s.name = wire::text(name), s.host = wire::text(host), s.process = process, s.started_ns = started;
     return s;
 }
 
@@ -50,15 +50,15 @@ TEST_CASE("a name that is no partition, a domain that is none and an interface t
 
 TEST_CASE("of two servers the one that started first keeps the name; at the same time, host and process decide")
 {
-    const bus::Identity self{"s", "", "host-b", 20, 1000};
-    CHECK(bus::keeps_the_name(server_sample("s", "host-c", 30, 999), self));
-    CHECK_FALSE(bus::keeps_the_name(server_sample("s", "host-a", 10, 1001), self));
-    CHECK(bus::keeps_the_name(server_sample("s", "host-a", 30, 1000), self));
-    CHECK_FALSE(bus::keeps_the_name(server_sample("s", "host-c", 10, 1000), self));
-    CHECK(bus::keeps_the_name(server_sample("s", "host-b", 19, 1000), self));
-    CHECK_FALSE(bus::keeps_the_name(server_sample("s", "host-b", 20, 1000), self));  // that is us
-    CHECK_FALSE(bus::keeps_the_name(server_sample("t", "host-a", 10, 1), self));
-    CHECK_FALSE(bus::keeps_the_name(server_sample("s", "host-a", 10, 0), self));  // says nothing
+    const wire::Identity self{"s", "", "host-b", 20, 1000};
+    CHECK(wire::keeps_the_name(server_sample("s", "host-c", 30, 999), self));
+    CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-a", 10, 1001), self));
+    CHECK(wire::keeps_the_name(server_sample("s", "host-a", 30, 1000), self));
+    CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-c", 10, 1000), self));
+    CHECK(wire::keeps_the_name(server_sample("s", "host-b", 19, 1000), self));
+    CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-b", 20, 1000), self));  // that is us
+    CHECK_FALSE(wire::keeps_the_name(server_sample("t", "host-a", 10, 1), self));
+    CHECK_FALSE(wire::keeps_the_name(server_sample("s", "host-a", 10, 0), self));  // says nothing
 }
 
 TEST_CASE("a server that meets an older one of its name from elsewhere says that it is lost")

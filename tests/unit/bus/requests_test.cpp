@@ -1,8 +1,8 @@
 // Requests and replies over DDS.
 #include <map>
 
-#include "bus/wire_view.h"
 #include "support.h"
+#include "wire/wire_view.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -206,7 +206,7 @@ TEST_CASE("garbage is refused with a reason, and never reaches the step loop")
     const link::Session session = bus.session();
     Rogue rogue(session);
     const std::string big(wire::kMostRequestBytes + 10, 'x'), latin = "b\xe4ll";
-    plab_v1_Operation operation{bus::text("pause"), nullptr, nullptr, nullptr, {}};
+    plab_v1_Operation operation{wire::text("pause"), nullptr, nullptr, nullptr, {}};
     plab_v1_Request request{{9}, 1, -1, -1, {1, 1, &operation, false}};
     const auto with = [&](auto&& change)
     {
@@ -220,9 +220,9 @@ TEST_CASE("garbage is refused with a reason, and never reaches the step loop")
     CHECK(with([](auto& r) { r.at = -3; }).find("step -3") != std::string::npos);
     CHECK(with([](auto& r) { r.operations._length = 0; }).find("no operation") != std::string::npos);
     CHECK(with([](auto& r) { r.number = 2; }).find("numbers must rise") != std::string::npos);
-    operation.target = bus::text(latin);
+    operation.target = wire::text(latin);
     CHECK(rogue.refused(request).find("not UTF-8") != std::string::npos);
-    operation.target = bus::text(big), ++request.number;
+    operation.target = wire::text(big), ++request.number;
     CHECK(rogue.refused(request).find("more than 4194304 bytes") != std::string::npos);
     publish::RequestText none;
     CHECK_FALSE(bus->take(none));

@@ -25,10 +25,8 @@ const std::string kBalls = R"(
 
 model::SceneSpec fragment_of(const Scene& scene, const std::string& body)
 {
-    const auto blueprint = blueprint::read_blueprint("<plab version=\"1\">" + body + "</plab>", "fragment.xml");
-    REQUIRE(blueprint.ok());
-    auto fragment = model::compile(*blueprint, library(), &scene.simulation().world().scene());
-    REQUIRE_MESSAGE(fragment.ok(), first_error(fragment.ok() ? Errors{} : fragment.errors()));
+    auto fragment = test::compile_text(test::whole_scene(body), "fragment.xml", &scene.simulation().world().scene());
+    REQUIRE_MESSAGE(fragment.ok(), test::reasons(fragment));
     return fragment.take();
 }
 

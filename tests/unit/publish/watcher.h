@@ -21,6 +21,14 @@ public:
     void events(publish::Batch<publish::EventRecord>&& batch) override { event_batches.push_back(std::move(batch)); }
     void metrics(publish::Metrics&& metrics) override { samples.push_back(std::move(metrics)); }
     void image(publish::Image&&) override {}
+    std::optional<double> interval(publish::Stream stream) const override
+    {
+        const auto found = intervals.find(stream);
+        return found == intervals.end() ? std::nullopt : std::optional(found->second);
+    }
+    void journal(publish::JournalRecord&& entry) override { journals.push_back(std::move(entry)); }
+    void hash(std::uint64_t, Tick step, std::uint64_t hash) override { hashes[step] = hash; }
+    void snapshot(publish::SnapshotRecord&& snapshot) override { snapshots.push_back(std::move(snapshot)); }
     void status(const publish::Status& status) override { statuses.push_back(status); }
     bool catalogue(publish::CatalogueChange&& change) override
     {
@@ -32,6 +40,7 @@ public:
     std::set<publish::Stream> wanted;
     std::uint64_t joined = 0;
     bool has_room = true;
+    std::map<publish::Stream, double> intervals;
 
     publish::Frame frame;  ///< the last one
     std::size_t frames = 0;
@@ -40,6 +49,9 @@ public:
     std::vector<publish::Metrics> samples;
     std::vector<publish::Status> statuses;
     std::vector<publish::CatalogueChange> changes;
+    std::vector<publish::JournalRecord> journals;
+    std::map<Tick, std::uint64_t> hashes;
+    std::vector<publish::SnapshotRecord> snapshots;
 };
 
 /// Rates that never come again within a test, so that what is sent was asked for.

@@ -1,4 +1,4 @@
-#include "bus/name_lock.h"
+#include "idl/name_lock.h"
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstring>
 
-namespace plab::bus
+namespace plab::wire
 {
 namespace
 {
@@ -73,4 +73,4 @@ NameLock::~NameLock()
     if (socket_ >= 0) (void)close(socket_);
 }
 
-}  // namespace plab::bus
+}  // namespace plab::wire

@@ -7,7 +7,7 @@
 
 #include "plab/result.h"
 
-namespace plab::bus
+namespace plab::wire
 {
 
 /// An abstract unix socket of that name. The kernel lets go of it when the process ends, however it ends.
@@ -34,4 +34,4 @@ private:
     int socket_ = -1;
 };
 
-}  // namespace plab::bus
+}  // namespace plab::wire

@@ -1,0 +1,149 @@
+#include "idl/recording/glance.h"
+
+#include <cstring>
+
+#include "idl/recording/cdr.h"
+
+namespace plab::recording
+{
+namespace
+{
+
+std::string text(const char* s) { return s == nullptr ? "" : s; }
+
+Glance glance(const plab_v1_Server& s)
+{
+    Glance out;
+    out.run = s.run, out.time = s.time, out.step = s.step, out.key = text(s.name), out.started_ns = s.started_ns;
+    return out;
+}
+
+/// The time of what happened first; a sample holds what one step brought.
+template <class T>
+Glance glance_of_entries(const T& sample)
+{
+    Glance out;
+    out.run = sample.run, out.step = sample.step, out.first = sample.sequence_number, out.entries = sample.entries._length;
+    if (sample.entries._length > 0) out.time = sample.entries._buffer[0].time;
+    return out;
+}
+Glance glance(const plab_v1_Collisions& c) { return glance_of_entries(c); }
+Glance glance(const plab_v1_Events& e) { return glance_of_entries(e); }
+
+template <class T>
+Glance glance_of_time(const T& sample)
+{
+    Glance out;
+    out.run = sample.run, out.time = sample.time, out.step = sample.step;
+    return out;
+}
+Glance glance(const plab_v1_Metrics& m) { return glance_of_time(m); }
+Glance glance(const plab_v1_Reply& r) { return glance_of_time(r); }
+Glance glance(const plab_v1_Frame& f)
+{
+    Glance out = glance_of_time(f);
+    out.stamp_ns = f.stamp_ns, out.first = f.sequence_number, out.entries = 1;
+    return out;
+}
+Glance glance(const plab_v1_Image& i)
+{
+    Glance out = glance_of_time(i);
+    out.key = text(i.camera);
+    return out;
+}
+Glance glance(const plab_v1_Journal& j)
+{
+    Glance out = glance_of_time(j);
+    out.first = j.sequence_number, out.entries = 1;
+    return out;
+}
+Glance glance(const plab_v1_Snapshot& s)
+{
+    Glance out = glance_of_time(s);
+    out.blueprint = text(s.blueprint);
+    return out;
+}
+
+Glance glance(const plab_v1_Hashes& h)
+{
+    Glance out;
+    out.run = h.run, out.step = h.step, out.first = h.sequence_number, out.entries = h.values._length;
+    return out;
+}
+
+template <class T>
+Glance glance_of_instance(const T& sample, const char* key)
+{
+    Glance out;
+    out.run = sample.run, out.key = text(key);
+    return out;
+}
+Glance glance(const plab_v1_Scene& s) { return glance_of_instance(s, s.server); }
+Glance glance(const plab_v1_Object& o) { return glance_of_instance(o, o.component); }
+Glance glance(const plab_v1_Interaction& i)
+{
+    Glance out = glance_of_instance(i, i.component);
+    out.step = i.since;
+    return out;
+}
+Glance glance(const plab_v1_Gone& g) { return glance_of_instance(g, g.component); }
+
+Glance glance(const plab_v1_Shape& s)
+{
+    Glance out;
+    out.key = text(s.component);
+    return out;
+}
+Glance glance(const plab_v1_Type& t)
+{
+    Glance out;
+    out.key = text(t.type_name);
+    return out;
+}
+Glance glance(const plab_v1_Request&) { return {}; }
+
+template <class T>
+class PeekOf final : public Peek
+{
+public:
+    Result<Glance> at(ByteView bytes) override
+    {
+        if (auto decoded = decoder_.decode(bytes, sample_); !decoded) return decoded.errors();
+        return glance(*sample_);
+    }
+
+private:
+    Decoder decoder_;
+    Sample<T> sample_;
+};
+
+/// The one of Ts that this topic has.
+template <class... Ts>
+std::unique_ptr<Peek> make_one_of(const wire::Topic& topic)
+{
+    std::unique_ptr<Peek> out;
+    (void)((std::strcmp(wire::topic_of<Ts>().name, topic.name) == 0 && (out = std::make_unique<PeekOf<Ts>>(), true)) || ...);
+    return out;
+}
+
+}  // namespace
+
+std::unique_ptr<Peek> make_peek(const wire::Topic& topic)
+{
+    return make_one_of<plab_v1_Server, plab_v1_Scene, plab_v1_Object, plab_v1_Shape, plab_v1_Interaction, plab_v1_Type, plab_v1_Frame,
+                       plab_v1_Collisions, plab_v1_Events, plab_v1_Metrics, plab_v1_Request, plab_v1_Reply, plab_v1_Image, plab_v1_Journal,
+                       plab_v1_Hashes, plab_v1_Snapshot, plab_v1_Gone>(topic);
+}
+
+std::string key_of_gone(ByteView bytes)
+{
+    constexpr std::size_t kHead = 4 + 4;  // encapsulation, length with the zero at its end
+    if (bytes.size() <= kHead) return {};
+    const bool is_little = (bytes[1] & 1u) != 0;
+    std::uint32_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length |= std::uint32_t{bytes[4 + i]} << (8 * (is_little ? i : 3 - i));
+    if (length == 0 || length > bytes.size() - kHead || bytes[kHead + length - 1] != 0) return {};
+    return {reinterpret_cast<const char*>(bytes.data() + kHead), length - 1};
+}
+
+}  // namespace plab::recording

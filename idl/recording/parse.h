@@ -1,0 +1,113 @@
+/// Bytes to records. Every length is checked against what is there; what does not fit is an error, never a guess.
+///
+/// Views in records point into the bytes that were parsed.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "idl/recording/records.h"
+#include "plab/result.h"
+
+namespace plab::recording
+{
+
+/// Takes fields off the front of a record's body. After a failure all further fields are zero or empty.
+class FieldReader
+{
+public:
+    explicit FieldReader(ByteView bytes) : rest_(bytes) {}
+
+    std::uint8_t u8() { return number<std::uint8_t>(); }
+    std::uint16_t u16() { return number<std::uint16_t>(); }
+    std::uint32_t u32() { return number<std::uint32_t>(); }
+    std::uint64_t u64() { return number<std::uint64_t>(); }
+    ByteView bytes(std::uint64_t n);
+    /// A text, a map or an array: preceded by its length in bytes.
+    ByteView counted() { return bytes(u32()); }
+
+    /// Fills fields in, each by its type: what fields() of fields.h calls.
+    template <class... Fields>
+    void operator()(Fields&... all)
+    {
+        (one(all), ...);
+    }
+
+    ByteView rest() const { return rest_; }
+    bool failed() const { return failed_; }
+    void fail() { failed_ = true, rest_ = {}; }
+
+private:
+    template <class T>
+    T number();
+    void one(std::uint16_t& v) { v = u16(); }
+    void one(std::uint32_t& v) { v = u32(); }
+    void one(std::uint64_t& v) { v = u64(); }
+    void one(std::string& v);
+    void one(Pairs& v);
+    void one(std::map<ChannelId, std::uint64_t>& v);
+    void one(std::vector<std::pair<ChannelId, std::uint64_t>>& v);
+    /// Calls `entry` with a reader as long as the list has entries.
+    template <class Entry>
+    void list(Entry&& entry);
+
+    ByteView rest_;
+    bool failed_ = false;
+};
+
+/// "byte 4711: why": an error about a place in a file.
+Error damage(std::uint64_t offset, const std::string& why);
+/// "Chunk", or "0x85" for what has no name.
+std::string name_of(Opcode opcode);
+
+/// What stands before a body.
+struct RecordHead
+{
+    Opcode opcode = Opcode::Header;
+    std::uint64_t length = 0;  ///< of the body
+};
+/// `bytes`: kRecordHead of them.
+RecordHead parse_head(ByteView bytes);
+
+// Bodies, without their head. Nothing: a field reaches beyond the body, or its value is none. Fields that a later
+// version of the format added at the end are ignored, as the format demands.
+std::optional<Header> parse_header(ByteView body);
+std::optional<Footer> parse_footer(ByteView body);
+std::optional<Schema> parse_schema(ByteView body);
+std::optional<Channel> parse_channel(ByteView body);
+std::optional<Message> parse_message(ByteView body);
+/// Into a record whose memory is used again: files have a million of these.
+bool parse_chunk_index(ByteView body, ChunkIndex& out);
+std::optional<AttachmentIndex> parse_attachment_index(ByteView body);
+std::optional<Statistics> parse_statistics(ByteView body);
+std::optional<Metadata> parse_metadata(ByteView body);
+std::optional<MetadataIndex> parse_metadata_index(ByteView body);
+std::optional<DataEnd> parse_data_end(ByteView body);
+
+struct ParsedAttachment
+{
+    Attachment attachment;
+    bool crc_is_right = false;
+    bool has_crc = false;
+};
+std::optional<ParsedAttachment> parse_attachment(ByteView body);
+
+/// The front of a chunk, from as much of its body as is at hand; `body_length`: all of it. Nothing if the parts do not
+/// add up to body_length.
+std::optional<ChunkHeader> parse_chunk_header(ByteView front, std::uint64_t body_length);
+/// Bytes of a chunk's body before its records.
+std::size_t size_of_front(const ChunkHeader& header);
+/// Longest name of a compression that is read.
+inline constexpr std::size_t kLongestCompression = 16;
+/// Bytes that are enough for parse_chunk_header.
+inline constexpr std::size_t kLongestChunkFront = 8 + 8 + 8 + 4 + 4 + kLongestCompression + 8;
+
+/// A message index by its front; all of it is 6 + 16 * messages bytes.
+struct MessageIndexFront
+{
+    ChannelId channel = 0;
+    std::uint64_t messages = 0;
+};
+std::optional<MessageIndexFront> parse_message_index_front(ByteView front, std::uint64_t body_length);
+
+}  // namespace plab::recording

@@ -1,0 +1,82 @@
+/// Where a recording is read from.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "idl/recording/records.h"
+#include "plab/result.h"
+
+namespace plab::recording
+{
+
+/// Bytes at offsets. May be used by several threads.
+class Source
+{
+public:
+    virtual ~Source() = default;
+    /// For messages: a file's name.
+    virtual const std::string& name() const = 0;
+    /// Bytes that are there now; a file that is being written grows.
+    virtual Result<std::uint64_t> size() const = 0;
+    /// Fills `into` from `offset` on; fewer bytes only where the source ends.
+    virtual Result<std::size_t> read(std::uint64_t offset, std::span<std::uint8_t> into) const = 0;
+};
+
+/// Errors name the file, with what the system said.
+class FileSource final : public Source
+{
+public:
+    static Result<FileSource> open(const std::string& path);
+    FileSource(FileSource&& other) noexcept;
+    FileSource& operator=(FileSource&&) = delete;
+    FileSource(const FileSource&) = delete;
+    FileSource& operator=(const FileSource&) = delete;
+    ~FileSource() override;
+
+    const std::string& name() const override { return path_; }
+    Result<std::uint64_t> size() const override;
+    Result<std::size_t> read(std::uint64_t offset, std::span<std::uint8_t> into) const override;
+
+private:
+    FileSource(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
+    Error failed(const char* what) const;
+
+    int descriptor_ = -1;
+    std::string path_;
+};
+
+/// Bytes that somebody else owns.
+class MemorySource final : public Source
+{
+public:
+    explicit MemorySource(ByteView bytes, std::string name = "memory") : bytes_(bytes), name_(std::move(name)) {}
+
+    const std::string& name() const override { return name_; }
+    Result<std::uint64_t> size() const override { return std::uint64_t{bytes_.size()}; }
+    Result<std::size_t> read(std::uint64_t offset, std::span<std::uint8_t> into) const override;
+
+private:
+    ByteView bytes_;
+    std::string name_;
+};
+
+/// A source through a small window: for many short reads that are near each other.
+class Window
+{
+public:
+    explicit Window(const Source& source) : source_(&source) {}
+    /// `n` bytes (at most kMost) at `offset`, or as many as there are. Valid until the next call.
+    Result<ByteView> view(std::uint64_t offset, std::size_t n);
+    /// As above; fewer bytes are an error.
+    Result<ByteView> exactly(std::uint64_t offset, std::size_t n);
+    static constexpr std::size_t kMost = 4096;
+
+private:
+    const Source* source_;
+    Bytes bytes_;
+    std::uint64_t begin_ = 0;
+};
+
+}  // namespace plab::recording

@@ -1,0 +1,134 @@
+/// Writes a recording, message by message. Made for a thread that does nothing else.
+///
+/// Messages gather in a chunk; a chunk goes to the file with one write, when it is `chunk_time` old or `chunk_bytes`
+/// large. So a crash loses what is younger than that, and never what is in the file already. The caller passes the time
+/// in, calls tick() when due() says, and hears of nothing that blocks but the disk.
+///
+/// When the disk fails, the writer goes on without it: it counts what it drops, says why in trouble(), and starts again
+/// when retry() succeeds; a metadata record "gap" then tells readers what is missing. Nothing is thrown.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "idl/recording/container.h"
+#include "idl/recording/records.h"
+#include "idl/recording/sink.h"
+#include "plab/result.h"
+
+namespace plab::recording
+{
+
+using Clock = std::chrono::steady_clock;
+
+struct WriterOptions
+{
+    Compression compression = Compression::Zstd;
+    int level = 1;  ///< of zstd
+    std::chrono::nanoseconds chunk_time = std::chrono::milliseconds(20);
+    std::size_t chunk_bytes = 1u << 20;                            ///< uncompressed
+    std::chrono::nanoseconds sync_time = std::chrono::seconds(1);  ///< between two fdatasync; 0: never
+    /// Channels are declared again in the chunks that come after this: a file whose start is lost can still be read.
+    std::chrono::nanoseconds declare_time = std::chrono::seconds(5);
+    std::size_t most_message_bytes = 256u << 20;  ///< larger ones are dropped; readers refuse larger chunks
+    std::size_t most_index_memory = 64u << 20;    ///< beyond it the file gets no index: days of 20 ms chunks
+    std::string profile = "plab";
+    std::string library = "pLab";
+};
+
+/// Messages that are not in the file.
+struct Losses
+{
+    std::uint64_t messages = 0;
+    std::uint64_t bytes = 0;
+    std::uint64_t first_log_time = 0;
+    std::uint64_t last_log_time = 0;
+
+    void add(const Losses& more);
+};
+
+class Writer
+{
+public:
+    static Result<Writer> open(std::unique_ptr<Sink> sink, WriterOptions options);
+    static Result<Writer> create(const std::string& path, WriterOptions options = {}, Overwrite overwrite = Overwrite::No);
+    Writer(Writer&&) noexcept = default;
+    Writer& operator=(Writer&&) = delete;
+    /// Closes the file, if nobody did; who wants to know how that went calls close().
+    ~Writer();
+
+    /// Ids count from 1. The id of `schema` is ignored.
+    Result<std::uint16_t> add_schema(Schema schema);
+    /// The id of `channel` is ignored; its schema must be there. A topic may have several channels.
+    Result<ChannelId> add_channel(Channel channel);
+
+    /// False: it was dropped (and counted), because the disk fails, or it is larger than most_message_bytes, or there is
+    /// no such channel. Its sequence is set here: it counts the channel's messages from 0, those that were dropped too.
+    /// log_time need not ascend, but readers are faster if it does.
+    bool write(const Message& message, Clock::time_point now);
+    /// At once, not in a chunk.
+    Result<void> attach(const Attachment& attachment);
+    /// At once, and sealed (metadata.h).
+    Result<void> add_metadata(Metadata metadata);
+    /// Messages that were lost on their way to this writer, because a ring was full, say: noted as a gap.
+    Result<void> add_gap(const Losses& losses, const std::string& why);
+
+    /// Does what is due: closes a chunk that is old enough, syncs.
+    void tick(Clock::time_point now);
+    /// When tick() has something to do; nothing: not before the next message.
+    std::optional<Clock::time_point> due() const;
+    /// Writes the chunk as it is.
+    void flush();
+    /// Tries a disk that failed again: cuts off what a failed write left, notes the gap. Success if there was no trouble.
+    Result<void> retry();
+    /// Ends the file. With trouble, tries again first. An error: the file is as after a crash, whole up to what failed.
+    Result<void> close();
+
+    /// Why nothing is written at present.
+    const std::optional<Error>& trouble() const { return trouble_; }
+    /// All that was dropped since the file was opened.
+    const Losses& dropped() const { return dropped_; }
+    /// Of what is in the file.
+    Statistics statistics() const { return container_.statistics(); }
+    std::uint64_t file_size() const { return container_.size(); }
+
+private:
+    Writer(Container container, WriterOptions options);
+    void declare(ChannelId channel, Clock::time_point now);
+    void declare_rest();
+    void forget_declarations();
+    void drop(const Losses& losses);
+    void drop_chunk();
+    Result<void> note_gap(const std::string& why);
+    void fail(const Error& error);
+    Result<void> note(Result<void> done);
+    void sync();
+
+    struct Known
+    {
+        Channel channel;
+        std::uint32_t next_sequence = 0;
+        bool is_declared = false;   ///< in a chunk since declared_since_
+        bool was_declared = false;  ///< in any chunk
+    };
+
+    WriterOptions options_;
+    Container container_;
+    Compressor compressor_;
+    ChunkBuilder chunk_;
+    Bytes out_;
+    std::vector<Schema> schemas_;
+    std::vector<Known> channels_;
+    Clock::time_point chunk_since_{};
+    Clock::time_point declared_since_{};
+    std::optional<Clock::time_point> unsynced_since_;  ///< when the oldest bytes were written that no sync has seen
+    Clock::time_point now_{};
+    std::optional<Error> trouble_;
+    Losses dropped_;
+    Losses gap_;  ///< dropped and not yet noted in the file
+};
+
+}  // namespace plab::recording
