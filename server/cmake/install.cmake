@@ -23,7 +23,7 @@ endforeach()
 
 install(TARGETS plabd plabctl plab-log RUNTIME DESTINATION bin COMPONENT server)
 # No plugin for scenes: plabd loads it by its name when it joins the bus.
-install(TARGETS plab_bus LIBRARY DESTINATION lib/plab COMPONENT server)
+install(TARGETS plab_bus plab_record LIBRARY DESTINATION lib/plab COMPONENT server)
 install(DIRECTORY scenes DESTINATION share/plab COMPONENT server PATTERN "*.md" EXCLUDE)
 install(TARGETS plab-view RUNTIME DESTINATION bin COMPONENT viewer)
 install(TARGETS plab-study RUNTIME DESTINATION bin COMPONENT study)

@@ -114,10 +114,24 @@ Result<Operation> make_dt(const OperationText& op, model::TypeSource&)
     if (!dt) return dt.errors();
     return Operation{simulation::StepLengthOperation{*dt}};
 }
+Result<Operation> make_snapshot(const OperationText& op, model::TypeSource&) { return Operation{simulation::SnapshotOperation{op.target}}; }
+Result<Operation> make_restore(const OperationText& op, model::TypeSource&) { return Operation{simulation::RestoreOperation{op.target}}; }
+Result<Operation> make_forget(const OperationText& op, model::TypeSource&) { return Operation{simulation::ForgetOperation{op.target}}; }
+/// "2.5 s" is a time of the run, "-2.5 s" counts back from now.
+Result<Operation> make_rewind(const OperationText& op, model::TypeSource&)
+{
+    Field field;
+    field.type = FieldType::Real, field.unit = unit::second;
+    auto value = model::parse_value(op.argument, field);
+    if (!value) return value.errors();
+    const double time = std::get<double>(*value);
+    const bool back = op.argument.front() == '-';
+    return Operation{simulation::RewindOperation{back ? -time : time, back}};
+}
 /// Only a place in the table: set makes one operation of each value, shutdown none.
 Result<Operation> make_nothing(const OperationText&, model::TypeSource&) { return reason("is no operation"); }
 
-constexpr std::array<Verb, 13> kVerbs{{
+constexpr std::array<Verb, 17> kVerbs{{
     {"add", "", "the file's name for messages", true, true, false, &make_add},
     {"remove", "the component", "", false, false, false, &make_remove},
     {"swap", "the component", "the new type", false, false, true, &make_swap},
@@ -130,6 +144,10 @@ constexpr std::array<Verb, 13> kVerbs{{
     {"reset", "", "", false, false, false, &make_reset},
     {"load", "", "the file's name for messages", true, true, false, &make_load},
     {"dt", "", "the step length", false, false, false, &make_dt},
+    {"snapshot", "the snapshot's name", "", false, false, false, &make_snapshot},
+    {"restore", "the snapshot's name", "", false, false, false, &make_restore},
+    {"forget", "the snapshot's name", "", false, false, false, &make_forget},
+    {"rewind", "", "a time of the run, or how far back with a minus", false, false, false, &make_rewind},
     {"shutdown", "", "", false, false, false, &make_nothing},
 }};
 
@@ -224,9 +242,42 @@ Description description_of(const simulation::Operation& operation)
         }
         Description operator()(const ResetOperation&) const { return {"reset", "", ""}; }
         Description operator()(const LoadOperation& op) const { return {"load", "", op.scene.file}; }
+        Description operator()(const SnapshotOperation& op) const { return {"snapshot", op.name, ""}; }
+        Description operator()(const RestoreOperation& op) const { return {"restore", op.name, ""}; }
+        Description operator()(const ForgetOperation& op) const { return {"forget", op.name, ""}; }
+        Description operator()(const RewindOperation& op) const
+        {
+            return {"rewind", "", (op.back ? "-" : "") + model::format_real(op.time)};
+        }
         Description operator()(const StepLengthOperation& op) const { return {"dt", "", model::format_real(op.dt.seconds)}; }
     };
     return std::visit(Words{}, operation);
+}
+
+publish::OperationText text_of(const simulation::Operation& operation)
+{
+    const auto text = [](const simulation::GivenValue& given)
+    {
+        const auto* words = std::get_if<std::string>(&given);
+        return words ? *words : model::format_value(std::get<Value>(given));
+    };
+    const Description words = description_of(operation);
+    publish::OperationText out{words.verb, words.target, words.argument, "", {}};
+    if (const auto* swap = std::get_if<simulation::SwapOperation>(&operation))
+        for (const simulation::NamedValue& v : swap->values) out.values.emplace_back(v.name, text(v.value));
+    if (const auto* set = std::get_if<simulation::SetOperation>(&operation))
+    {
+        out.argument.clear();
+        out.values.emplace_back(set->name, text(set->value));
+    }
+    return out;
+}
+
+bool begins_a_run(const std::vector<OperationText>& operations)
+{
+    const auto begins = [](const OperationText& op)
+    { return op.verb == "reset" || op.verb == "load" || op.verb == "restore" || op.verb == "rewind"; };
+    return std::any_of(operations.begin(), operations.end(), begins);
 }
 
 Result<double> parse_rate(const std::string& text)

@@ -26,6 +26,12 @@ struct Description
 };
 Description description_of(const simulation::Operation& operation);
 
+/// The words that mean the operation, as a client would send them; of those that plabd's command line knows (swap, set).
+publish::OperationText text_of(const simulation::Operation& operation);
+
+/// reset, load, restore, rewind.
+bool begins_a_run(const std::vector<publish::OperationText>& operations);
+
 /// "real" (1), "max" (0), or a factor of real time from 1e-6 to 1e9.
 Result<double> parse_rate(const std::string& text);
 

@@ -9,9 +9,12 @@
 #include "blueprint/writer.h"
 #include "daemon/explain.h"
 #include "daemon/options.h"
+#include "daemon/replaying.h"
 #include "daemon/runner.h"
+#include "daemon/shadow.h"
 #include "model/compile.h"
 #include "plugins/library.h"
+#include "simulation/snapshot/history.h"
 
 namespace
 {
@@ -51,10 +54,23 @@ int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLib
             spdlog::info("server '{}' in domain {}, {}; ready after {:.1f} ms", options.name, options.domain,
                          options.network_interface.empty() ? "this host only" : "interface " + options.network_interface, took.count());
         }
+        if (!options.record.file.empty())
+            if (auto opened = service.open_recording(options); !opened) return fail(opened.errors());
         code = plab::daemon::run(simulation, service, options, *wake, stop);
     }
     sleeper = nullptr;
     return code;
+}
+
+/// --load: a run that was left goes on.
+int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::Options& options, std::chrono::steady_clock::time_point start)
+{
+    auto snapshot = plab::daemon::read_snapshot(options.load, library);
+    if (!snapshot) return fail(snapshot.errors());
+    plab::simulation::Simulation simulation(library, options.threads);
+    simulation.history().configure(plab::daemon::history_of(options));
+    if (auto restored = simulation.restore(*snapshot); !restored) return fail(restored.errors());
+    return run_scene(simulation, library, options, start);
 }
 
 int carry_out(const plab::daemon::Options& options)
@@ -67,11 +83,15 @@ int carry_out(const plab::daemon::Options& options)
         std::fputs(plab::blueprint::write_reference(library).c_str(), stdout);
         return 0;
     }
+    if (options.task == plab::daemon::Task::Replay) return plab::daemon::replay_recording(library, options, stop);
+    if (options.task == plab::daemon::Task::Shadow) return plab::daemon::run_shadow(library, options, stop);
+    if (!options.load.empty()) return go_on(library, options, start);
     auto blueprint = plab::blueprint::read_blueprint_file(options.scene);
     if (!blueprint) return fail(blueprint.errors());
     auto scene = plab::model::compile(*blueprint, library);
     if (!scene) return fail(scene.errors());
     plab::simulation::Simulation simulation(library, options.threads);
+    simulation.history().configure(plab::daemon::history_of(options));
     if (auto loaded = simulation.load(*scene); !loaded) return fail(loaded.errors());
     switch (options.task)
     {
@@ -108,5 +128,6 @@ int main(int argc, char** argv)
     std::signal(SIGTERM, on_signal);
     std::signal(SIGHUP, on_signal);  // the terminal has gone
     std::signal(SIGPIPE, SIG_IGN);   // whoever read the table has gone; the run goes on
+    std::signal(SIGXFSZ, SIG_IGN);   // a file at its limit is an error of that file, not of the run
     return carry_out(options);
 }

@@ -17,6 +17,8 @@ constexpr const char* kExamples = R"(Examples:
   plabd scenes/fan_and_balloons.xml --until 10 --set "red.mass=0.02"
   plabd scenes/fan_and_balloons.xml --until 10 --no-bus --rate max
   plabd --explain scenes/fan_and_balloons.xml
+  plabd scenes/fan_and_balloons.xml --until 10 --record run.mcap
+  plabd --replay run.mcap --verify
 While it runs: plabctl interactions; plabctl swap contact.response --to Response/None; plab-view --png now.png
 
 Exit codes: 0 done, 1 failed (message on standard error), 2 wrong use.)";
@@ -67,6 +69,74 @@ std::string take_bus_options(const std::string& states, bool no_bus, Options& op
     const auto [stop, error] = std::from_chars(states.data(), end, options.states_per_second);
     if (error == std::errc() && stop == end && options.states_per_second > 0 && options.states_per_second <= 1e6) return {};
     return "--states is a number of frames per second up to 1e6, or all, not '" + states + "'";
+}
+
+void add_record_options(CLI::App& app, Options& o, std::string& states)
+{
+    const std::string group = "Recording";
+    RecordChoice& r = o.record;
+    app.add_option("--record", r.file, "write the run to FILE.mcap, for plabctl play, plab-view, --replay and other tools")
+        ->type_name("FILE")
+        ->group(group);
+    app.add_flag("--overwrite", r.overwrite, "a recording that is there already is replaced")->group(group);
+    app.add_option("--record-topics", r.topics, "only these topics, e.g. plab/states; default: all but plab/images")
+        ->delimiter(',')
+        ->group(group);
+    app.add_option("--record-states", states, "frames per simulated second, or all: each step (default)")->group(group);
+    app.add_flag("--record-moved", r.moved_only, "frames name only what moved since the last one")->group(group);
+    app.add_option("--record-snapshots", r.snapshot_interval, "simulated seconds between snapshots (default: 5)")
+        ->check(&not_seconds, "")
+        ->group(group);
+    app.add_option("--record-compression", r.compression, "none, lz4 or zstd (default)")
+        ->check(CLI::IsMember({"none", "lz4", "zstd"}))
+        ->group(group);
+}
+
+void add_past_options(CLI::App& app, Options& o)
+{
+    const std::string group = "Going back";
+    app.add_option("--load", o.load, "go on from the snapshot in FILE instead of a scene")->type_name("FILE")->group(group);
+    app.add_option("--save", o.save, "write a snapshot of the end state to FILE")->type_name("FILE")->group(group);
+    app.add_option("--history", o.history,
+                   "simulated seconds between snapshots kept in memory, which plabctl rewind needs; 0: none (default: 1 with a bus)")
+        ->check(&not_seconds, "")
+        ->group(group);
+    app.add_option("--replay", o.replay.file, "make the runs in the recording FILE again")->type_name("FILE")->group(group);
+    app.add_flag("--verify", o.replay.verify, "with --replay: compare the state's hash after each step")->group(group);
+    app.add_option("--from", o.replay.from, "with --replay: begin at the last snapshot at or before this step")->group(group);
+    app.add_option("--run", o.replay.run, "with --replay: only this run of the recording")->group(group);
+    app.add_option("--shadow", o.shadow.id, "with --load, ID=TYPE: run on with and without that swap, and compare")->group(group);
+    app.add_option("--for", o.shadow.seconds, "with --shadow: simulated seconds (default: 1)")->check(&not_seconds, "")->group(group);
+    app.add_flag("--json", o.shadow.json, "with --shadow: print JSON")->group(group);
+}
+
+/// The reason if something about them does not hold.
+std::string take_past_options(const std::string& states, Options& o)
+{
+    const bool replay = !o.replay.file.empty(), shadow = !o.shadow.id.empty();
+    if (!replay && (o.replay.verify || o.replay.from || o.replay.run)) return "--verify, --from and --run go with --replay FILE";
+    if (int(replay) + int(!o.load.empty()) + int(!o.scene.empty()) > 1) return "a scene, --load and --replay exclude one another";
+    if (shadow && o.load.empty()) return "--shadow goes with --load FILE";
+    if (shadow)
+    {
+        const std::size_t equal = o.shadow.id.rfind('=');
+        if (equal == std::string::npos || equal == 0 || equal + 1 == o.shadow.id.size())
+            return "--shadow wants ID=TYPE, not '" + o.shadow.id + "'";
+        o.shadow.type = o.shadow.id.substr(equal + 1), o.shadow.id.resize(equal);
+        o.task = Task::Shadow, o.bus = false;
+    }
+    if (replay) o.task = Task::Replay, o.bus = false;
+    if (o.record.file.empty() && (o.record.overwrite || o.record.moved_only || !o.record.topics.empty() || !states.empty()))
+        return "--overwrite and --record-... go with --record FILE";
+    if ((replay || shadow) && !o.record.file.empty()) return "--record goes with a scene or --load";
+    if (states.empty() || states == "all") return {};
+    double rate = 0;
+    const char* const end = states.data() + states.size();
+    const auto [stop, error] = std::from_chars(states.data(), end, rate);
+    if (error != std::errc() || stop != end || !(rate > 0 && rate <= 1e9))
+        return "--record-states is a number of frames per simulated second, or all, not '" + states + "'";
+    o.record.state_interval = 1 / rate;
+    return {};
 }
 
 }  // namespace
@@ -131,6 +201,9 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     bool no_bus = false;
     std::string states;
     add_bus_options(app, options, states, no_bus);
+    std::string recorded_states;
+    add_record_options(app, options, recorded_states);
+    add_past_options(app, options);
     try
     {
         app.parse(argc, argv);
@@ -144,7 +217,8 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     if (int(check) + int(expand) + int(explain) + int(reference) > 1)
         return ParseEnd{2, "plabd: --check, --expand, --explain and --reference exclude one another\n"};
     options.task = check ? Task::Check : expand ? Task::Expand : explain ? Task::Explain : reference ? Task::Reference : Task::Run;
-    if (options.scene.empty() && options.task != Task::Reference) return ParseEnd{2, "plabd: needs a scene; see plabd --help\n"};
+    if (options.scene.empty() && options.load.empty() && options.replay.file.empty() && options.task != Task::Reference)
+        return ParseEnd{2, "plabd: needs a scene; see plabd --help\n"};
     if (!rate.empty())
     {
         const auto factor = control::parse_rate(rate);
@@ -152,6 +226,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
         options.rate = *factor;
     }
     if (const std::string why = take_bus_options(states, no_bus, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
+    if (const std::string why = take_past_options(recorded_states, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
     if (options.paused && !options.bus) return ParseEnd{2, "plabd: --paused needs the bus: nobody could say go on\n"};
     for (const auto& [texts, parse] : {std::pair(&swaps, &parse_swap), std::pair(&sets, &parse_set)})
         for (const std::string& text : *texts)

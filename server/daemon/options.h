@@ -18,6 +18,37 @@ enum class Task
     Expand,     ///< print the long form
     Explain,    ///< print what is loaded, resolved and left out, and why
     Reference,  ///< print the manual of all types
+    Replay,     ///< make a recorded run again
+    Shadow,     ///< a snapshot's future with another algorithm beside the one without
+};
+
+/// --record and what goes with it.
+struct RecordChoice
+{
+    std::string file;  ///< "": nothing is recorded
+    bool overwrite = false;
+    std::vector<std::string> topics;  ///< none: all but images
+    std::string compression = "zstd";
+    double state_interval = 0;  ///< s, simulated; 0: each step
+    bool moved_only = false;
+    double snapshot_interval = 5;  ///< s, simulated
+};
+
+/// --replay and what goes with it.
+struct ReplayChoice
+{
+    std::string file;
+    bool verify = false;
+    std::optional<Tick> from;
+    std::optional<std::uint64_t> run;
+};
+
+/// --shadow.
+struct ShadowChoice
+{
+    std::string id, type;
+    double seconds = 1;  ///< simulated
+    bool json = false;
 };
 
 /// --swap and --set: a request for a step.
@@ -42,6 +73,12 @@ struct Options
     bool hashes = false;  ///< print the state hash of each step
     std::string log_level = "info";
     std::vector<ScheduledOperation> operations;
+    std::string load;     ///< snapshot to go on from, instead of a scene
+    std::string save;     ///< snapshot of the end state
+    double history = -1;  ///< s between snapshots that a rewind needs; 0: none; < 0: not given
+    RecordChoice record;
+    ReplayChoice replay;
+    ShadowChoice shadow;
 
     bool bus = true;
     std::string name = "plab";      ///< of the server on the bus

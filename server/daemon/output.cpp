@@ -1,5 +1,7 @@
 #include "daemon/output.h"
 
+#include <spdlog/spdlog.h>
+
 #include <cerrno>
 #include <cinttypes>
 #include <cmath>
@@ -221,6 +223,22 @@ void Trace::sample(const simulation::Simulation& s, bool last)
         add(std::get<Vec3>(hosted("angular_velocity")));
     }
     std::fprintf(file_.get(), "%s\n", row.c_str());
+}
+
+bool write_end_state(const simulation::Simulation& s, const std::string& file)
+{
+    const std::string text = end_state_json(s);
+    if (file == "-")
+    {
+        const bool fine = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+        if (!fine) spdlog::error("cannot write the end state to standard output");
+        return fine;
+    }
+    std::FILE* f = std::fopen(file.c_str(), "w");
+    const bool written = f && std::fputs(text.c_str(), f) >= 0;
+    const bool closed = f && std::fclose(f) == 0;
+    if (!written || !closed) spdlog::error("cannot write {}", file);
+    return written && closed;
 }
 
 }  // namespace plab::daemon

@@ -13,6 +13,9 @@ namespace plab::daemon
 /// The state of the scene as JSON; numbers with 17 significant digits. Keys are documented in server/docs/output.md.
 std::string end_state_json(const simulation::Simulation& simulation);
 
+/// Writes it to a file; "-" is standard output. False if that failed; the log says why.
+bool write_end_state(const simulation::Simulation& simulation, const std::string& file);
+
 /// Rows of the same figures over time.
 class Trace
 {

@@ -33,22 +33,6 @@ void report_events(const simulation::Simulation& s)
     }
 }
 
-bool write_end_state(const simulation::Simulation& s, const std::string& file)
-{
-    const std::string text = end_state_json(s);
-    if (file == "-")
-    {
-        const bool fine = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-        if (!fine) spdlog::error("cannot write the end state to standard output");
-        return fine;
-    }
-    std::FILE* f = std::fopen(file.c_str(), "w");
-    const bool written = f && std::fputs(text.c_str(), f) >= 0;
-    const bool closed = f && std::fclose(f) == 0;
-    if (!written || !closed) spdlog::error("cannot write {}", file);
-    return written && closed;
-}
-
 /// Shared objects of this process, a line each (Linux: /proc/self/maps).
 void print_mapped_libraries()
 {
@@ -182,6 +166,13 @@ bool Run::finish()
         spdlog::error("{}", why);
         fine_ = false;
     }
+    fine_ = service_.close_recording() && fine_;
+    if (!options_.save.empty())
+        if (auto saved = write_snapshot(s_.capture(), options_.save); !saved)
+        {
+            spdlog::error("{}", saved.error().text());
+            fine_ = false;
+        }
     if (!options_.out.empty()) fine_ = write_end_state(s_, options_.out) && fine_;
     return fine_;
 }

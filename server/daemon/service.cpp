@@ -4,6 +4,7 @@
 
 #include "simulation/clock.h"
 #include "simulation/requests/request_words.h"
+#include "simulation/snapshot/history.h"
 
 namespace plab::daemon
 {
@@ -46,7 +47,9 @@ Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& lib
       library_(&library),
       scene_file_(options.scene),
       threads_(static_cast<std::uint32_t>(options.threads)),
-      collector_(collector_options(options), options.bus ? library.summaries() : std::vector<model::TypeSummary>{})
+      collector_(collector_options(options),
+                 options.bus || !options.record.file.empty() ? library.summaries() : std::vector<model::TypeSummary>{}),
+      snapshots_(library)
 {
 }
 
@@ -68,10 +71,42 @@ Result<void> Service::open_bus(const Options& options, const Wake& wake)
     return {};
 }
 
+Result<void> Service::open_recording(const Options& options)
+{
+    auto module = RecordModule::load_for_writing();
+    if (!module) return module.errors();
+    record::RecordOptions record = record_options(options, *simulation_, *library_);
+    record.log = [](void*, const char* line) { spdlog::warn("{}", line); };
+    auto opened = module->record(record);
+    if (!opened) return opened.errors();
+    record_module_ = module.take(), recording_ = opened.take();
+    collector_.attach(*recording_);
+    simulation_->draw_for(this);
+    return {};
+}
+
+bool Service::wanted() const
+{
+    return (bus_ && bus_->wants(publish::Stream::Images)) || (recording_ && recording_->wants(publish::Stream::Images));
+}
+
+bool Service::close_recording()
+{
+    if (!recording_) return true;
+    send_snapshot(true);
+    const auto closed = recording_->close();
+    const publish::RecordingStatus status = recording_->progress();
+    if (!closed) spdlog::error("{}", closed.error().reason);
+    if (status.dropped > 0) spdlog::warn("{}: {} messages were dropped on the way to the file", status.file, status.dropped);
+    spdlog::info("recorded {} messages in {} bytes: {}", status.messages, status.bytes, status.file);
+    return static_cast<bool>(closed);
+}
+
 void Service::post(simulation::Request request)
 {
     Origin origin;
-    for (const simulation::Operation& op : request.operations) origin.operations.push_back(control::description_of(op));
+    for (const simulation::Operation& op : request.operations)
+        origin.operations.push_back(control::description_of(op)), origin.texts.push_back(control::text_of(op));
     request.id = ++last_request_;
     waiting_.emplace(request.id, std::move(origin));
     simulation_->post(std::move(request));
@@ -101,6 +136,7 @@ void Service::accept(const publish::RequestText& text, control::Wanted wanted, d
     origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
     origin.read_ns = read_ns;
     for (const simulation::Operation& op : wanted.request.operations) origin.operations.push_back(control::description_of(op));
+    origin.texts = text.operations;
     wanted.request.id = ++last_request_;
     waiting_.emplace(last_request_, std::move(origin));
     simulation_->post(std::move(wanted.request));
@@ -171,6 +207,7 @@ bool Service::answer()
         waiting_.erase(found);
         reply.pause_ns += origin.read_ns;
         ++(reply.done ? done_ : refused_);
+        if (reply.done) write_journal(origin, reply);
         note(origin, reply);
         for (const simulation::SwapReport& swap : reply.swaps) log_swap(reply, swap);
         if (origin.from_bus)
@@ -212,17 +249,88 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
     }
 }
 
-void Service::publish(bool stepped) { collector_.collect(*simulation_, simulation_->take_changes(), stepped); }
+void Service::write_journal(const Origin& origin, const simulation::Reply& reply)
+{
+    publish::JournalRecord entry;
+    entry.run = simulation_->run(), entry.revision = reply.revision, entry.step = reply.step, entry.time = simulation_->time();
+    entry.origin = origin.from_bus ? "client" : "command line";
+    entry.client = origin.client, entry.request = origin.number, entry.operations = origin.texts;
+    collector_.journal(std::move(entry));
+    send_named_snapshots(origin);
+}
+
+/// Whoever reads snapshots gets those that are asked for, too: this is how a client brings one home.
+void Service::send_named_snapshots(const Origin& origin)
+{
+    if (!collector_.anybody_reads_snapshots()) return;
+    for (const publish::OperationText& op : origin.texts)
+    {
+        if (op.verb != "snapshot") continue;
+        const auto& named = simulation_->history().named();
+        if (const auto kept = named.find(op.target); kept != named.end()) make_snapshot(kept->second.snapshot, op.target, "request");
+    }
+}
+
+void Service::make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause)
+{
+    send_snapshot(true);
+    snapshots_.begin(snapshot, name, cause);
+}
+
+/// Hands over the snapshot that has been made, if there is one.
+void Service::send_snapshot(bool wait)
+{
+    auto made = snapshots_.take(wait);
+    if (!made) return;
+    if (*made)
+        collector_.snapshot(**made);
+    else
+        spdlog::error("no snapshot was recorded: {}", made->error().text());
+}
+
+void Service::publish(bool stepped)
+{
+    collector_.collect(*simulation_, simulation_->take_changes(), stepped);
+    send_snapshot(false);
+    const auto cause = collector_.wants_snapshot(*simulation_);
+    if (!cause) return;
+    make_snapshot(simulation_->capture(), "", *cause);
+    // Where a run begins it is needed before anything else: nothing of the run can be made again without it.
+    if (std::string_view(*cause) == "begin") send_snapshot(true);
+}
+
+void Service::idle()
+{
+    collector_.idle(*simulation_);
+    send_snapshot(false);
+    if (const auto cause = collector_.wants_snapshot(*simulation_); cause && std::string_view(*cause) == "begin")
+    {
+        make_snapshot(simulation_->capture(), "", *cause);
+        send_snapshot(true);
+    }
+}
+
+std::vector<publish::KeptSnapshot> Service::kept_snapshots() const
+{
+    std::vector<publish::KeptSnapshot> out;
+    for (const auto& [name, kept] : simulation_->history().named())
+        out.push_back({name, kept.snapshot->run, kept.snapshot->clock.tick, kept.snapshot->clock.time(), kept.bytes});
+    return out;
+}
 
 void Service::publish_status(double rate_reached, double slipped, bool slipping)
 {
-    if (!bus_) return;
+    if (!bus_ && !recording_) return;
     publish::Status s;
     s.scene_file = scene_file_, s.run = simulation_->run(), s.revision = simulation_->revision();
     s.step = simulation_->tick(), s.time = simulation_->time(), s.dt = simulation_->dt();
     s.paused = simulation_->paused(), s.rate_asked = simulation_->rate(), s.rate_reached = rate_reached;
     s.slipped = slipped, s.slipping = slipping, s.threads = threads_;
     s.requests_done = done_, s.requests_refused = refused_;
+    const simulation::History& history = simulation_->history();
+    s.rewind_from = history.can_rewind() ? history.earliest() : -1;
+    s.snapshots = kept_snapshots();
+    if (recording_) s.recording = recording_->progress();
     collector_.status(s);
 }
 
@@ -232,7 +340,8 @@ void Service::show(std::uint32_t component, std::uint32_t width, std::uint32_t h
     image.camera = simulation_->world().id_of(component), image.run = simulation_->run();
     image.step = simulation_->tick() + 1, image.time = simulation_->time() + simulation_->dt();
     image.width = width, image.height = height, image.rgba = std::move(rgba);
-    bus_->image(std::move(image));
+    if (recording_ && recording_->wants(publish::Stream::Images)) recording_->image(publish::Image(image));
+    if (bus_ && bus_->wants(publish::Stream::Images)) bus_->image(std::move(image));
 }
 
 }  // namespace plab::daemon

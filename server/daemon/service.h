@@ -7,6 +7,7 @@
 #include "bus/bus.h"
 #include "control/operations.h"
 #include "daemon/options.h"
+#include "daemon/recording.h"
 #include "daemon/wake.h"
 #include "plugins/library.h"
 #include "publish/collector.h"
@@ -22,6 +23,9 @@ public:
     /// Loads bus.so and joins. `wake` must outlive this.
     Result<void> open_bus(const Options& options, const Wake& wake);
 
+    /// Loads record.so and begins to write the recording that the options name.
+    Result<void> open_recording(const Options& options);
+
     /// A request of the command line.
     void post(simulation::Request request);
     /// Requests that have arrived on the bus go to the simulation; those that are nonsense are refused.
@@ -32,11 +36,13 @@ public:
     /// Records for observers: after a step, or (`stepped` false) after requests between steps.
     void publish(bool stepped);
     /// While paused: what observers that have just come must see.
-    void idle() { collector_.idle(*simulation_); }
+    void idle();
     void publish_status(double rate_reached, double slipped, bool slipping);
 
     /// The end: clients whose requests still wait are told. The number of the command line's that wait.
     std::size_t close();
+    /// Ends the recording. False if its file is not whole, or something was dropped; said in the log.
+    bool close_recording();
 
     bool shutdown_wanted() const { return shutdown_; }
     /// Why the server must end, if it must.
@@ -44,7 +50,7 @@ public:
     std::uint64_t answered() const { return done_ + refused_; }
 
     // ImageSink: pictures of cameras in the scene.
-    bool wanted() const override { return bus_ && bus_->wants(publish::Stream::Images); }
+    bool wanted() const override;
     void show(std::uint32_t component, std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) override;
 
 private:
@@ -56,12 +62,18 @@ private:
         std::int64_t arrived_ns = 0;
         double read_ns = 0;  ///< what it took to understand it, on the step thread
         std::vector<control::Description> operations;
+        std::vector<publish::OperationText> texts;  ///< the same, as the journal keeps them
     };
     void accept(const publish::RequestText& text, control::Wanted wanted, double read_ns);
     void refuse(const publish::RequestText& text, Errors errors, double read_ns);
     void answer_client(const Origin& origin, simulation::Reply reply);
     void shut_down(const publish::RequestText& text);
     void note(const Origin& origin, const simulation::Reply& reply);
+    void write_journal(const Origin& origin, const simulation::Reply& reply);
+    void make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause);
+    void send_snapshot(bool wait);
+    void send_named_snapshots(const Origin& origin);
+    std::vector<publish::KeptSnapshot> kept_snapshots() const;
 
     simulation::Simulation* simulation_;
     plugins::PluginLibrary* library_;
@@ -69,7 +81,10 @@ private:
     std::uint32_t threads_;
     plugins::Module module_;  // goes after bus_
     std::unique_ptr<bus::Bus> bus_;
+    std::optional<RecordModule> record_module_;  // goes after recording_
+    std::unique_ptr<record::Recording> recording_;
     publish::Collector collector_;
+    SnapshotDesk snapshots_;
     std::map<std::uint64_t, Origin> waiting_;
     std::uint64_t last_request_ = 0, done_ = 0, refused_ = 0;
     bool shutdown_ = false;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "study/plot/axes.h"
+#include "figures/axes.h"
 #include "study/plot/figures.h"
 #include "study/write.h"
 
@@ -12,7 +12,7 @@ namespace plab::study
 namespace
 {
 
-using plot::short_number;
+using figures::short_number;
 
 std::string one_decimal(double v)
 {

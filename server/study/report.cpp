@@ -3,9 +3,10 @@
 #include <cmath>
 #include <set>
 
+#include "figures/axes.h"
+#include "figures/page.h"
 #include "model/values.h"
-#include "study/page.h"
-#include "study/plot/axes.h"
+#include "study/plot/figures.h"
 #include "study/write.h"
 
 namespace plab::study
@@ -13,7 +14,9 @@ namespace plab::study
 namespace
 {
 
-using plot::short_number;
+using figures::Page;
+using figures::PageCell;
+using figures::short_number;
 
 std::string key_of(double v)
 {

@@ -7,9 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "blueprint/reader.h"
+#include "figures/axes.h"
+#include "figures/page.h"
 #include "model/compile.h"
-#include "study/page.h"
-#include "study/plot/axes.h"
+#include "study/plot/figures.h"
 #include "study/write.h"
 
 namespace plab::study
@@ -18,6 +19,7 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
+using figures::Page;
 
 Error wrong(const std::string& path, const std::string& entry, const std::string& why)
 {
@@ -146,7 +148,7 @@ void tally_point(const Point& p, double tolerance, plot::Cell& cell, double& cos
         return;
     }
     if (!(digits(p.error()) <= cell.digits))
-        cell = {digits(p.error()), "", p.combination.label() + ": error " + plot::short_number(p.error())};
+        cell = {digits(p.error()), "", p.combination.label() + ": error " + figures::short_number(p.error())};
     if (p.error() <= tolerance && p.cpu_per_second() < cost) cost = p.cpu_per_second();
 }
 
@@ -195,13 +197,14 @@ std::vector<std::string> findings_of(const std::vector<Done>& all, const std::ve
             solved += any ? 1 : 0;
             out.push_back(t.studies[i]->entry->name + ": " +
                           (any ? t.rungs[static_cast<std::size_t>(best - t.cost[i].begin())] + " is the cheapest within " +
-                                     plot::short_number(tolerance) + ", " + plot::short_number(1e3 * *best) + " ms per simulated second."
-                               : "nobody comes within " + plot::short_number(tolerance) + "."));
+                                     figures::short_number(tolerance) + ", " + figures::short_number(1e3 * *best) +
+                                     " ms per simulated second."
+                               : "nobody comes within " + figures::short_number(tolerance) + "."));
         }
     for (const Done& d : all)
         if (!d.trouble.empty()) out.push_back(d.entry->name + ": could not be studied: " + d.trouble);
     out.insert(out.begin(), std::to_string(solved) + " of " + std::to_string(all.size()) +
-                                " problems have a run with an error of at most " + plot::short_number(tolerance) + ".");
+                                " problems have a run with an error of at most " + figures::short_number(tolerance) + ".");
     return out;
 }
 
@@ -231,7 +234,7 @@ Json json_of(const std::vector<Done>& all, const std::vector<Tally>& tallies, co
 }
 
 /// A picture as SVG and PNG.
-Result<void> write_picture(const std::string& file, const plot::Drawing& drawing)
+Result<void> write_picture(const std::string& file, const figures::Drawing& drawing)
 {
     if (auto written = write_file(file + ".svg", drawing.svg(true)); !written) return written;
     return drawing.write_png(file + ".png");
@@ -244,14 +247,14 @@ Result<void> add_tally(Page& page, const Tally& t, const SuiteOptions& options, 
     std::vector<std::vector<plot::Cell>> cells(t.rungs.size());
     for (std::size_t r = 0; r < t.rungs.size(); ++r)
         for (const std::vector<plot::Cell>& study : t.best) cells[r].push_back(study[r]);
-    const plot::Drawing map = plot::heat_map("Best digits", t.rungs, t.names(), cells);
+    const figures::Drawing map = plot::heat_map("Best digits", t.rungs, t.names(), cells);
     page.figure(map, "Correct digits of each rung's best run. A pale cell: no part in that problem, or no result.");
     if (auto written = write_picture(folder + "/digits" + number, map); !written) return written;
     if (t.studies.size() > 1)
     {
-        const plot::Drawing profile = plot::performance_profile("Performance profile", t.rungs, t.cost);
+        const figures::Drawing profile = plot::performance_profile("Performance profile", t.rungs, t.cost);
         page.figure(profile, "After Dolan and Moré (2002): the share of these problems that a rung solves to " +
-                                 plot::short_number(options.tolerance) +
+                                 figures::short_number(options.tolerance) +
                                  " within that multiple of the cheapest rung's cost. Runs without a result solve nothing.");
         if (auto written = write_picture(folder + "/profile" + number, profile); !written) return written;
     }

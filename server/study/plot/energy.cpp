@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/plot/axes.h"
+#include "figures/chart.h"
 #include "study/plot/figures.h"
 
 namespace plab::study::plot
 {
+
+using namespace figures;
+
 namespace
 {
 
@@ -31,46 +34,21 @@ std::vector<const Point*> lines_of(const StudyResult& r)
 
 std::optional<Drawing> energy(const StudyResult& r)
 {
-    const std::vector<const Point*> lines = lines_of(r);
-    std::vector<double> times, drifts;
-    std::vector<std::string> names;
-    for (const Point* p : lines)
-    {
-        names.push_back(p->combination.label());
-        const EnergySeries& e = p->record.energy;
-        for (std::size_t i = 0; i < e.time.size(); ++i)
-            if (std::isfinite(e.drift[i])) times.push_back(e.time[i]), drifts.push_back(e.drift[i]);
-    }
+    Chart chart;
+    chart.title = "Energy that nobody put in", chart.subtitle = r.title, chart.kind = Scale::Kind::SymLog;
     double scale = 0, largest = 0;
-    for (const Point* p : lines) scale = std::max(scale, p->record.energy.scale);
-    for (const double d : drifts) largest = std::max(largest, std::fabs(d));
+    for (const Point* p : lines_of(r))
+    {
+        const EnergySeries& e = p->record.energy;
+        Curve& curve = chart.curves.emplace_back(Curve{p->combination.label(), "drift, J", {}});
+        for (std::size_t i = 0; i < e.time.size(); ++i) curve.points.emplace_back(e.time[i], e.drift[i]);
+        scale = std::max(scale, e.scale);
+        for (const double d : e.drift) largest = std::isfinite(d) ? std::max(largest, std::fabs(d)) : largest;
+    }
     // A picture of round-off says nothing.
     if (largest <= kRoundOff * scale || largest == 0) return {};
-    Drawing d(860, 520, "Energy over time: " + r.title);
-    double legend = 60;
-    for (const std::string& n : names) legend = std::max(legend, text_width(n, 12));
-    Panel p;
-    p.left = 96, p.top = 48, p.width = 860 - 96 - std::min(legend, 300.0) - 56, p.height = 410;
-    p.x = Scale::around(Scale::Kind::Linear, times), p.y = Scale::around(Scale::Kind::SymLog, drifts);
-    p.x.low = 0, p.y.threshold = std::max(p.y.threshold, 0.1 * kRoundOff * scale);
-    d.words({96, 26}, "Energy that nobody put in", {16, {}, Anchor::Start, true, false});
-    d.words({96 + text_width("Energy that nobody put in", 16) * 1.1 + 14, 26}, r.title,
-            {13, {Ink::Role::Muted, 0, 0, 0, 0}, Anchor::Start, false, false});
-    draw_panel(d, p, "time, s", "drift, J");
-    for (std::size_t k = 0; k < lines.size(); ++k)
-    {
-        const EnergySeries& e = lines[k]->record.energy;
-        std::vector<Spot> line;
-        for (std::size_t i = 0; i < e.time.size(); ++i)
-            if (std::isfinite(e.drift[i])) line.push_back(p.at(e.time[i], e.drift[i]));
-        // The first are the broadest, so that lines that lie upon one another can all be seen.
-        const double width = 1.6 + 0.5 * static_cast<double>(std::min<std::size_t>(lines.size() - 1 - k, 6));
-        d.line(std::move(line), {Ink::series(static_cast<int>(k)), width, k >= Ink::kSeries}, names[k]);
-        const double y = p.top + 8 + 20.0 * static_cast<double>(k);
-        d.line({{p.right() + 16, y}, {p.right() + 36, y}}, {Ink::series(static_cast<int>(k)), 2.5, k >= Ink::kSeries});
-        d.words({p.right() + 42, y + 4}, names[k], {12, {}, Anchor::Start, false, false});
-    }
-    return d;
+    chart.least = 0.1 * kRoundOff * scale;
+    return draw(chart);
 }
 
 std::vector<Picture> pictures_of(const StudyResult& r)

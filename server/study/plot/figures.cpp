@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/plot/axes.h"
+#include "figures/axes.h"
 
 namespace plab::study::plot
 {
+
+using namespace figures;
+
 namespace
 {
 

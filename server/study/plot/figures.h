@@ -3,11 +3,13 @@
 
 #include <optional>
 
-#include "study/plot/drawing.h"
+#include "figures/drawing.h"
 #include "study/study.h"
 
 namespace plab::study::plot
 {
+
+using figures::Drawing;
 
 /// Error against CPU time, log-log: a marker per combination, a line per rung, the Pareto front, what the reference cannot
 /// resolve.

@@ -3,11 +3,14 @@
 #include <cmath>
 #include <set>
 
-#include "study/plot/axes.h"
+#include "figures/axes.h"
 #include "study/plot/figures.h"
 
 namespace plab::study::plot
 {
+
+using namespace figures;
+
 namespace
 {
 

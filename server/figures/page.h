@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "study/plot/figures.h"
+#include "figures/drawing.h"
 
-namespace plab::study
+namespace plab::figures
 {
 
 /// A table whose columns sort by a click. A cell: what is shown, what it sorts by (empty: the text), a hint.
@@ -24,7 +24,7 @@ public:
     void paragraph(const std::string& text);
     void list(const std::vector<std::string>& items);
     void code(const std::string& text);
-    void figure(const plot::Drawing& drawing, const std::string& caption);
+    void figure(const Drawing& drawing, const std::string& caption);
     void table(const std::vector<PageCell>& head, const std::vector<std::vector<PageCell>>& rows);
     void facts(const std::vector<std::pair<std::string, std::string>>& facts);
     void link(const std::string& target, const std::string& text);
@@ -34,4 +34,4 @@ private:
     std::string title_, lead_, body_;
 };
 
-}  // namespace plab::study
+}  // namespace plab::figures

@@ -1,9 +1,9 @@
 /// Axes: what a value is on the paper, ticks, grid, labels.
 #pragma once
 
-#include "study/plot/drawing.h"
+#include "figures/drawing.h"
 
-namespace plab::study::plot
+namespace plab::figures
 {
 
 struct Scale
@@ -74,4 +74,4 @@ std::string power_of_ten(int exponent);
 /// "3.2e-07" as people write it: 3.2·10⁻⁷, or plain where that is short.
 std::string short_number(double value);
 
-}  // namespace plab::study::plot
+}  // namespace plab::figures

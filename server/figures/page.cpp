@@ -1,11 +1,9 @@
-#include "study/page.h"
+#include "figures/page.h"
 
-namespace plab::study
+namespace plab::figures
 {
 namespace
 {
-
-using plot::escape_markup;
 
 constexpr const char* kStyle = R"(
 :root{--ink:#1b1f24;--muted:#5b6570;--line:#dfe3e8;--paper:#fff;--card:#f7f8fa;--link:#0072b2}
@@ -30,8 +28,8 @@ th{cursor:pointer;color:var(--muted);font-weight:600;user-select:none;vertical-a
 th:hover{color:var(--ink)}
 th[aria-sort=ascending]::after{content:" \25B4"}
 th[aria-sort=descending]::after{content:" \25BE"}
-th:first-child,td:first-child,td.text{text-align:left}
-td.text{white-space:normal;min-width:16em}
+th:first-child,td:first-child,.text{text-align:left}
+td.text{white-space:normal}td.long{min-width:16em}
 tbody tr:hover{background:var(--card)}
 dl{display:grid;grid-template-columns:max-content 1fr;gap:4px 18px;font-size:14.5px;margin:10px 0}
 dt{color:var(--muted)}dd{margin:0}
@@ -58,12 +56,21 @@ document.querySelectorAll('table.sortable').forEach(t=>t.querySelectorAll('th').
   h.addEventListener('keydown',e=>{if(e.key==='Enter')sort()})}));
 )";
 
-std::string cell(const char* tag, const PageCell& c, bool sorts)
+constexpr std::size_t kLongText = 40;  // bytes: what is longer gets room, and is broken into lines
+
+std::string class_of(const PageCell& c)
+{
+    if (!c.key.empty()) return "";
+    return c.text.size() > kLongText ? " class=\"text long\"" : " class=\"text\"";
+}
+
+/// `column`: a cell that says whether its column is text or numbers.
+std::string cell(const char* tag, const PageCell& c, const PageCell& column)
 {
     std::string out = std::string("<") + tag;
-    if (sorts && !c.key.empty()) out += " data-key=\"" + escape_markup(c.key == "-" ? "" : c.key) + "\"";
+    if (!c.key.empty()) out += " data-key=\"" + escape_markup(c.key == "-" ? "" : c.key) + "\"";
     if (!c.hint.empty()) out += " title=\"" + escape_markup(c.hint) + "\"";
-    if (sorts && c.key.empty()) out += " class=\"text\"";
+    out += class_of(column);
     return out + ">" + escape_markup(c.text) + "</" + tag + ">";
 }
 
@@ -85,7 +92,7 @@ void Page::list(const std::vector<std::string>& items)
     body_ += "</ul>\n";
 }
 
-void Page::figure(const plot::Drawing& drawing, const std::string& caption)
+void Page::figure(const Drawing& drawing, const std::string& caption)
 {
     // A small picture is not blown up.
     std::string svg = drawing.svg(false);
@@ -96,12 +103,17 @@ void Page::figure(const plot::Drawing& drawing, const std::string& caption)
 void Page::table(const std::vector<PageCell>& head, const std::vector<std::vector<PageCell>>& rows)
 {
     body_ += "<div class=\"scroll\"><table class=\"sortable\"><thead><tr>";
-    for (const PageCell& c : head) body_ += cell("th", c, false);
+    static const PageCell nothing{"", "-", ""};
+    for (std::size_t i = 0; i < head.size(); ++i)
+    {
+        const bool is_known = !rows.empty() && i < rows.front().size();
+        body_ += cell("th", {head[i].text, "", head[i].hint}, is_known ? PageCell{"", rows.front()[i].key, ""} : nothing);
+    }
     body_ += "</tr></thead><tbody>\n";
     for (const auto& row : rows)
     {
         body_ += "<tr>";
-        for (const PageCell& c : row) body_ += cell("td", c, true);
+        for (const PageCell& c : row) body_ += cell("td", c, c);
         body_ += "</tr>\n";
     }
     body_ += "</tbody></table></div>\n";
@@ -120,9 +132,9 @@ std::string Page::html() const
     return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
            "content=\"width=device-width,initial-scale=1\">"
            "<meta name=\"color-scheme\" content=\"light dark\"><title>" +
-           escape_markup(title_) + "</title>\n<style>" + kStyle + plot::svg_style() + "</style></head>\n<body><main>\n<h1>" +
+           escape_markup(title_) + "</title>\n<style>" + kStyle + svg_style() + "</style></head>\n<body><main>\n<h1>" +
            escape_markup(title_) + "</h1>\n<p class=\"lead\">" + escape_markup(lead_) + "</p>\n" + body_ + "</main><script>" + kScript +
            "</script></body></html>\n";
 }
 
-}  // namespace plab::study
+}  // namespace plab::figures

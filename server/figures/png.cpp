@@ -5,9 +5,9 @@
 #include <memory>
 #include <numbers>
 
-#include "study/plot/drawing.h"
+#include "figures/drawing.h"
 
-namespace plab::study::plot
+namespace plab::figures
 {
 namespace
 {
@@ -95,4 +95,4 @@ Result<void> Drawing::write_png(const std::string& path, double scale) const
     return {};
 }
 
-}  // namespace plab::study::plot
+}  // namespace plab::figures

@@ -1,10 +1,10 @@
-#include "study/plot/axes.h"
+#include "figures/axes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace plab::study::plot
+namespace plab::figures
 {
 namespace
 {
@@ -183,4 +183,4 @@ std::string short_number(double v)
     return std::string(text) + "·" + power_of_ten(exponent);
 }
 
-}  // namespace plab::study::plot
+}  // namespace plab::figures

@@ -10,7 +10,7 @@
 
 #include "plab/result.h"
 
-namespace plab::study::plot
+namespace plab::figures
 {
 
 struct Spot
@@ -125,4 +125,4 @@ double text_width(const std::string& text, double size);
 /// & < > and quotes.
 std::string escape_markup(const std::string& text);
 
-}  // namespace plab::study::plot
+}  // namespace plab::figures

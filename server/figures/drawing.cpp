@@ -1,11 +1,11 @@
-#include "study/plot/drawing.h"
+#include "figures/drawing.h"
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 
-namespace plab::study::plot
+namespace plab::figures
 {
 namespace
 {
@@ -263,4 +263,4 @@ std::string Drawing::svg(bool standalone) const
     return out + "</svg>\n";
 }
 
-}  // namespace plab::study::plot
+}  // namespace plab::figures

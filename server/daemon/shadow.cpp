@@ -1,0 +1,178 @@
+#include "daemon/shadow.h"
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "daemon/recording.h"
+#include "simulation/clock.h"
+#include "simulation/requests/request_words.h"
+
+namespace plab::daemon
+{
+namespace
+{
+
+/// Rows of the course that is told.
+constexpr int kRows = 20;
+
+int fail(const Errors& errors)
+{
+    for (const Error& e : errors) (void)std::fprintf(stderr, "%s\n", e.text().c_str());
+    return 1;
+}
+
+/// How far two states of a scene are apart.
+struct Gap
+{
+    double time = 0;                             ///< s
+    double distance = 0, turn = 0;               ///< m, rad: the largest of any body, or shaft (turn)
+    std::string farthest, most_turned;           ///< whose they are
+    double energy_without = 0, energy_with = 0;  ///< J
+};
+
+/// One future of the scene.
+struct Future
+{
+    simulation::Simulation simulation;
+    double cost_ns = 0;
+    double worst_error = 0;
+    std::map<std::string, std::uint64_t> events;
+
+    explicit Future(plugins::PluginLibrary& library, int threads) : simulation(library, threads) {}
+    void step(const std::string& id)
+    {
+        const std::uint64_t begin = simulation::now_ns();
+        simulation.step_once();
+        cost_ns += static_cast<double>(simulation::now_ns() - begin);
+        for (const Event& e : simulation.events()) ++events[e.kind];
+        if (const std::uint32_t i = simulation.world().find(id); i != kNoIndex)
+            worst_error = std::fmax(worst_error, simulation.error_of(i));
+    }
+    double energy() const
+    {
+        const simulation::Totals t = simulation.totals();
+        return t.kinetic + t.stored;
+    }
+};
+
+double angle_between(const Quat& a, const Quat& b)
+{
+    const Quat d = conjugate(a) * b;
+    return 2 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::fabs(d.w));
+}
+
+Gap gap_between(const Future& without, const Future& with)
+{
+    Gap gap;
+    gap.time = without.simulation.time(), gap.energy_without = without.energy(), gap.energy_with = with.energy();
+    const world::World &a = without.simulation.world(), &b = with.simulation.world();
+    const auto widen = [](double value, double& most, std::string& whose, const std::string& id)
+    {
+        // Something that is lost to infinity is farther than anything.
+        if (value > most || !(value == value)) most = value, whose = id;
+    };
+    for (const std::uint32_t i : a.in_id_order())
+    {
+        const world::Component& c = a.component(i);
+        const std::uint32_t k = b.find(c.id);
+        if (k == kNoIndex) continue;
+        const world::Component& d = b.component(k);
+        if (c.facet == Facet::Body && d.facet == Facet::Body)
+        {
+            const Pose p = a.host().bodies.pose(c.host_index), q = b.host().bodies.pose(d.host_index);
+            widen(length(p.p - q.p), gap.distance, gap.farthest, c.id);
+            widen(angle_between(p.q, q.q), gap.turn, gap.most_turned, c.id);
+        }
+        if (c.facet == Facet::Shaft && d.facet == Facet::Shaft)
+            widen(std::fabs(a.host().shafts.angle[c.host_index] - b.host().shafts.angle[d.host_index]), gap.turn, gap.most_turned, c.id);
+    }
+    return gap;
+}
+
+struct Outcome
+{
+    simulation::Reply reply;
+    std::int64_t steps = 0;
+    Tick from = 0;
+    double begin = 0;  ///< s
+    std::vector<Gap> course;
+};
+
+nlohmann::json json_of(const Outcome& o, const Future& without, const Future& with, const ShadowChoice& choice)
+{
+    using nlohmann::json;
+    const auto future = [&](const Future& f)
+    {
+        return json{{"cost_ns_per_step", f.cost_ns / static_cast<double>(std::max<std::int64_t>(1, o.steps))},
+                    {"largest_error", f.worst_error},
+                    {"events", f.events}};
+    };
+    json course = json::array();
+    for (const Gap& g : o.course)
+        course.push_back({{"time", g.time},
+                          {"distance", g.distance},
+                          {"farthest", g.farthest},
+                          {"turn", g.turn},
+                          {"most_turned", g.most_turned},
+                          {"energy_without", g.energy_without},
+                          {"energy_with", g.energy_with}});
+    json fields = json::array();
+    std::string from;
+    for (const simulation::SwapReport& swap : o.reply.swaps)
+    {
+        from = swap.from;
+        for (const simulation::FieldFate& f : swap.fields) fields.push_back({{"field", f.field}, {"fate", simulation::name_of(f.fate)}});
+    }
+    return {{"component", choice.id}, {"from", from},     {"to", choice.type},          {"step", o.from},       {"time", o.begin},
+            {"steps", o.steps},       {"fields", fields}, {"without", future(without)}, {"with", future(with)}, {"course", course}};
+}
+
+void print(const Outcome& o, const Future& without, const Future& with, const ShadowChoice& choice)
+{
+    const double steps = static_cast<double>(std::max<std::int64_t>(1, o.steps));
+    const std::string from = o.reply.swaps.empty() ? "?" : o.reply.swaps.front().from;
+    std::printf("%s: %s (as it is) beside %s (shadow), from step %" PRId64 " (t = %.9g s), %" PRId64 " steps\n", choice.id.c_str(),
+                from.c_str(), choice.type.c_str(), o.from, o.begin, o.steps);
+    std::printf("%-24s %14s %14s\n", "", "as it is", "shadow");
+    std::printf("%-24s %14.3f %14.3f\n", "cost, us per step", without.cost_ns / steps * 1e-3, with.cost_ns / steps * 1e-3);
+    std::printf("%-24s %14.3g %14.3g\n", "largest error", without.worst_error, with.worst_error);
+    std::printf("\n%12s %14s  %-20s %14s  %-20s %14s\n", "t (s)", "apart (m)", "by", "turned (rad)", "by", "energy (J)");
+    for (const Gap& g : o.course)
+        std::printf("%12.6g %14.6g  %-20s %14.6g  %-20s %+14.6g\n", g.time, g.distance, g.farthest.c_str(), g.turn, g.most_turned.c_str(),
+                    g.energy_with - g.energy_without);
+}
+
+}  // namespace
+
+int run_shadow(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop)
+{
+    auto snapshot = read_snapshot(options.load, library);
+    if (!snapshot) return fail(snapshot.errors());
+    Future without(library, options.threads), with(library, options.threads);
+    for (Future* future : {&without, &with})
+        if (auto restored = future->simulation.restore(*snapshot); !restored) return fail(restored.errors());
+    Outcome outcome;
+    outcome.from = without.simulation.tick(), outcome.begin = without.simulation.time();
+    simulation::Request swap;
+    swap.operations.push_back(simulation::SwapOperation{options.shadow.id, options.shadow.type, {}});
+    outcome.reply = with.simulation.carry_out_now(swap);
+    if (!outcome.reply.done) return fail(outcome.reply.errors);
+
+    const auto steps = static_cast<std::int64_t>(std::llround(options.shadow.seconds / without.simulation.dt()));
+    const std::int64_t every = std::max<std::int64_t>(1, steps / kRows);
+    for (; outcome.steps < steps && !stop; ++outcome.steps)
+    {
+        without.step(options.shadow.id), with.step(options.shadow.id);
+        if ((outcome.steps + 1) % every == 0 || outcome.steps == 0) outcome.course.push_back(gap_between(without, with));
+    }
+    if (options.shadow.json)
+        std::printf("%s\n", json_of(outcome, without, with, options.shadow).dump(2).c_str());
+    else
+        print(outcome, without, with, options.shadow);
+    return 0;
+}
+
+}  // namespace plab::daemon

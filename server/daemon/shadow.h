@@ -1,0 +1,16 @@
+/// plabd --shadow: what a swap would do, before it is done.
+#pragma once
+
+#include <atomic>
+
+#include "daemon/options.h"
+#include "plugins/library.h"
+
+namespace plab::daemon
+{
+
+/// A snapshot's future twice, in turn, step by step: as it is, and with one interaction exchanged. Prints how far they part,
+/// object by object, and what each costs. Returns the exit code.
+int run_shadow(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop);
+
+}  // namespace plab::daemon

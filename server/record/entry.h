@@ -1,0 +1,28 @@
+/// What the step thread hands to the writer of a recording.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <variant>
+
+#include "idl/recording/writer.h"
+#include "publish/records.h"
+
+namespace plab::record
+{
+
+/// A server's status with what the recorder adds of itself.
+struct Entry
+{
+    using Body = std::variant<std::unique_ptr<publish::Frame>, publish::Batch<publish::CollisionRecord>,
+                              publish::Batch<publish::EventRecord>, publish::Metrics, publish::Image, publish::JournalRecord,
+                              publish::HashRecord, publish::SnapshotRecord, publish::CatalogueChange, publish::Status>;
+    std::uint64_t run = 0;
+    double time = 0;            ///< s, simulated, in that run
+    std::int64_t stamp_ns = 0;  ///< since 1970
+    std::size_t bytes = 0;      ///< about what it holds in memory
+    recording::Losses lost;     ///< what found no room before it; times are left out
+    Body body;
+};
+
+}  // namespace plab::record

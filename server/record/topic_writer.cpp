@@ -1,0 +1,129 @@
+#include "record/topic_writer.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "wire/wire_view.h"
+
+namespace plab::record
+{
+namespace
+{
+
+constexpr double kFullFrameEvery = 1;  ///< s, simulated
+
+}  // namespace
+
+TopicWriter::TopicWriter(recording::Writer& writer, wire::Identity identity, std::vector<std::string> topics, bool moved_only)
+    : writer_(&writer), identity_(std::move(identity)), topics_(std::move(topics))
+{
+    if (moved_only) moved_.emplace(kFullFrameEvery);
+}
+
+bool TopicWriter::has(const char* topic) const
+{
+    if (topics_.empty()) return std::strcmp(topic, wire::topic_of<plab_v1_Image>().name) != 0;
+    return std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
+}
+
+template <class T>
+recording::ChannelId TopicWriter::channel()
+{
+    const wire::Topic& topic = wire::topic_of<T>();
+    if (const auto known = channels_.find(topic.name); known != channels_.end()) return known->second;
+    recording::ChannelId id = 0;
+    const auto schema = recording::schema_of<T>();
+    const auto schema_id = schema ? writer_->add_schema(*schema) : Result<std::uint16_t>(schema.error());
+    const auto channel_id =
+        schema_id ? writer_->add_channel(recording::channel_of<T>(*schema_id)) : Result<recording::ChannelId>(schema_id.error());
+    if (channel_id)
+        id = *channel_id;
+    else
+        error_ = channel_id.error();
+    channels_.emplace(topic.name, id);
+    return id;
+}
+
+template <class T>
+void TopicWriter::write(const T& sample, const Stamp& stamp)
+{
+    if (!has(wire::topic_of<T>().name)) return;
+    const recording::ChannelId id = channel<T>();
+    if (id == 0) return;  // was told when the channel could not be made
+    const auto bytes = encoder_.encode(sample);
+    if (!bytes)
+    {
+        error_ = bytes.error();
+        return;
+    }
+    (void)writer_->write({id, 0, stamp.log_time, stamp.publish_time, *bytes}, stamp.now);
+}
+
+void TopicWriter::put(Entry& entry, const Stamp& stamp)
+{
+    struct Visitor
+    {
+        TopicWriter* self;
+        const Entry* entry;
+        const Stamp* stamp;
+        void operator()(const std::unique_ptr<publish::Frame>& frame) const { self->put_body(*frame, *stamp); }
+        void operator()(const publish::Batch<publish::CollisionRecord>& b) const { self->write(self->collisions_.of(b), *stamp); }
+        void operator()(const publish::Batch<publish::EventRecord>& b) const { self->write(self->events_.of(b), *stamp); }
+        void operator()(const publish::Metrics& m) const { self->write(self->metrics_.of(m), *stamp); }
+        void operator()(const publish::Image& i) const { self->write(self->image_.of(i), *stamp); }
+        void operator()(const publish::JournalRecord& j) const { self->write(self->journal_.of(j), *stamp); }
+        void operator()(const publish::HashRecord& h) const { self->write(self->hashes_.of(h), *stamp); }
+        void operator()(const publish::SnapshotRecord& s) const { self->write(self->snapshot_.of(s), *stamp); }
+        void operator()(const publish::CatalogueChange& c) const { self->put_body(c, *stamp, entry->run); }
+        void operator()(const publish::Status& s) const { self->write(self->server_.of(self->identity_, s, {}), *stamp); }
+    };
+    std::visit(Visitor{this, &entry, &stamp}, entry.body);
+}
+
+void TopicWriter::put_body(const publish::Frame& frame, const Stamp& stamp)
+{
+    write(frame_.of(moved_ ? moved_->thin(frame) : frame), stamp);
+}
+
+template <class T, class Sample, class Item, class Key>
+void TopicWriter::put_entries(Sample& sample, const std::vector<Item>& entries, Key key, const Stamp& stamp)
+{
+    std::set<std::string>& known = known_[wire::topic_of<T>().name];
+    for (const Item& entry : entries)
+    {
+        known.insert(key(entry));
+        write(sample.of(entry), stamp);
+    }
+}
+
+void TopicWriter::put_body(const publish::CatalogueChange& change, const Stamp& stamp, std::uint64_t run)
+{
+    put_gone(change, stamp, run);
+    write(scene_.of(identity_.name, change.scene), stamp);
+    const auto component = [](const auto& entry) -> const std::string& { return entry.component; };
+    put_entries<plab_v1_Object>(object_, change.objects, component, stamp);
+    put_entries<plab_v1_Shape>(shape_, change.shapes, component, stamp);
+    put_entries<plab_v1_Interaction>(interaction_, change.interactions, component, stamp);
+    for (const model::TypeSummary& type : change.types) write(type_.of(type), stamp);
+}
+
+void TopicWriter::put_gone(const publish::CatalogueChange& change, const Stamp& stamp, std::uint64_t run)
+{
+    for (auto& [topic, keys] : known_)
+    {
+        if (change.everything)
+        {
+            if (!keys.empty()) say_gone(topic, "", stamp, run);
+            keys.clear();
+        }
+        for (const std::string& id : change.gone)
+            if (keys.erase(id) > 0) say_gone(topic, id, stamp, run);
+    }
+}
+
+void TopicWriter::say_gone(const std::string& topic, const std::string& key, const Stamp& stamp, std::uint64_t run)
+{
+    write(plab_v1_Gone{run, wire::text(topic), wire::text(key)}, stamp);
+}
+
+}  // namespace plab::record

@@ -1,0 +1,193 @@
+#include "replay/replay.h"
+
+#include <algorithm>
+#include <array>
+#include <cinttypes>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+#include "replay/divergence.h"
+#include "simulation/snapshot/format.h"
+
+namespace plab::replay
+{
+namespace
+{
+
+constexpr Tick kNever = std::numeric_limits<Tick>::max();
+
+/// The recorded hashes of one run, step by step.
+class Hashes
+{
+public:
+    explicit Hashes(record::RunLog& log) : log_(&log) {}
+    Result<void> begin(std::uint64_t run)
+    {
+        record_ = {}, over_ = false;
+        return log_->begin_hashes(run);
+    }
+    /// Of the state after `step` steps; nothing if it was not recorded. Steps ascend.
+    Result<std::optional<std::uint64_t>> at(Tick step)
+    {
+        while (!over_ && step >= end())
+        {
+            auto next = log_->next_hashes();
+            if (!next) return next.errors();
+            over_ = !*next;
+            if (*next) record_ = *std::move(*next);
+        }
+        if (over_ || step < record_.step) return std::optional<std::uint64_t>();
+        return std::optional(record_.hashes[static_cast<std::size_t>(step - record_.step)]);
+    }
+    /// Whether anything is recorded of steps after this one.
+    Result<bool> more_after(Tick step)
+    {
+        auto at_next = at(step + 1);
+        if (!at_next) return at_next.errors();
+        return !over_;
+    }
+
+private:
+    Tick end() const { return record_.step + static_cast<Tick>(record_.hashes.size()); }
+    record::RunLog* log_;
+    publish::HashRecord record_;
+    bool over_ = false;
+};
+
+class Replay
+{
+public:
+    Replay(record::RunLog& log, simulation::Simulation& simulation, model::TypeSource& types, const ReplayOptions& options)
+        : log_(&log), s_(&simulation), types_(&types), options_(&options), hashes_(log)
+    {
+    }
+
+    Result<ReplayReport> go();
+
+private:
+    const record::RecordedSnapshot* beginning_of(std::uint64_t run) const;
+    Result<void> begin(const record::RecordedSnapshot& snapshot);
+    Result<void> run(std::uint64_t run);
+    Result<void> ask_what_is_due();
+    Result<void> verify(std::uint64_t run);
+    bool over() const { return (options_->stop && options_->stop()) || report_.mismatch; }
+
+    record::RunLog* log_;
+    simulation::Simulation* s_;
+    model::TypeSource* types_;
+    const ReplayOptions* options_;
+    Hashes hashes_;
+    std::vector<publish::JournalRecord> journal_;
+    std::size_t next_ = 0;
+    ReplayReport report_;
+};
+
+const record::RecordedSnapshot* Replay::beginning_of(std::uint64_t run) const
+{
+    const record::RecordedSnapshot* best = nullptr;
+    for (const record::RecordedSnapshot& s : log_->snapshots())
+        if (s.run == run && (!best || (options_->from && s.step <= *options_->from))) best = &s;
+    return best;
+}
+
+Result<void> Replay::begin(const record::RecordedSnapshot& snapshot)
+{
+    auto recorded = log_->read(snapshot);
+    if (!recorded) return recorded.errors();
+    auto decoded = simulation::decode(recorded->data, *types_);
+    if (!decoded) return decoded.errors();
+    return s_->restore(decoded->snapshot);
+}
+
+/// Requests that took effect before the step that comes next.
+Result<void> Replay::ask_what_is_due()
+{
+    for (; next_ < journal_.size() && journal_[next_].step <= s_->tick(); ++next_)
+    {
+        const publish::JournalRecord& entry = journal_[next_];
+        if (entry.step < s_->tick()) continue;  // before the snapshot
+        publish::RequestText text;
+        text.operations = entry.operations;
+        auto wanted = control::wanted_of(text, *types_);
+        if (!wanted) return wanted.errors();
+        if (wanted->shutdown || !simulation::concerns_the_course(wanted->request)) continue;
+        const simulation::Reply reply = s_->carry_out_now(wanted->request);
+        ++report_.requests;
+        if (!reply.done)
+            return reason("the request of step " + std::to_string(entry.step) +
+                          " cannot be carried out again: " + (reply.errors.empty() ? std::string() : reply.errors.front().text()));
+    }
+    return {};
+}
+
+Result<void> Replay::verify(std::uint64_t run)
+{
+    auto recorded = hashes_.at(s_->tick());
+    if (!recorded) return recorded.errors();
+    if (!*recorded) return {};
+    const std::uint64_t now = s_->state_hash();
+    report_.last_hash = now;
+    if (now == **recorded)
+    {
+        ++report_.verified;
+        return {};
+    }
+    Mismatch mismatch{run, s_->tick(), **recorded, now, {}, {}, -1};
+    if (auto found = find_differences(*log_, *s_, *types_, mismatch, [&] { return ask_what_is_due(); }); !found) return found;
+    report_.mismatch = std::move(mismatch);
+    return {};
+}
+
+Result<void> Replay::run(std::uint64_t run)
+{
+    const record::RecordedSnapshot* const from = beginning_of(run);
+    if (!from) return reason("the recording has no snapshot of run " + std::to_string(run) + ": nothing to begin from");
+    if (auto begun = begin(*from); !begun) return begun;
+    auto journal = log_->journal(run);
+    if (!journal) return journal.errors();
+    // A request that begins a run is what the run's first snapshot shows already.
+    journal_ = journal.take(), next_ = 0;
+    std::erase_if(journal_, [](const publish::JournalRecord& j) { return control::begins_a_run(j.operations); });
+    if (auto begun = hashes_.begin(run); !begun) return begun;
+    ++report_.runs;
+    if (options_->begun) options_->begun(s_->time());
+    while (!over())
+    {
+        if (options_->until && s_->time() >= *options_->until - 0.5 * s_->dt()) break;
+        auto more = hashes_.more_after(s_->tick());
+        if (!more) return more.errors();
+        if (!*more) break;
+        if (auto asked = ask_what_is_due(); !asked) return asked;
+        s_->step_once();
+        ++report_.steps;
+        if (options_->verify)
+            if (auto verified = verify(run); !verified) return verified;
+        if (options_->stepped) options_->stepped();
+    }
+    return {};
+}
+
+Result<ReplayReport> Replay::go()
+{
+    std::vector<std::uint64_t> runs;
+    for (const record::RecordedSnapshot& s : log_->snapshots())
+        if (std::find(runs.begin(), runs.end(), s.run) == runs.end()) runs.push_back(s.run);
+    if (options_->run) runs = {*options_->run};
+    if (runs.empty()) return reason("the recording has no snapshot to begin from");
+    for (const std::uint64_t r : runs)
+    {
+        if (over()) break;
+        if (auto done = run(r); !done) return done.errors();
+    }
+    return report_;
+}
+
+}  // namespace
+
+Result<ReplayReport> replay(record::RunLog& log, simulation::Simulation& simulation, model::TypeSource& types, const ReplayOptions& options)
+{
+    return Replay(log, simulation, types, options).go();
+}
+
+}  // namespace plab::replay

@@ -1,0 +1,55 @@
+/// A recorded run made again: from one of its snapshots on, with what was asked of it at the same steps, and the state's
+/// hash beside the recorded one after each step.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "control/operations.h"
+#include "record/run_log.h"
+#include "simulation/simulation.h"
+#include "simulation/snapshot/compare.h"
+
+namespace plab::replay
+{
+
+struct ReplayOptions
+{
+    bool verify = false;
+    std::optional<Tick> from;           ///< begin at the last snapshot at or before this step
+    std::optional<std::uint64_t> run;   ///< only this one; else all runs of the recording, one after the other
+    std::optional<double> until;        ///< s, of each run's time
+    std::function<bool()> stop;         ///< asked between steps
+    std::function<void()> stepped;      ///< after each step
+    std::function<void(double)> begun;  ///< a run begins at this time, s
+};
+
+/// The first place where a replay and its recording differ.
+struct Mismatch
+{
+    std::uint64_t run = 0;
+    Tick step = 0;
+    std::uint64_t recorded = 0, replayed = 0;  ///< hashes
+    /// What differs: from the recorded frame of that step, and from the next snapshot, as far as there are such.
+    std::vector<simulation::Difference> in_frame, in_snapshot;
+    Tick snapshot_step = -1;
+
+    std::string text() const;
+};
+
+struct ReplayReport
+{
+    std::uint64_t runs = 0, requests = 0;
+    std::int64_t steps = 0;     ///< made
+    std::int64_t verified = 0;  ///< of them with a recorded hash
+    std::optional<Mismatch> mismatch;
+    std::uint64_t last_hash = 0;
+};
+
+/// Runs in `simulation`, whose types must be those of the recording. An error: the recording has no snapshot to begin
+/// from, a request cannot be carried out again, or the file is damaged where it is needed. A mismatch is no error.
+Result<ReplayReport> replay(record::RunLog& log, simulation::Simulation& simulation, model::TypeSource& types,
+                            const ReplayOptions& options);
+
+}  // namespace plab::replay

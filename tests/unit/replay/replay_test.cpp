@@ -1,0 +1,225 @@
+// Recorded runs made again: the same hashes, and the first difference found where there is one.
+#include "replay/replay.h"
+
+#include <algorithm>
+#include <map>
+
+#include "publish/states.h"
+#include "simulation/snapshot/format.h"
+#include "support/scene.h"
+
+namespace plab::test
+{
+namespace
+{
+
+constexpr const char* kBalls = R"(
+  <component id="earth" type="Field/Gravity" between="ball"/>
+  <component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
+  <component id="round" type="Shape/Sphere" radius="0.1"/>
+  <component id="ball" type="State/RigidBody" shape="round" mass="1" position="0 0 0.5" linear_velocity="0.3 0 0"/>
+  <component id="contact" type="CDetection/ODE" between="*"/>
+  <component id="wind" type="Field/Drag" between="ball" linear="0.01"/>)";
+/// A recording in memory: what a recorder would have written of a run.
+class Tape final : public record::RunLog
+{
+public:
+    const std::vector<record::RecordedSnapshot>& snapshots() const override { return places; }
+    Result<publish::SnapshotRecord> read(const record::RecordedSnapshot& s) override { return records.at(s.place); }
+    Result<std::vector<publish::JournalRecord>> journal(std::uint64_t run) override
+    {
+        std::vector<publish::JournalRecord> out;
+        for (const publish::JournalRecord& j : entries)
+            if (j.run == run) out.push_back(j);
+        return out;
+    }
+    Result<void> begin_hashes(std::uint64_t run) override
+    {
+        asked = run, next = 0;
+        return {};
+    }
+    Result<std::optional<publish::HashRecord>> next_hashes() override
+    {
+        while (next < hashes.size() && hashes[next].run != asked) ++next;
+        if (next >= hashes.size()) return std::optional<publish::HashRecord>();
+        return std::optional(hashes[next++]);
+    }
+    Result<std::optional<publish::Frame>> frame(std::uint64_t run, Tick step) override
+    {
+        const auto found = frames.find({run, step});
+        return found == frames.end() ? std::nullopt : std::optional(found->second);
+    }
+    Result<std::vector<std::pair<std::uint32_t, std::string>>> objects(std::uint64_t) override
+    {
+        return std::vector<std::pair<std::uint32_t, std::string>>{{1, "ball"}};
+    }
+    std::string origin(const std::string&) const override { return {}; }
+    std::string damage() const override { return {}; }
+
+    std::vector<record::RecordedSnapshot> places;
+    std::vector<publish::SnapshotRecord> records;
+    std::vector<publish::JournalRecord> entries;
+    std::vector<publish::HashRecord> hashes;
+    std::map<std::pair<std::uint64_t, Tick>, publish::Frame> frames;
+    std::uint64_t asked = 0;
+    std::size_t next = 0;
+};
+
+/// Runs a scene and writes it down.
+class Taping
+{
+public:
+    explicit Taping(const std::string& body) : scene(body, "dt=\"1/100\"")
+    {
+        REQUIRE_MESSAGE(scene.loaded(), scene.error());
+        keep_snapshot("begin");
+    }
+    void keep_snapshot(const char* cause)
+    {
+        const simulation::Simulation& s = scene.simulation();
+        auto bytes = simulation::encode(s.capture());
+        REQUIRE(bytes);
+        publish::SnapshotRecord record;
+        record.run = s.run(), record.step = s.tick(), record.time = s.time(), record.cause = cause, record.data = bytes.take();
+        tape.places.push_back({s.run(), s.tick(), s.time(), "", cause, tape.records.size()});
+        tape.records.push_back(std::move(record));
+    }
+    void ask(std::vector<publish::OperationText> operations)
+    {
+        publish::RequestText text;
+        text.operations = operations;
+        auto wanted = control::wanted_of(text, library());
+        REQUIRE(wanted);
+        REQUIRE(scene.simulation().carry_out_now(wanted->request).done);
+        publish::JournalRecord entry;
+        entry.run = scene.simulation().run(), entry.step = scene.simulation().tick(), entry.operations = std::move(operations);
+        entry.number = tape.entries.size() + 1;
+        tape.entries.push_back(std::move(entry));
+    }
+    void step(int n)
+    {
+        simulation::Simulation& s = scene.simulation();
+        for (int i = 0; i < n; ++i)
+        {
+            scene.step();
+            publish::HashRecord record;
+            record.run = s.run(), record.step = s.tick(), record.hashes = {s.state_hash()};
+            tape.hashes.push_back(record);
+            publish::Frame frame;
+            const std::uint32_t ball = s.world().find("ball");
+            if (ball != kNoIndex) frame.bodies = {publish::state_of(s.world().host().bodies, s.world().component(ball).host_index, 1)};
+            tape.frames[{s.run(), s.tick()}] = std::move(frame);
+        }
+    }
+    Scene scene;
+    Tape tape;
+};
+
+replay::ReplayReport made_again(Tape& tape, replay::ReplayOptions options = {}, int threads = 1)
+{
+    simulation::Simulation simulation(library(), threads);
+    options.verify = true;
+    auto report = replay::replay(tape, simulation, library(), options);
+    REQUIRE_MESSAGE(report, first_error(report.errors()));
+    return *report;
+}
+
+}  // namespace
+
+TEST_CASE("a run with a swap, a set, an added and a removed component gives the same hashes, for one and two threads")
+{
+    Taping taping(kBalls);
+    taping.step(20);
+    taping.ask({{"set", "ball", "", "", {{"mass", "2 kg"}}}});
+    taping.step(20);
+    taping.keep_snapshot("periodic");
+    taping.step(20);
+    taping.ask({{"add", "", "", R"(<component id="more" type="Field/Gravity" between="ball" acceleration="0 0 -1"/>)", {}},
+                {"remove", "wind", "", "", {}}});
+    taping.ask({{"rate", "", "max", "", {}}});
+    taping.step(40);
+    for (const int threads : {1, 2})
+    {
+        const replay::ReplayReport report = made_again(taping.tape, {}, threads);
+        CHECK(!report.mismatch);
+        CHECK(report.verified == 100);
+        CHECK(report.requests == 2);
+        CHECK(report.last_hash == taping.scene.hash());
+    }
+    // From the snapshot in the middle on, and only as far as it is asked for.
+    replay::ReplayOptions from;
+    from.from = 55;
+    CHECK(made_again(taping.tape, from).verified == 60);
+    replay::ReplayOptions until;
+    until.until = 0.3;
+    CHECK(made_again(taping.tape, until).verified == 30);
+}
+
+TEST_CASE("runs follow one another, each from its own first snapshot")
+{
+    Taping taping(kBalls);
+    taping.step(30);
+    taping.ask({{"reset", "", "", "", {}}});
+    taping.keep_snapshot("begin");
+    taping.step(10);
+    const replay::ReplayReport report = made_again(taping.tape);
+    CHECK(!report.mismatch);
+    CHECK(report.runs == 2);
+    CHECK(report.verified == 40);
+    replay::ReplayOptions second;
+    second.run = taping.scene.simulation().run();
+    CHECK(made_again(taping.tape, second).verified == 10);
+}
+
+TEST_CASE("a request that the recording does not know shows at its step, with object, column and both values")
+{
+    Taping taping(kBalls);
+    taping.step(25);
+    REQUIRE(taping.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);  // behind the recorder's back
+    taping.step(25);
+    taping.keep_snapshot("periodic");
+    taping.step(5);
+    const replay::ReplayReport report = made_again(taping.tape);
+    REQUIRE(report.mismatch);
+    CHECK(report.verified == 25);
+    CHECK(report.mismatch->step == 26);
+    CHECK(report.mismatch->snapshot_step == 50);
+    REQUIRE(!report.mismatch->in_frame.empty());
+    CHECK(report.mismatch->in_frame.front().component == "ball");
+    CHECK(report.mismatch->in_frame.front().field == "position");
+    REQUIRE(!report.mismatch->in_snapshot.empty());
+    CHECK(report.mismatch->in_snapshot.front().component == "ball");
+    const std::string text = report.mismatch->text();
+    CHECK(text.find("step 26") != std::string::npos);
+    CHECK(text.find("ball.position: recorded ") != std::string::npos);
+}
+
+TEST_CASE("one wrong bit in a recorded hash is found")
+{
+    Taping taping(kBalls);
+    taping.step(10);
+    taping.tape.hashes[6].hashes[0] ^= 1;
+    const replay::ReplayReport report = made_again(taping.tape);
+    REQUIRE(report.mismatch);
+    CHECK(report.mismatch->step == 7);
+    CHECK(report.mismatch->in_frame.empty());
+}
+
+TEST_CASE("a recording without a snapshot is refused, and so is a request that cannot be carried out again")
+{
+    Taping taping(kBalls);
+    taping.step(3);
+    simulation::Simulation simulation(library());
+    taping.tape.entries.push_back({});
+    taping.tape.entries.back().run = taping.scene.simulation().run(), taping.tape.entries.back().step = 1;
+    taping.tape.entries.back().operations = {{"remove", "nobody", "", "", {}}};
+    const auto impossible = replay::replay(taping.tape, simulation, library(), {});
+    REQUIRE(!impossible);
+    CHECK(impossible.error().reason.find("the request of step 1 cannot be carried out again") != std::string::npos);
+    Tape empty;
+    const auto nothing = replay::replay(empty, simulation, library(), {});
+    REQUIRE(!nothing);
+    CHECK(nothing.error().reason.find("no snapshot to begin from") != std::string::npos);
+}
+
+}  // namespace plab::test
