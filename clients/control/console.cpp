@@ -137,6 +137,15 @@ std::string duration_text(double ns)
     return formatted("%.2f s", ns / 1e9);
 }
 
+std::string bytes_text(double bytes)
+{
+    if (bytes < 1e3) return formatted("%.0f B", bytes);
+    if (bytes < 1e6) return formatted("%.1f kB", bytes / 1e3);
+    return bytes < 1e9 ? formatted("%.1f MB", bytes / 1e6) : formatted("%.2f GB", bytes / 1e9);
+}
+
+std::string bytes_text(std::uint64_t bytes) { return bytes_text(static_cast<double>(bytes)); }
+
 std::string age_text(double seconds)
 {
     const auto s = static_cast<long long>(std::max(0.0, seconds));

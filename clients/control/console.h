@@ -58,6 +58,9 @@ std::string number(double value);
 std::string exact_number(double value);
 /// "12.4 us", "3.1 ms".
 std::string duration_text(double nanoseconds);
+/// "512 B", "1.4 MB".
+std::string bytes_text(double bytes);
+std::string bytes_text(std::uint64_t bytes);
 /// "5 min 12 s".
 std::string age_text(double seconds);
 

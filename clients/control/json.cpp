@@ -74,7 +74,8 @@ Json json_of(const link::ServerInfo& s)
             {"last_collision", s.last_collision},
             {"requests_done", s.requests_done},
             {"requests_refused", s.requests_refused},
-            {"dropped", dropped}};
+            {"dropped", dropped},
+            {"playback", s.playback}};
 }
 
 Json json_of(const std::vector<link::Parameter>& parameters)

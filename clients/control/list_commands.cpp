@@ -32,6 +32,14 @@ std::string fixed(double value)
 
 // ---- servers --------------------------------------------------------------------------------------------------------
 
+/// In a word: what it does, or what is done about steps that take too long.
+std::string doing(const link::ServerInfo& s)
+{
+    const std::string word = s.playback.empty() ? "running" : "playback";
+    if (s.paused) return s.playback.empty() ? "paused" : word + ", paused";
+    return s.overload.empty() ? word : s.overload;
+}
+
 void print_servers(const Console& console, const std::vector<link::ServerInfo>& servers)
 {
     const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -47,9 +55,8 @@ void print_servers(const Console& console, const std::vector<link::ServerInfo>& 
                  {"host", Align::Left, Shrink::End},
                  {"version", Align::Left, Shrink::Never, 8}});
     for (const link::ServerInfo& s : servers)
-        table.add({s.name, s.paused ? "paused" : (s.overload.empty() ? "running" : s.overload), std::to_string(s.step),
-                   fixed(s.time) + " s", number(s.rate_reached) + "x", std::to_string(s.run), s.scene_file,
-                   age_text(static_cast<double>(now - s.started_ns) * 1e-9), std::to_string(s.process), s.host, s.version},
+        table.add({s.name, doing(s), std::to_string(s.step), fixed(s.time) + " s", number(s.rate_reached) + "x", std::to_string(s.run),
+                   s.scene_file, age_text(static_cast<double>(now - s.started_ns) * 1e-9), std::to_string(s.process), s.host, s.version},
                   s.paused ? Style::Dim : (s.overload.empty() ? Style::Plain : Style::Yellow));
     table.print(console);
 }

@@ -22,7 +22,8 @@ constexpr const char* kExamples = R"(Examples:
 )";
 
 constexpr const char* kExitCodes = R"(
-Exit codes: 0 done, 1 failed, 2 usage, 3 no server or time-out, 4 refused with the reason, 130 interrupted.
+Exit codes: 0 done, 1 failed, 2 usage, 3 no server or time-out, 4 refused with the reason, 5 lost (recover),
+130 interrupted.
 Environment: PLAB_SERVER, PLAB_DOMAIN, PLAB_INTERFACE, NO_COLOR; CYCLONEDDS_URI wins over --interface.
 )";
 
@@ -107,8 +108,13 @@ int main(int argc, char** argv)
     add_watch_command(app, context);
     add_scene_commands(app, context);
     add_clock_commands(app, context);
+    add_past_commands(app, context);
     add_wait_command(app, context);
     add_topics_command(app, context);
+    add_recording_commands(app, context);
+    add_recording_views(app, context);
+    add_record_command(app, context);
+    add_play_command(app, context);
     try
     {
         app.parse(argc, argv);

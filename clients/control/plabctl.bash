@@ -14,7 +14,7 @@ _plabctl_ids()
 _plabctl()
 {
     local commands="servers objects interactions types show watch add remove swap set push pause resume step rate dt reset load
-        shutdown wait topics"
+        shutdown wait topics snapshot snapshots restore forget rewind branch shadow record play info export recover diff plot report log"
     local globals="--server --domain --interface --timeout --json --color --count --duration --help --version"
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
     local command="" i word
@@ -29,7 +29,8 @@ _plabctl()
                 ((++i))
                 ;;
             --timeout | --color | -n | --count | -d | --duration | --to | --param | --at | --revision | --impulse | --point | \
-                --every | --only | --family | --for | --step | --time | --partition)
+                --every | --only | --family | --for | --step | --time | --partition | -o | --output | --topics | --until | \
+                --compression | --state-rate | --rate | --from | --name | --readers | --topic | -q | --quantity | --by | --out | --log | --plabd | --with | --plot | --kind | --object | --severity)
                 ((++i))
                 ;;
             -*) ;;
@@ -41,12 +42,22 @@ _plabctl()
     case $previous in
         --color) words="auto always never" ;;
         -s | --server) words=$(_plabctl_ids servers) ;;
-        --to) words=$(_plabctl_ids types) ;;
+        --to) [[ $command == swap ]] && words=$(_plabctl_ids types) ;;
+        --compression) words="none lz4 zstd" ;;
+        --topics) words="plab/states plab/events plab/collisions plab/metrics plab/journal plab/hashes plab/snapshots plab/images" ;;
+        --topic) words="states collisions events metrics server objects interactions journal hashes snapshots" ;;
+        --severity) words="info warning failure" ;;
+        -o | --output | --plot)
+            # shellcheck disable=SC2207
+            COMPREPLY=($(compgen -f -- "$current"))
+            return
+            ;;
         --for) words=$(_plabctl_ids objects interactions) ;;
         --only) words=$(_plabctl_ids objects interactions) ;;
         --interface) words=$(ls /sys/class/net 2>/dev/null) ;;
         --domain | --timeout | -n | --count | -d | --duration | --param | --at | --revision | --impulse | --point | --every | \
-            --family | --step | --time | --partition) return ;;
+            --family | --step | --time | --partition | --until | --state-rate | --rate | --from | --name | --readers | -q | --quantity | --by | --out | --log | --plabd | --with | \
+            --kind | --object) return ;;
         *)
             case $command in
                 "") words="$commands $globals" ;;
@@ -60,6 +71,24 @@ _plabctl()
                 types) words="--family --for $globals" ;;
                 rate) words="real max $globals" ;;
                 wait) words="--step --time $globals" ;;
+                record) words="--output --overwrite --topics --until --compression --state-rate $globals" ;;
+                info | export | recover | diff | plot | report | log)
+                    case $command in
+                        export) words="--csv --topic --from --to --output $globals" ;;
+                        recover | report) words="--output $globals" ;;
+                        diff) words="--plot $globals" ;;
+                        plot) words="--quantity --output --from --to --no-events --log $globals" ;;
+                        log) words="--events --collisions --kind --object --severity --from --to $globals" ;;
+                        *) words=$globals ;;
+                    esac
+                    # shellcheck disable=SC2207
+                    [[ $current != -* ]] && COMPREPLY=($(compgen -f -- "$current")) && return
+                    ;;
+                play)
+                    words="--rate --from --to --loop --pause --name --readers $globals"
+                    # shellcheck disable=SC2207
+                    [[ $current != -* ]] && COMPREPLY=($(compgen -f -- "$current")) && return
+                    ;;
                 add | load)
                     # shellcheck disable=SC2207
                     COMPREPLY=($(compgen -f -- "$current"))

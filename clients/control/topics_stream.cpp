@@ -137,16 +137,6 @@ std::string rate_line(const Interval& i, const std::string& topic, bool is_json)
            ms(i.periods.deviation());
 }
 
-std::string bytes_text(double bytes)
-{
-    constexpr const char* kUnits[]{"B", "kB", "MB", "GB"};
-    std::size_t unit = 0;
-    for (; bytes >= 1000 && unit < 3; ++unit) bytes /= 1000;
-    char text[32];
-    std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.3g %s", bytes, kUnits[unit]);
-    return text;
-}
-
 std::string bandwidth_line(const Interval& i, const std::string& topic, bool is_json)
 {
     const double per_second = i.length > 0 ? i.bytes() / i.length : 0;

@@ -300,10 +300,7 @@ Result<RawReader> Discovery::read(const std::vector<const Endpoint*>& writers, c
     if (code = dds_create_reader(code, out.topic_.get(), offer.reader_qos(options.wants_history).get(), nullptr); code < 0)
         return wire::failed("cannot read '" + name + "'", code);
     out.reader_ = wire::Entity(code);
-    out.waitset_ = wire::Entity(dds_create_waitset(participant_));
-    // A condition, unlike a status, stays true while samples are left.
-    const dds_entity_t condition = dds_create_readcondition(code, DDS_ANY_STATE);
-    if (code = dds_waitset_attach(out.waitset_.get(), condition, 0); code < 0) return wire::failed("cannot wait for '" + name + "'", code);
+    if (auto waits = out.make_waitset(participant_); !waits) return waits.errors();
     return out;
 }
 

@@ -43,17 +43,25 @@ struct RawSample
 class RawReader
 {
 public:
+    /// One of our own topics, of the session's server. Holds nobody up: requests are read without being acknowledged, and
+    /// who takes too late misses samples. `depth`: how many wait here, of each instance.
+    static Result<RawReader> open(const Session& session, const wire::Topic& topic, std::int32_t depth);
+
     /// What it is made of; null if that cannot be shown, and why_opaque() says why.
     const DynamicTypePtr& type() const { return type_; }
     const std::string& why_opaque() const { return why_opaque_; }
     const std::string& type_name() const { return type_name_; }
 
     bool wait(Seconds timeout) const;
-    void take(const std::function<void(const RawSample&)>& handle);
+    /// Hands over what waits, a batch of it at the most; how many there were.
+    std::size_t take(const std::function<void(const RawSample&)>& handle);
     std::uint32_t writers() const;
+    const wire::Entity& entity() const { return reader_; }
 
 private:
     friend class Discovery;
+    Result<void> make_waitset(dds_entity_t participant);
+
     std::string type_name_, why_opaque_;
     DynamicTypePtr type_;
     wire::Entity topic_, subscriber_, reader_, waitset_;

@@ -34,6 +34,13 @@ ServerInfo server_of(const plab_v1_Server& s)
     out.requests_done = s.requests_done, out.requests_refused = s.requests_refused;
     for (std::uint32_t i = 0; i < s.dropped._length; ++i)
         out.dropped.emplace_back(s.dropped._buffer[i].topic, s.dropped._buffer[i].samples);
+    out.playback = s.playback, out.rewind_from = s.rewind_from;
+    for (std::uint32_t i = 0; i < s.snapshots._length; ++i)
+    {
+        const plab_v1_KeptSnapshot& k = s.snapshots._buffer[i];
+        out.snapshots.push_back({k.name, k.run, k.step, k.time, k.bytes});
+    }
+    out.recording = {s.recording.file, s.recording.trouble, s.recording.bytes, s.recording.messages, s.recording.dropped};
     return out;
 }
 

@@ -43,6 +43,23 @@ struct ServerInfo
     std::uint64_t last_event = 0, last_collision = 0;  ///< sequence numbers
     std::uint64_t requests_done = 0, requests_refused = 0;
     std::vector<std::pair<std::string, std::uint64_t>> dropped = {};  ///< topic, samples that rings in the server gave up
+    std::string playback = {};                                        ///< file that is played; empty: it simulates
+    double rewind_from = -1;                                          ///< s; negative: it cannot be rewound
+    struct KeptSnapshot
+    {
+        std::string name;
+        std::uint64_t run = 0;
+        std::int64_t step = 0;
+        double time = 0;  ///< s
+        std::uint64_t bytes = 0;
+    };
+    std::vector<KeptSnapshot> snapshots = {};
+    struct Recording
+    {
+        std::string file, trouble;
+        std::uint64_t bytes = 0, messages = 0, dropped = 0;
+    };
+    Recording recording = {};
 };
 
 ServerInfo server_of(const plab_v1_Server& sample);

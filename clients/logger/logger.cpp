@@ -64,11 +64,6 @@ void Logger::take_all()
     if (options_.metrics) take_metrics();
 }
 
-bool Logger::is_wanted(const std::string& kind, Severity severity) const
-{
-    return severity >= options_.severity && kind.starts_with(options_.kind);
-}
-
 void Logger::say_server(ServerChange change, const link::ServerInfo& info)
 {
     // What the old one still brought comes before.
@@ -105,7 +100,7 @@ void Logger::take_server()
 }
 
 template <class Sample>
-void Logger::note_gap(const Sample& sample, const dds_sample_info_t& info, Numbers& numbers, const char* topic)
+void Logger::note_gap(const Sample& sample, const dds_sample_info_t& info, link::Sequence& numbers, const char* topic)
 {
     const auto missing = numbers.note(info.publication_handle, sample.sequence_number, sample.entries._length);
     if (missing.count == 0) return;
@@ -120,8 +115,7 @@ void Logger::take_events()
             if (!info.valid_data) return;
             note_gap(sample, info, event_numbers_, wire::topic_of<plab_v1_Events>().name);
             for (std::uint32_t i = 0; i < sample.entries._length; ++i)
-                if (const auto& e = sample.entries._buffer[i]; is_wanted(e.kind, severity_of(e.severity)))
-                    add(sample.run, sample.step, lines_->event(sample, i));
+                if (options_.filter.wants(sample.entries._buffer[i])) add(sample.run, sample.step, lines_->event(sample, i));
         });
 }
 
@@ -133,8 +127,7 @@ void Logger::take_collisions()
             if (!info.valid_data) return;
             note_gap(sample, info, collision_numbers_, wire::topic_of<plab_v1_Collisions>().name);
             for (std::uint32_t i = 0; i < sample.entries._length; ++i)
-                if (is_wanted(std::string("collision.") + sample.entries._buffer[i].kind, Severity::Info))
-                    add(sample.run, sample.step, lines_->collision(sample, i));
+                if (options_.filter.wants(sample.entries._buffer[i])) add(sample.run, sample.step, lines_->collision(sample, i));
         });
 }
 

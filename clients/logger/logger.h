@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "link/sequence.h"
 #include "logger/lines.h"
-#include "logger/numbers.h"
 #include "logger/options.h"
 #include "logger/order.h"
 #include "logger/output.h"
@@ -34,11 +34,10 @@ private:
     void take_collisions();
     void take_metrics();
     template <class Sample>
-    void note_gap(const Sample& sample, const dds_sample_info_t& info, Numbers& numbers, const char* topic);
+    void note_gap(const Sample& sample, const dds_sample_info_t& info, link::Sequence& numbers, const char* topic);
     void add(std::uint64_t run, std::int64_t step, std::string text, bool counts = true);
     void write(const std::vector<Line>& lines);
     void say_server(ServerChange change, const link::ServerInfo& info);
-    bool is_wanted(const std::string& kind, Severity severity) const;
 
     Options options_;
     Output output_;
@@ -49,7 +48,7 @@ private:
     wire::Reader<plab_v1_Metrics> metrics_;
     wire::Entity waitset_;
 
-    Numbers event_numbers_, collision_numbers_;
+    link::Sequence event_numbers_, collision_numbers_;
     Order order_;
     link::ServerInfo last_;  ///< that was seen
     bool is_there_ = false, was_there_ = false;

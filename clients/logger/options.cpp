@@ -33,7 +33,8 @@ void add_options(CLI::App& app, Options& options, std::string& severity)
     app.add_option("--out", options.out, "file to append to instead of standard output");
     app.add_flag("--metrics", options.metrics, "log metrics, too");
     app.add_flag("--status", options.status, "log the server's state, too");
-    app.add_option("--kind", options.kind, "only kinds that begin so; \"collision\" for all collisions");
+    app.add_option("--kind", options.filter.kinds, "only kinds that begin so; \"collision\" for all collisions")->allow_extra_args(false);
+    app.add_option("--object", options.filter.objects, "only what names this component")->allow_extra_args(false);
     app.add_option("--severity", severity, "least severity: info, warning, failure; collisions are info")
         ->check(CLI::IsMember({"info", "warning", "failure"}));
     app.add_option("-n,--count", options.count, "end after so many entries")->check(link::check_count);
@@ -41,12 +42,6 @@ void add_options(CLI::App& app, Options& options, std::string& severity)
 }
 
 }  // namespace
-
-Severity severity_of(std::string_view word)
-{
-    if (word == "info") return Severity::Info;
-    return word == "warning" ? Severity::Warning : Severity::Failure;
-}
 
 std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options& options)
 {
@@ -69,7 +64,7 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options
         const int code = app.exit(e, text, text);
         return ParseEnd{code == 0 ? 0 : 2, text.str()};
     }
-    options.severity = severity_of(severity);
+    options.filter.severity = severity_of(severity);
     return {};
 }
 

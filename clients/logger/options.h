@@ -1,22 +1,14 @@
-/// The command line of plab-log.
+/// What plab-log is asked for, and its command line.
 #pragma once
 
 #include <optional>
 #include <string>
 
 #include "link/session.h"
+#include "logger/filter.h"
 
 namespace plab::logger
 {
-
-enum class Severity : unsigned char
-{
-    Info,
-    Warning,
-    Failure,
-};
-/// Words that are none of the three count as failures: what is not understood is better seen.
-Severity severity_of(std::string_view word);
 
 struct Options
 {
@@ -25,8 +17,7 @@ struct Options
     std::string out;     ///< file to append to; empty: standard output
     bool json = false;
     bool metrics = false, status = false;
-    std::string kind;  ///< beginning of the kinds that are logged, "collision.impact", "script."
-    Severity severity = Severity::Info;
+    Filter filter;
     std::optional<std::uint64_t> count;  ///< end after so many entries
     std::optional<double> duration;      ///< end after so many s
 };

@@ -42,12 +42,12 @@ std::optional<Moment> Feed::next()
             end_ = {Exit::Interrupted, "interrupted"};
             return {};
         }
-        if (auto moment = source_.moments().pop(kSlice))
+        if (auto moment = source_.pop(kSlice))
         {
             any_ = true;
             return moment;
         }
-        if (const auto why = source_.moments().closed())
+        if (const auto why = source_.closed())
         {
             gone_ = true, end_ = {Exit::Failed, *why};
             return {};

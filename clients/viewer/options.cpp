@@ -21,8 +21,10 @@ constexpr const char* kExamples = R"(Examples:
   plab-view --frames pictures --fps 5 --duration 2
   plab-view --mp4 run.mp4 --until 10 --orbit 6 --orbit-period 10
   plab-view --png red.png --track red --from "2 -3 2"
+  plab-view run.mcap --png hit.png --at 1.2
+  plab-view run.mcap --mp4 slow.mp4 --at 1 --until 2 --rate 0.1
 
-Times are simulated seconds. The view: --camera, or --from, --look-at, --orbit; without any of them the scene's camera
+With a FILE the pictures are of a recording, without it of a running server. Times are simulated seconds. The view: --camera, or --from, --look-at, --orbit; without any of them the scene's camera
 'front', else its first one, else one that shows everything.
 
 Environment: PLAB_SERVER, PLAB_DOMAIN, PLAB_INTERFACE stand in for the options of these names.
@@ -56,13 +58,20 @@ void add_pictures(CLI::App& app, Options& options, Texts& texts)
         ->type_name("DIR")
         ->group("Pictures");
     app.add_option("--mp4", texts.film, "write a film (needs ffmpeg)")->type_name("FILE")->group("Pictures");
-    app.add_option("--at", options.at, "of the picture, or of the first frame; default: now")
+    app.add_option("file", options.recording, "recording to draw from; default: a running server")->type_name("FILE");
+    app.add_option("--at", options.at, "of the picture, or of the first frame; default: now, of a recording its begin")
         ->check(link::check_not_negative)
         ->type_name("T")
         ->group("Pictures");
-    app.add_option("--fps", options.frames_per_second, "frames per simulated second")
+    app.add_option("--fps", options.frames_per_second, "frames per second of the film")
         ->check(link::check_positive)  // nan is in every range
         ->check(CLI::Range(0.001, 1e5))
+        ->capture_default_str()
+        ->group("Pictures");
+    app.add_option("--rate", options.rate, "simulated seconds in a second of the film")
+        ->check(link::check_positive)
+        ->check(CLI::Range(0.001, 1000.))
+        ->type_name("R")
         ->capture_default_str()
         ->group("Pictures");
     auto* const duration = app.add_option("--duration", options.duration, "seconds from the first frame; default: until Ctrl-C")
@@ -153,6 +162,7 @@ Result<void> take_task(const Texts& texts, Options& options)
     options.target = options.task == Task::Frames ? texts.frames : texts.film;
     if (options.task == Task::Shots && (options.duration || options.until))
         return reason("--duration and --until are for --frames and --mp4");
+    if (options.task == Task::Shots && options.rate != 1) return reason("--rate is for --frames and --mp4");
     if (options.task == Task::Shots && texts.png.empty() && options.at) return reason("--at is for --png, --frames and --mp4");
     if (options.at && options.until && *options.until < *options.at) return reason("--until is before --at");
     return {};

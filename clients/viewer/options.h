@@ -42,7 +42,9 @@ struct Options
     std::vector<Shot> shots;         ///< Task::Shots, by time
     std::string target;              ///< Task::Frames: folder; Task::Film: file
     std::optional<double> at;        ///< s: time of the first frame
-    double frames_per_second = 30;   ///< of simulated time
+    double frames_per_second = 30;   ///< of the film
+    double rate = 1;                 ///< simulated seconds in a second of the film
+    std::string recording;           ///< file to draw from; empty: a server
     std::optional<double> duration;  ///< s
     std::optional<double> until;     ///< s
     ViewChoice view;
@@ -50,6 +52,8 @@ struct Options
     bool captions = true, ground = true;
     link::Options link;
     link::Seconds timeout{10};
+
+    double frames_per_simulated_second() const { return frames_per_second / rate; }
 };
 
 /// Why the program ends before it begins: --help, --version (code 0, for standard output) or wrong use (code 2).

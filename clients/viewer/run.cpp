@@ -3,8 +3,10 @@
 #include <cstdio>
 
 #include "viewer/feed.h"
+#include "viewer/file_source.h"
 #include "viewer/film.h"
 #include "viewer/frame_sink.h"
+#include "viewer/live_source.h"
 #include "viewer/painter.h"
 #include "viewer/progress.h"
 #include "viewer/sequence.h"
@@ -60,7 +62,7 @@ void tell_doubts(const Options& options, const Sequence& sequence, std::uint64_t
     if (sequence.runs() > 1) progress.say("the scene was loaded or reset meanwhile: times start anew in the frames");
     if (given_up > 0)
         progress.say(std::to_string(given_up) + " states were left out: drawing is slower than the simulation (try a lower --rate there)");
-    if (sequence.widest_gap() > 1.5 / options.frames_per_second)
+    if (sequence.widest_gap() > 1.5 / options.frames_per_simulated_second())
         progress.say("some frames are drawn between states that are up to " + in_seconds(sequence.widest_gap()) + " apart");
 }
 
@@ -83,7 +85,7 @@ Outcome judge(const Sequence& sequence, const Feed& feed)
 Outcome make_sequence(const Options& options, Source& source, Feed& feed, Painter& painter, FrameSink& sink)
 {
     Progress progress("frames");
-    Sequence sequence({options.frames_per_second, options.at, options.duration, options.until});
+    Sequence sequence({options.frames_per_simulated_second(), options.at, options.duration, options.until});
     const auto draw = [&](std::uint64_t index, const Moment& moment) -> Result<void>
     {
         auto picture = painter.paint(moment);
@@ -101,10 +103,22 @@ Outcome make_sequence(const Options& options, Source& source, Feed& feed, Painte
     const Outcome outcome = judge(sequence, feed);
     if (sequence.drawn() > 0)
         if (auto finished = sink.finish(); !finished) return failed(finished.error());
-    tell_doubts(options, sequence, source.moments().given_up(), progress);
+    tell_doubts(options, sequence, source.given_up(), progress);
     progress.finish(sequence.drawn());
     return outcome;
 }
+
+Outcome draw(const Options& options, Source& source, const Interrupt& interrupt, Painter& painter)
+{
+    Feed feed(source, options, interrupt);
+    if (options.task == Task::Shots) return take_shots(options, feed, painter);
+    auto sink = open_frame_sink(options);
+    if (!sink) return failed(sink.error());
+    return make_sequence(options, source, feed, painter, **sink);
+}
+
+/// Nothing before it is drawn.
+std::optional<double> first_time(const Options& options) { return options.task == Task::Shots ? options.shots.front().at : options.at; }
 
 }  // namespace
 
@@ -120,18 +134,17 @@ Outcome run(const Options& options, const Interrupt& interrupt)
     const auto unreached = [&](const Error& error) -> Outcome {
         return interrupt.pending() ? Outcome{Exit::Interrupted, "interrupted"} : Outcome{Exit::NoServer, error.text()};
     };
+    if (!options.recording.empty())
+    {
+        auto source = FileSource::open(options.recording, first_time(options));
+        return source ? draw(options, **source, interrupt, *painter) : failed(source.error());
+    }
     auto session = link::Session::join(options.link);
     if (!session) return failed(session.error());
     if (auto found = session->find_server(options.link, options.timeout, stop); !found) return unreached(found.error());
-    const Grid grid{options.task == Task::Shots ? 0 : options.frames_per_second, options.at};
-    auto source = Source::open(*session, grid, options.timeout, stop);
-    if (!source) return unreached(source.error());
-
-    Feed feed(**source, options, interrupt);
-    if (options.task == Task::Shots) return take_shots(options, feed, *painter);
-    auto sink = open_frame_sink(options);
-    if (!sink) return failed(sink.error());
-    return make_sequence(options, **source, feed, *painter, **sink);
+    const Grid grid{options.task == Task::Shots ? 0 : options.frames_per_simulated_second(), options.at};
+    auto source = LiveSource::open(*session, grid, options.timeout, stop);
+    return source ? draw(options, **source, interrupt, *painter) : unreached(source.error());
 }
 
 }  // namespace plab::view

@@ -1,8 +1,9 @@
-/// Reads one server on a thread of its own, so that drawing never makes it miss states.
+/// Where moments come from, one after the other: a server, or a recording.
 #pragma once
 
 #include <memory>
-#include <thread>
+#include <optional>
+#include <string>
 
 #include "viewer/moment_buffer.h"
 
@@ -12,42 +13,21 @@ namespace plab::view
 class Source
 {
 public:
-    /// Subscribes, waits until the catalogue is there, and starts to read. The session must outlive it.
-    static Result<std::unique_ptr<Source>> open(const link::Session& session, const Grid& grid, link::Seconds timeout,
-                                                const link::Stop& stop);
-    ~Source();
+    Source() = default;
     Source(const Source&) = delete;
     Source& operator=(const Source&) = delete;
+    virtual ~Source() = default;
 
-    MomentBuffer& moments() { return moments_; }
+    /// The next moment; none when none came until `timeout`, or when there are no more.
+    virtual std::optional<Moment> pop(link::Seconds timeout) = 0;
+    /// Why there are no more, once all moments are taken.
+    virtual std::optional<std::string> closed() const = 0;
+    /// Moments that were left out because nobody took them.
+    virtual std::uint64_t given_up() const = 0;
     /// The newest that is known of the scene and the server.
-    std::shared_ptr<const link::Snapshot> scene() const;
-    /// The server's own words on itself; they come at least once a second.
-    std::optional<link::ServerInfo> server() const;
-
-private:
-    Source(const link::Session& session, const Grid& grid) : session_(session), moments_(grid) {}
-
-    void read(const std::stop_token& stop);
-    void take_frames();
-    void take_catalogue();
-    void hand_over();
-
-    const link::Session& session_;
-    wire::Reader<plab_v1_Frame> frames_;
-    std::optional<link::Catalogue> catalogue_;
-    MomentBuffer moments_;
-
-    // Of the reading thread.
-    std::deque<std::pair<State, std::chrono::steady_clock::time_point>> held_;  ///< until their scene is known
-    std::uint64_t run_ = 0, revision_ = 0, version_ = 0;
-    bool any_frame_ = false;
-
-    mutable std::mutex mutex_;  ///< of the following two
-    std::shared_ptr<const link::Snapshot> scene_;
-    std::optional<link::ServerInfo> server_;
-
-    std::jthread thread_;  ///< last: it uses all of the above
+    virtual std::shared_ptr<const link::Snapshot> scene() const = 0;
+    /// The server's own words on itself.
+    virtual std::optional<link::ServerInfo> server() const = 0;
 };
 
 }  // namespace plab::view

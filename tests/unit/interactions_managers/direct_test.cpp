@@ -185,7 +185,7 @@ TEST_CASE("D2: the work of one factorisation of a stack is that of its height; o
         return static_cast<double>(m.products());
     };
     const double small = wall(10, 10), large = wall(40, 40);
-    // 16 times the bricks: 256 times the work for a band, 64 for the best order of elimination. Measured: 161.
-    CHECK(large / small < 200);
-    CHECK(wall(40, 25) < 4.2e5);
+    // 16 times the bricks: 256 times the work for a band, 64 for the best order of elimination. A count, the same everywhere: 160.9.
+    CHECK(large / small < 161);
+    CHECK(wall(40, 25) <= 409008);
 }

@@ -203,6 +203,31 @@ TEST_CASE("a closed pipe ends it quietly; a file that cannot be written is 1; no
     CHECK(has(run({program("plab-log"), "--help"}, 10s).output, "Examples:"));
 }
 
+TEST_CASE("plabctl log without a file writes the same lines, and both choose by kind and object")
+{
+    PlayedServer server(test_domain(), unique_name("log"), 1);
+    const std::vector<std::string> choice{"--domain", std::to_string(test_domain()),
+                                          "--server", server.name(),
+                                          "--kind",   "script.",
+                                          "--kind",   "collision.",
+                                          "--object", "gears",
+                                          "-n",       "1"};
+    for (const std::vector<std::string>& command : {std::vector<std::string>{program("plab-log")}, {program("plabctl"), "log"}})
+    {
+        std::vector<std::string> all = command;
+        all.insert(all.end(), choice.begin(), choice.end());
+        Process log(std::move(all));
+        REQUIRE_MESSAGE(server.wait_for_logger(), log.errors());
+        // Of another kind; of the right kind, but between others; then the one.
+        server.event("test.first", "here"), server.collisions("impact", 1);
+        for (int i = 0; i < 50 && log.running(); ++i) server.event("script.print", "spinning"), std::this_thread::sleep_for(100ms);
+        REQUIRE(log.wait(5s) == 0);
+        CHECK(lines_with(log.output(), "script.print          gears: spinning [0.5]") == 1);
+        CHECK(!has(log.output(), "test.first"));
+        CHECK(!has(log.output(), "collision.impact"));
+    }
+}
+
 TEST_CASE("a signal ends the wait for a server, too")
 {
     Process log({program("plab-log"), "--domain", std::to_string(test_domain()), "--server", "nobody", "--timeout", "0"});

@@ -1,12 +1,12 @@
-#include "logger/numbers.h"
+#include "link/sequence.h"
 
 #include <doctest/doctest.h>
 
-using plab::logger::Numbers;
+using plab::link::Sequence;
 
 TEST_CASE("a jump is missing entries, of that writer alone")
 {
-    Numbers numbers;
+    Sequence numbers;
     CHECK(numbers.note(1, 100, 3).count == 0);  // before the reader came: no loss
     CHECK(numbers.note(1, 103, 1).count == 0);
     const auto missing = numbers.note(1, 116, 1);

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <map>
 
-namespace plab::logger
+namespace plab::link
 {
 
-class Numbers
+class Sequence
 {
 public:
     struct Missing
@@ -31,4 +31,4 @@ private:
     std::map<std::uint64_t, std::uint64_t> next_;  ///< by writer
 };
 
-}  // namespace plab::logger
+}  // namespace plab::link

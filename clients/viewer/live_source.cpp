@@ -1,4 +1,4 @@
-#include "viewer/source.h"
+#include "viewer/live_source.h"
 
 namespace plab::view
 {
@@ -18,9 +18,10 @@ constexpr link::Parts kParts =
 
 }  // namespace
 
-Result<std::unique_ptr<Source>> Source::open(const link::Session& session, const Grid& grid, link::Seconds timeout, const link::Stop& stop)
+Result<std::unique_ptr<Source>> LiveSource::open(const link::Session& session, const Grid& grid, link::Seconds timeout,
+                                                 const link::Stop& stop)
 {
-    std::unique_ptr<Source> out(new Source(session, grid));
+    std::unique_ptr<LiveSource> out(new LiveSource(session, grid));
     auto catalogue = link::Catalogue::open(session, kParts);
     if (!catalogue) return catalogue.errors();
     out->catalogue_ = catalogue.take();
@@ -31,29 +32,29 @@ Result<std::unique_ptr<Source>> Source::open(const link::Session& session, const
     if (!frames) return frames.errors();
     out->frames_ = frames.take();
     out->thread_ = std::jthread([source = out.get()](const std::stop_token& token) { source->read(token); });
-    return out;
+    return std::unique_ptr<Source>(std::move(out));
 }
 
-Source::~Source()
+LiveSource::~LiveSource()
 {
     if (!thread_.joinable()) return;
     thread_.request_stop();
     thread_.join();
 }
 
-std::shared_ptr<const link::Snapshot> Source::scene() const
+std::shared_ptr<const link::Snapshot> LiveSource::scene() const
 {
     const std::lock_guard lock(mutex_);
     return scene_;
 }
 
-std::optional<link::ServerInfo> Source::server() const
+std::optional<link::ServerInfo> LiveSource::server() const
 {
     const std::lock_guard lock(mutex_);
     return server_;
 }
 
-void Source::read(const std::stop_token& stop)
+void LiveSource::read(const std::stop_token& stop)
 {
     while (!stop.stop_requested())
     {
@@ -68,7 +69,7 @@ void Source::read(const std::stop_token& stop)
     }
 }
 
-void Source::take_frames()
+void LiveSource::take_frames()
 {
     const auto now = Clock::now();
     (void)frames_.take(
@@ -82,7 +83,7 @@ void Source::take_frames()
         });
 }
 
-void Source::take_catalogue()
+void LiveSource::take_catalogue()
 {
     (void)catalogue_->update();
     const link::Snapshot& now = catalogue_->now();
@@ -95,7 +96,7 @@ void Source::take_catalogue()
     scene_ = std::make_shared<const link::Snapshot>(now);
 }
 
-void Source::hand_over()
+void LiveSource::hand_over()
 {
     const auto now = Clock::now();
     while (!held_.empty() && (held_.front().second <= now || held_.size() > kMostHeld))

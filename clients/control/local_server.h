@@ -1,0 +1,47 @@
+/// plabd on this machine, started by plabctl.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "plab/result.h"
+
+namespace plab::control
+{
+
+/// plabd beside this program, or the one that PATH finds.
+std::string plabd_program();
+
+/// Starts a server that belongs to nobody: a session of its own, no terminal, its log in `log`. The process id.
+Result<int> start_server(const std::vector<std::string>& arguments, const std::string& log);
+/// Whether it still runs; its exit code if not.
+struct Life
+{
+    bool runs = false;
+    int code = 0;
+};
+Life look_at(int process);
+
+/// Runs plabd to its end with this program's own output; the exit code, or 128 + the signal that ended it.
+Result<int> run_plabd(const std::vector<std::string>& arguments);
+
+/// A file of this process's own, removed with the object.
+class TemporaryFile
+{
+public:
+    static Result<TemporaryFile> write(const std::uint8_t* data, std::size_t size);
+    TemporaryFile(TemporaryFile&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+    TemporaryFile& operator=(TemporaryFile&&) = delete;
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+    ~TemporaryFile();
+    const std::string& path() const { return path_; }
+
+private:
+    explicit TemporaryFile(std::string path) : path_(std::move(path)) {}
+    std::string path_;
+};
+
+}  // namespace plab::control

@@ -1,0 +1,155 @@
+#include <memory>
+
+#include "control/commands.h"
+#include "control/json.h"
+#include "control/status_line.h"
+#include "link/numbers.h"
+#include "playback/keys.h"
+#include "playback/player.h"
+#include "playback/terminal.h"
+
+namespace plab::control
+{
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kExamples =
+    "  plabctl play run.mcap                          as it was, under the recorded server's name\n"
+    "  plabctl play run.mcap --name again --rate 0.2  in slow motion, beside the server itself\n"
+    "  plabctl play run.mcap --from 3 --to 5 --loop   these two seconds, again and again\n"
+    "  plabctl play run.mcap --from 3 --pause         stands still at 3 s\n"
+    "  plabctl play run.mcap --readers 1 & plabctl record -o again.mcap\n"
+    "On a terminal: space pauses, left and right go a second back and forth, up and down double and halve the rate,\n"
+    "q ends. Whoever watches sees a server; requests are refused.\n";
+
+constexpr std::chrono::milliseconds kSlice(40);  // how late a key or Ctrl-C may be seen
+constexpr std::uint64_t kSecond = 1'000'000'000;
+
+std::string check_rate(const std::string& text)
+{
+    if (const std::string wrong = link::check_positive(text); !wrong.empty()) return wrong;
+    const double rate = std::stod(text);
+    return rate >= playback::Pace::kSlowest && rate <= playback::Pace::kFastest ? "" : "must be from 0.001 to 1000, not '" + text + "'";
+}
+
+double seconds(std::uint64_t time) { return static_cast<double>(time) * 1e-9; }
+
+/// False: the playback is to end.
+bool obey(playback::Player& player, playback::Key key)
+{
+    const Clock::time_point now = Clock::now();
+    const playback::Pace& pace = player.pace();
+    const std::uint64_t at = pace.position(now);
+    switch (key)
+    {
+        case playback::Key::Pause:
+            player.pause(!pace.is_paused(), now);
+            break;
+        case playback::Key::Back:
+            player.seek(at > kSecond ? at - kSecond : 0, now);
+            break;
+        case playback::Key::Forward:
+            player.seek(at + kSecond, now);
+            break;
+        case playback::Key::Faster:
+            player.set_rate(pace.rate() * 2, now);
+            break;
+        case playback::Key::Slower:
+            player.set_rate(pace.rate() / 2, now);
+            break;
+        case playback::Key::Quit:
+            return false;
+    }
+    return true;
+}
+
+void show(StatusLine& line, const playback::Player& player)
+{
+    if (!line.is_due()) return;
+    const playback::Pace& pace = player.pace();
+    const playback::Standing standing = player.standing();
+    line.show(playback::bar({seconds(pace.span().from), seconds(pace.span().to), seconds(pace.position(Clock::now())), pace.rate(),
+                             pace.is_paused(), standing.time, standing.run},
+                            line.width() - 1));
+}
+
+/// Until it is over, somebody ends it, or another server has its name.
+Result<void> follow(const Context& c, playback::Player& player, playback::Terminal& terminal)
+{
+    StatusLine line;
+    playback::KeyParser keys;
+    const Clock::time_point begin = Clock::now();
+    bool goes_on = true;
+    while (goes_on && !player.is_over() && !c.stopped())
+    {
+        const Clock::time_point now = Clock::now();
+        if (auto stepped = player.step(now); !stepped) return stepped;
+        for (const playback::Key key : keys.take(terminal.read())) goes_on = obey(player, key) && goes_on;
+        if (c.settings.duration && link::Seconds(now - begin).count() >= *c.settings.duration) goes_on = false;
+        if (c.settings.count && player.sent() >= *c.settings.count) goes_on = false;
+        show(line, player);
+        if (goes_on && !player.is_over()) player.wait(now + kSlice);
+    }
+    return {};
+}
+
+void print_end(const Context& c, const std::string& file, const playback::Player& player)
+{
+    const double at = seconds(player.pace().position(Clock::now()));
+    if (c.settings.json)
+        print(c.console, {{"file", file},
+                          {"server", player.name()},
+                          {"position", at},
+                          {"run", player.standing().run},
+                          {"step", player.standing().step},
+                          {"time", player.standing().time},
+                          {"messages", player.sent()},
+                          {"broken", player.broken()},
+                          {"not_played", player.foreign()}});
+    else
+        c.console.out(printable(file) + ": played as '" + player.name() + "' to " + number(at) + " s, " + std::to_string(player.sent()) +
+                      " messages\n");
+    if (player.broken() > 0)
+        c.console.say("plabctl: " + std::to_string(player.broken()) + " messages are damaged, and were left out: plabctl recover FILE");
+}
+
+Exit run_play(Context& c, playback::Options options)
+{
+    if (!options.name.empty() && !wire::is_server_name(options.name))
+        return c.fail(Exit::Usage, "'" + options.name + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
+    options.domain = c.settings.link.domain, options.version = PLAB_VERSION;
+    auto player = playback::Player::open(options);
+    if (!player) return c.fail(Exit::Failed, player.errors());
+    for (const std::string& topic : (*player)->foreign())
+        c.console.say("plabctl: " + printable(topic) + " is no topic of this version of pLab's, and is not played");
+    playback::Terminal terminal;
+    const auto followed = follow(c, **player, terminal);
+    terminal.give_back();
+    if (!followed) return c.fail(Exit::Failed, followed.errors());
+    if (c.stopped()) return Exit::Interrupted;
+    print_end(c, options.file, **player);
+    return Exit::Done;
+}
+
+}  // namespace
+
+void add_play_command(CLI::App& app, Context& context)
+{
+    auto o = std::make_shared<playback::Options>();
+    CLI::App& command = add_command(app, context, {"play", "send a recording on the bus, as its server did", kExamples},
+                                    [o](Context& c) { return run_play(c, *o); });
+    command.add_option("file", o->file, "a recording")->required()->type_name("FILE");
+    command.add_option("--rate", o->rate, "seconds of the recording in a second; default: 1")->check(check_rate)->type_name("R");
+    command.add_option("--from", o->from, "begin there, on the recording's time line")
+        ->check(link::check_not_negative)
+        ->type_name("SECONDS");
+    command.add_option("--to", o->to, "end there")->check(link::check_not_negative)->type_name("SECONDS");
+    command.add_flag("--loop", o->loop, "begin again at the end, as a new run");
+    command.add_flag("--pause", o->paused, "stand still at the beginning");
+    command.add_option("--name", o->name, "of the server that is played; default: the recorded one's")->type_name("NAME");
+    command.add_option("--readers", o->readers, "begin when so many read the states")->check(link::check_whole)->type_name("N");
+}
+
+}  // namespace plab::control

@@ -1,0 +1,157 @@
+#include <array>
+#include <ctime>
+#include <memory>
+
+#include "control/commands.h"
+#include "control/json.h"
+#include "control/status_line.h"
+#include "link/numbers.h"
+#include "recorder/recorder.h"
+
+namespace plab::control
+{
+namespace
+{
+
+constexpr const char* kExamples =
+    "  plabctl record                                 until Ctrl-C, to lab_2026-11-22_14-05-09.mcap\n"
+    "  plabctl record -o run.mcap --until 10          until 10 simulated seconds\n"
+    "  plabctl record -o run.mcap -d 60               for a minute\n"
+    "  plabctl record --state-rate 10 --compression lz4\n"
+    "  plabctl record --topics plab/events plab/collisions plab/states\n"
+    "Play it: plabctl play FILE. What is in it: plabctl info FILE.\n";
+
+constexpr link::Seconds kSlice(0.1);  // how late Ctrl-C may be seen
+
+struct RecordOptions
+{
+    recorder::Options recorder;
+    std::string compression = "zstd";
+};
+
+std::string name_with_time(const std::string& server)
+{
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    (void)localtime_r(&now, &local);
+    std::array<char, 32> text{};
+    (void)std::strftime(text.data(), text.size(), "_%Y-%m-%d_%H-%M-%S.mcap", &local);
+    return server + text.data();
+}
+
+std::string seconds_text(double seconds)
+{
+    std::array<char, 32> text{};
+    (void)std::snprintf(text.data(), text.size(), "%.2f s", seconds);
+    return text.data();
+}
+
+std::string counts_text(const recorder::TapeProgress& p)
+{
+    std::string out = std::to_string(p.messages) + " messages, " + bytes_text(p.bytes);
+    if (p.missing > 0) out += ", " + std::to_string(p.missing) + " did not arrive";
+    if (p.dropped.messages > 0) out += ", " + std::to_string(p.dropped.messages) + " dropped";
+    return out;
+}
+
+/// A disk that fails, and one that works again.
+class TroubleWatch
+{
+public:
+    void look(const Context& c, StatusLine& line, const std::optional<Error>& trouble)
+    {
+        if (trouble.has_value() == is_told_) return;
+        is_told_ = trouble.has_value();
+        line.clear();
+        c.console.say("plabctl: " + (trouble ? printable(trouble->text()) + "; trying on" : std::string("the disk takes data again")));
+    }
+
+private:
+    bool is_told_ = false;
+};
+
+recorder::State follow(const Context& c, recorder::Recorder& recorder, const std::string& file)
+{
+    const auto begin = std::chrono::steady_clock::now();
+    const auto is_over = [&]
+    {
+        if (c.settings.count && recorder.progress().messages >= *c.settings.count) return true;
+        return c.settings.duration && link::Seconds(std::chrono::steady_clock::now() - begin).count() >= *c.settings.duration;
+    };
+    StatusLine line;
+    TroubleWatch watch;
+    auto state = recorder::State::Goes;
+    while (state == recorder::State::Goes && !c.stopped() && !is_over())
+    {
+        state = recorder.step(kSlice);
+        const recorder::TapeProgress progress = recorder.progress();
+        watch.look(c, line, progress.trouble);
+        if (line.is_due()) line.show(file + ": " + seconds_text(recorder.length()) + ", " + counts_text(progress) + "  (Ctrl-C ends)");
+    }
+    return state;
+}
+
+void print_end(const Context& c, const std::string& file, const recorder::Recorder& recorder, const recorder::TapeProgress& p)
+{
+    if (c.settings.json)
+        print(c.console, {{"file", file},
+                          {"server", c.session().server()},
+                          {"seconds", recorder.length()},
+                          {"messages", p.messages},
+                          {"bytes", p.bytes},
+                          {"missing", p.missing},
+                          {"dropped", p.dropped.messages},
+                          {"broken", recorder.broken()}});
+    else
+        c.console.out(printable(file) + ": " + seconds_text(recorder.length()) + " of server '" + c.session().server() + "', " +
+                      counts_text(p) + "\n");
+    if (recorder.broken() > 0)
+        c.console.say("plabctl: " + std::to_string(recorder.broken()) + " samples were no samples of their topic, and are left out");
+}
+
+Exit run_record(Context& c, RecordOptions o)
+{
+    if (auto topics = recorder::choose_topics(o.recorder.topics); !topics) return c.fail(Exit::Usage, topics.errors());
+    if (const Exit e = c.connect(); e != Exit::Done) return e;
+    const std::vector<link::ServerInfo> servers = c.session().servers(c.timeout(), 1);
+    if (servers.empty()) return c.fail(Exit::NoServer, "server '" + c.session().server() + "' has gone");
+    std::string& file = o.recorder.tape.file;
+    if (file.empty()) file = name_with_time(c.session().server());
+    o.recorder.tape.compression = recording::compression_of(o.compression == "none" ? "" : o.compression).value();
+    auto recorder = recorder::Recorder::open(c.session(), servers.front(), o.recorder);
+    if (!recorder) return c.fail(Exit::Failed, recorder.errors());
+    const recorder::State state = follow(c, **recorder, file);
+    const auto closed = (*recorder)->close();
+    if (!closed)
+    {
+        // After Ctrl-C as well: who ended it wants to know what became of the file.
+        for (const Error& e : closed.errors()) c.console.say("plabctl: " + printable(e.text()));
+        return Exit::Failed;
+    }
+    if (state == recorder::State::Gone) c.console.say("plabctl: server '" + c.session().server() + "' has gone");
+    if (state == recorder::State::Restarted)
+        c.console.say("plabctl: server '" + c.session().server() + "' was started anew: a recording is of one server's life");
+    print_end(c, file, **recorder, *closed);
+    return Exit::Done;
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app, Context& context)
+{
+    auto o = std::make_shared<RecordOptions>();
+    CLI::App& command = add_command(app, context, {"record", "write what a server sends into a file, until it ends or Ctrl-C", kExamples},
+                                    [o](Context& c) { return run_record(c, *o); });
+    command.add_option("-o,--output", o->recorder.tape.file, "default: SERVER_DATE_TIME.mcap")->type_name("FILE.mcap");
+    command.add_flag("--overwrite", o->recorder.tape.overwrite, "replace a file that is there");
+    command.add_option("--topics", o->recorder.topics, "only these; default: all but plab/images")->type_name("TOPIC ..");
+    command.add_option("--until", o->recorder.until, "end at this simulated time")->check(link::check_not_negative)->type_name("SECONDS");
+    command.add_option("--compression", o->compression, "none, lz4 or zstd")
+        ->check(CLI::IsMember({"none", "lz4", "zstd"}))
+        ->capture_default_str();
+    command.add_option("--state-rate", o->recorder.state_rate, "frames per simulated second at the most; default: all that come")
+        ->check(link::check_positive)
+        ->type_name("HZ");
+}
+
+}  // namespace plab::control

@@ -1,0 +1,138 @@
+// info, export, recover: what is done with the file of a recording, without a server.
+#include <filesystem>
+#include <memory>
+
+#include "control/commands.h"
+#include "control/recording_options.h"
+#include "control/recording_print.h"
+#include "idl/recording/recovery.h"
+#include "link/numbers.h"
+#include "recordings/export.h"
+#include "recordings/summary.h"
+
+namespace plab::control
+{
+namespace
+{
+
+using recordings::Log;
+
+// ---- info -----------------------------------------------------------------------------------------------------------
+
+Exit run_info(Context& c, const std::string& file)
+{
+    auto log = Log::open(file);
+    if (!log) return c.fail(Exit::Failed, log.errors());
+    auto summary = recordings::summary_of(*log);
+    if (!summary) return c.fail(Exit::Failed, summary.errors());
+    if (c.settings.json)
+        print(c.console, json_of(*summary));
+    else
+        print_summary(c.console, *summary);
+    return Exit::Done;
+}
+
+// ---- export ---------------------------------------------------------------------------------------------------------
+
+struct ExportArguments
+{
+    std::string file;
+    bool csv = false;
+    recordings::ExportOptions options;
+};
+
+Exit run_export(Context& c, const ExportArguments& o)
+{
+    if (o.csv == c.settings.json) return c.fail(Exit::Usage, "export needs either --csv or --json");
+    if (o.options.span.from && o.options.span.to && *o.options.span.to < *o.options.span.from)
+        return c.fail(Exit::Usage, "--to is before --from");
+    auto log = Log::open(o.file);
+    if (!log) return c.fail(Exit::Failed, log.errors());
+    auto done = o.csv ? recordings::export_csv(*log, o.options) : recordings::export_json(*log, o.options);
+    if (!done) return c.fail(Exit::Failed, done.errors());
+    return warn(c, done->troubles);
+}
+
+// ---- recover --------------------------------------------------------------------------------------------------------
+
+struct RecoverArguments
+{
+    std::string file, out;
+};
+
+/// "run.mcap" is recovered to "run.recovered.mcap".
+std::string recovered_name(const std::string& file)
+{
+    const std::filesystem::path path(file);
+    return (path.parent_path() / (path.stem().string() + ".recovered" + path.extension().string())).string();
+}
+
+Exit run_recover(Context& c, const RecoverArguments& o)
+{
+    const std::string out = o.out.empty() ? recovered_name(o.file) : o.out;
+    auto report = recording::recover(o.file, out);
+    if (!report) return c.fail(Exit::Failed, report.errors());
+    if (c.settings.json)
+        print(c.console, json_of(*report, out));
+    else
+        print_recovery(c.console, *report, out);
+    return static_cast<Exit>(recording::exit_code(report->verdict));
+}
+
+}  // namespace
+
+void add_file(CLI::App& command, std::string& file) { command.add_option("file", file, "recording (MCAP)")->required()->type_name("FILE"); }
+
+void add_span(CLI::App& command, recordings::Span& span)
+{
+    constexpr const char* kLine = ": simulated seconds since the recording began, which go on over a reset";
+    command.add_option("--from", span.from, std::string("from here on") + kLine)->check(link::check_not_negative)->type_name("SECONDS");
+    command.add_option("--to", span.to, "up to here")->check(link::check_not_negative)->type_name("SECONDS");
+}
+
+/// Trouble that did not keep the rest from being read.
+Exit warn(const Context& c, const recordings::Troubles& troubles)
+{
+    for (const std::string& text : troubles.texts) c.console.say("plabctl: " + printable(text));
+    if (troubles.count > troubles.texts.size())
+        c.console.say("plabctl: and " + std::to_string(troubles.count - troubles.texts.size()) + " more like these");
+    return troubles.count == 0 ? Exit::Done : Exit::Failed;
+}
+
+void add_recording_commands(CLI::App& app, Context& context)
+{
+    auto info = std::make_shared<std::string>();
+    add_file(add_command(app, context,
+                         {"info", "what a recording holds: runs, topics, swaps, events, gaps, snapshots",
+                          "  plabctl info run.mcap\n  plabctl info run.mcap --json | jq '.topics[] | [.topic, .messages]'\n"},
+                         [info](Context& c) { return run_info(c, *info); }),
+             *info);
+
+    auto e = std::make_shared<ExportArguments>();
+    CLI::App& exported = add_command(app, context,
+                                     {"export", "a recording as tables (CSV) or lines of JSON",
+                                      "  plabctl export run.mcap --csv > states.csv                a row per object and frame\n"
+                                      "  plabctl export run.mcap --csv --topic events --from 2 --to 3\n"
+                                      "  plabctl export run.mcap --csv -o tables/                  a file for each topic that has a table\n"
+                                      "  plabctl export run.mcap --json -o run.jsonl               everything, a message on each line\n"},
+                                     [e](Context& c) { return run_export(c, *e); });
+    add_file(exported, e->file);
+    exported.add_flag("--csv", e->csv, "tables; their columns name the unit");
+    exported.add_option("--topic", e->options.topics, "this topic (may be repeated): states, events, ..")
+        ->allow_extra_args(false)
+        ->type_name("TOPIC");
+    exported.add_option("-o,--output", e->options.out, "file, or for tables a folder (it is there, or ends with '/')")->type_name("PATH");
+    add_span(exported, e->options.span);
+
+    auto r = std::make_shared<RecoverArguments>();
+    CLI::App& recover = add_command(app, context,
+                                    {"recover", "save what is good of a recording that was cut or damaged",
+                                     "  plabctl recover run.mcap                  to run.recovered.mcap\n"
+                                     "  plabctl recover run.mcap -o good.mcap || echo \"exit code $?\"\n"
+                                     "Exit codes: 0 whole, 5 something is lost, 1 nothing is usable.\n"},
+                                    [r](Context& c) { return run_recover(c, *r); });
+    add_file(recover, r->file);
+    recover.add_option("-o,--output", r->out, "new file; must not be there yet")->type_name("FILE");
+}
+
+}  // namespace plab::control

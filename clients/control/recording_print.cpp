@@ -1,0 +1,199 @@
+#include "control/recording_print.h"
+
+#include <array>
+#include <cmath>
+
+#include "control/table.h"
+#include "recordings/log.h"
+#include "recordings/words.h"
+
+namespace plab::control
+{
+namespace
+{
+
+using recordings::counted;
+using recordings::date_text;
+using recordings::seconds;
+using recordings::Summary;
+using recordings::text_at;
+
+constexpr std::size_t kMostListed = 20;
+
+std::string seconds_text(std::uint64_t nanoseconds) { return exact_number(seconds(nanoseconds)) + " s"; }
+
+/// Three digits say enough.
+std::string rate_text(double rate)
+{
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), rate < 1000 ? "%.3g" : "%.0f", rate);
+    return text.data();
+}
+
+void heading(const Console& console, const std::string& text) { console.out("\n" + console.styled(Style::Bold, text) + "\n"); }
+
+/// Says how many of a long list are not printed.
+template <class T, class Add>
+void add_some(const Console& console, const std::vector<T>& items, Table& table, Add add)
+{
+    for (std::size_t i = 0; i < std::min(items.size(), kMostListed); ++i) add(items[i]);
+    table.print(console);
+    if (items.size() > kMostListed) console.out("  ... and " + std::to_string(items.size() - kMostListed) + " more (--json has all)\n");
+}
+
+std::string state_of(const Summary& s)
+{
+    if (s.is_whole()) return "whole";
+    if (!s.is_closed) return "cut: it was not closed; plabctl recover FILE makes a whole one of what is there";
+    return "damaged: " + counted(s.troubles.count, "place") + " cannot be read; plabctl recover FILE tells what is lost";
+}
+
+void print_head(const Console& console, const Summary& s)
+{
+    console.out(console.styled(Style::Bold, printable(s.path)) + "  " +
+                console.styled(s.is_whole() ? Style::Green : Style::Yellow, state_of(s)) + "\n");
+    Lines lines;
+    const std::string host = text_at(s.head, "host"), version = text_at(s.head, "version");
+    if (const std::string server = text_at(s.head, "server"); !server.empty())
+        lines.add("server", server + (host.empty() ? "" : " on " + host) + (version.empty() ? "" : ", pLab " + version));
+    lines.add("scene", text_at(s.head, "scene_file"));
+    for (const recordings::Attached& a : s.attachments) lines.add("attached", a.name + ", " + bytes_text(a.bytes));
+    if (s.messages > 0)
+    {
+        lines.add("recorded", date_text(s.first_written) + " to " + date_text(s.last_written));
+        lines.add("length", number(s.duration()) + " s simulated in " + counted(s.runs.size(), "run") + ", " + number(s.wall_duration()) +
+                                " s of wall time");
+    }
+    std::string size = bytes_text(s.file_bytes) + ", " + counted(s.messages, "message");
+    if (s.chunk_bytes > 0)
+        size += ", compressed " + number(std::round(10.0 * static_cast<double>(s.raw_bytes) / static_cast<double>(s.chunk_bytes)) / 10) +
+                " to 1 in " + counted(s.chunks, "chunk");
+    lines.add("size", size);
+    if (s.bodies + s.shafts > 0)
+        lines.add("moving objects", (s.bodies == 1 ? "1 body" : std::to_string(s.bodies) + " bodies") + ", " + counted(s.shafts, "shaft") +
+                                        ": " + number(std::round(s.state_bytes_per_object_second())) +
+                                        " bytes of states per object and second, " + number(std::round(s.file_bytes_per_object_second())) +
+                                        " in the file, all topics");
+    lines.add("requests", s.requests > 0 ? std::to_string(s.requests) + " took effect" : "");
+    lines.print(console);
+}
+
+void print_runs(const Console& console, const Summary& s)
+{
+    if (s.runs.size() < 2 && (s.runs.empty() || s.runs.front().cause.empty())) return;
+    heading(console, "Runs");
+    Table table({{"run", Align::Right},
+                 {"from", Align::Right},
+                 {"to", Align::Right},
+                 {"steps", Align::Right},
+                 {"simulated", Align::Right},
+                 {"began with", Align::Left, Shrink::End}});
+    add_some(console, s.runs, table,
+             [&](const recordings::Run& r)
+             {
+                 table.add({std::to_string(r.number), seconds_text(r.begin), seconds_text(r.end),
+                            r.has_steps ? std::to_string(r.first_step) + " to " + std::to_string(r.last_step) : "",
+                            r.has_steps ? number(r.first_time) + " to " + number(r.last_time) + " s" : "", r.cause});
+             });
+}
+
+void print_topics(const Console& console, const Summary& s)
+{
+    heading(console, "Topics");
+    Table table({{"topic"},
+                 {"messages", Align::Right},
+                 {"per s", Align::Right, Shrink::Never, 2},
+                 {"size", Align::Right},
+                 {"per message", Align::Right, Shrink::Never, 3},
+                 {"missing", Align::Right, Shrink::Never, 1},
+                 {"type", Align::Left, Shrink::Middle, 4}});
+    for (const recordings::TopicSummary& t : s.topics)
+        table.add({t.name, std::to_string(t.messages), t.rate() > 0 ? rate_text(t.rate()) : "", bytes_text(t.bytes),
+                   bytes_text(t.messages > 0 ? t.bytes / t.messages : 0),
+                   t.missing > 0 ? std::to_string(t.missing) + " in " + counted(t.gaps, "gap") : "", t.schema},
+                  t.missing > 0 ? Style::Yellow : Style::Plain);
+    table.print(console);
+}
+
+void print_swaps(const Console& console, const Summary& s)
+{
+    if (s.swaps.empty()) return;
+    heading(console, "Swaps");
+    Table table({{"time", Align::Right},
+                 {"run", Align::Right},
+                 {"step", Align::Right},
+                 {"component", Align::Left, Shrink::Middle},
+                 {"from", Align::Left, Shrink::Middle},
+                 {"to", Align::Left, Shrink::Middle}});
+    add_some(console, s.swaps, table,
+             [&](const recordings::Swap& w) {
+                 table.add({seconds_text(w.log_time), std::to_string(w.run), std::to_string(w.step), w.component, w.from, w.to});
+             });
+}
+
+void print_kinds(const Console& console, const Summary& s)
+{
+    if (s.events.empty() && s.collisions.empty()) return;
+    heading(console, "Events");
+    Table table({{"kind"}, {"severity"}, {"count", Align::Right}});
+    for (const recordings::KindCount& k : s.events)
+        table.add({k.kind, k.severity, std::to_string(k.count)},
+                  k.severity == "info" ? Style::Plain : (k.severity == "warning" ? Style::Yellow : Style::Red));
+    for (const recordings::KindCount& k : s.collisions) table.add({"collision." + k.kind, "", std::to_string(k.count)});
+    table.print(console);
+}
+
+void print_losses(const Console& console, const Summary& s)
+{
+    if (s.gaps.empty() && s.dropped.empty() && s.troubles.count == 0) return;
+    heading(console, "Lost");
+    Table table({{"what"}, {"from", Align::Right}, {"to", Align::Right}, {"why", Align::Left, Shrink::Wrap}});
+    for (const auto& [topic, samples] : s.dropped)
+        table.add({counted(samples, "sample") + " of " + topic, "", "", "dropped by the server"});
+    for (const std::string& text : s.troubles.texts) table.add({"damaged", "", "", text});
+    add_some(
+        console, s.gaps, table,
+        [&](const recordings::NotedGap& g) {
+            table.add({counted(g.messages, "message") + ", " + bytes_text(g.bytes), seconds_text(g.from), seconds_text(g.to), g.reason});
+        });
+}
+
+void print_snapshots(const Console& console, const Summary& s)
+{
+    if (s.snapshots.empty()) return;
+    heading(console, "Snapshots");
+    Table table({{"run", Align::Right}, {"step", Align::Right}, {"time", Align::Right}, {"cause"}, {"name"}, {"size", Align::Right}});
+    add_some(
+        console, s.snapshots, table,
+        [&](const recordings::SnapshotSummary& p) {
+            table.add({std::to_string(p.run), std::to_string(p.step), exact_number(p.time) + " s", p.cause, p.name, bytes_text(p.bytes)});
+        });
+}
+
+}  // namespace
+
+void print_summary(const Console& console, const Summary& s)
+{
+    print_head(console, s);
+    print_runs(console, s);
+    print_topics(console, s);
+    print_swaps(console, s);
+    print_kinds(console, s);
+    print_losses(console, s);
+    print_snapshots(console, s);
+}
+
+void print_recovery(const Console& console, const recording::RecoveryReport& report, const std::string& out)
+{
+    std::string text = report.text();
+    while (text.ends_with('\n')) text.pop_back();
+    for (std::size_t begin = 0; begin < text.size();)
+    {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        console.out(printable(std::string_view(text).substr(begin, end - begin)) + "\n");
+        begin = end + 1;
+    }
+    if (report.verdict != recording::Verdict::NothingUsable) console.out("written to " + printable(out) + "\n");
+}
+
+}  // namespace plab::control

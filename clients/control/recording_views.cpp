@@ -1,0 +1,238 @@
+// diff, plot, report, log: recordings as people look at them.
+#include <memory>
+
+#include "control/commands.h"
+#include "control/recording_options.h"
+#include "control/recording_print.h"
+#include "figures/chart.h"
+#include "link/numbers.h"
+#include "logger/follow.h"
+#include "recordings/curves.h"
+#include "recordings/diff.h"
+#include "recordings/lines.h"
+#include "recordings/report.h"
+#include "recordings/text_out.h"
+
+namespace plab::control
+{
+namespace
+{
+
+using recordings::Log;
+
+constexpr std::size_t kMostInPlot = 12;  // objects of a difference
+
+// ---- diff -----------------------------------------------------------------------------------------------------------
+
+struct DiffArguments
+{
+    std::string a, b, plot;
+};
+
+Exit run_diff(Context& c, const DiffArguments& o)
+{
+    auto a = Log::open(o.a);
+    if (!a) return c.fail(Exit::Failed, a.errors());
+    auto b = Log::open(o.b);
+    if (!b) return c.fail(Exit::Failed, b.errors());
+    const recordings::Difference difference = recordings::difference_of(*a, *b);
+    if (difference.is_unknown())
+        return c.fail(Exit::Failed, "nothing to compare: " + o.a + " and " + o.b + " have no step in common, neither hashes nor states");
+    if (c.settings.json)
+        print(c.console, json_of(difference));
+    else
+        print_difference(c.console, difference);
+    if (!o.plot.empty())
+    {
+        std::vector<std::string> objects;
+        for (const recordings::Growth& g : difference.objects)
+            if (g.largest > 0 && objects.size() < kMostInPlot) objects.push_back(g.object);
+        const auto chart = recordings::difference_chart(*a, *b, objects);
+        if (auto written = figures::write_picture(draw(chart), o.plot); !written) return c.fail(Exit::Failed, written.errors());
+    }
+    const Exit damaged = std::max(warn(c, difference.troubles_a), warn(c, difference.troubles_b));
+    return difference.is_none() ? damaged : Exit::Failed;
+}
+
+// ---- plot -----------------------------------------------------------------------------------------------------------
+
+struct PlotArguments
+{
+    std::string file, out;
+    std::vector<std::string> quantities;
+    recordings::Span span;
+    bool has_events = true, has_log_scale = false;
+};
+
+Result<figures::Chart> chart_of(const Log& log, const PlotArguments& o)
+{
+    std::vector<recordings::Quantity> quantities;
+    for (const std::string& text : o.quantities)
+    {
+        auto parsed = recordings::parse_quantity(text, log.things());
+        if (!parsed) return parsed.errors();
+        quantities.insert(quantities.end(), parsed->begin(), parsed->end());
+    }
+    figures::Chart chart;
+    chart.curves = recordings::curves_of(log, quantities, o.span);
+    for (const figures::Curve& curve : chart.curves)
+        if (curve.points.empty()) return reason(log.path() + " has no value of '" + curve.name + "' in this time");
+    chart.title = o.quantities.size() == 1 ? o.quantities.front() : std::to_string(o.quantities.size()) + " quantities";
+    chart.subtitle = log.path();
+    chart.kind = o.has_log_scale ? figures::Scale::Kind::Log : figures::Scale::Kind::Linear;
+    chart.moments = recordings::moments_of(log, o.span, o.has_events);
+    return chart;
+}
+
+Exit run_plot(Context& c, const PlotArguments& o)
+{
+    if (!o.out.ends_with(".svg") && !o.out.ends_with(".png"))
+        return c.fail(Exit::Usage, "-o " + o.out + ": a picture's name ends with .svg or .png");
+    auto log = Log::open(o.file);
+    if (!log) return c.fail(Exit::Failed, log.errors());
+    auto chart = chart_of(*log, o);
+    if (!chart) return c.fail(Exit::Failed, chart.errors());
+    if (auto written = figures::write_picture(draw(*chart), o.out); !written) return c.fail(Exit::Failed, written.errors());
+    return warn(c, log->troubles());
+}
+
+// ---- report ---------------------------------------------------------------------------------------------------------
+
+struct ReportArguments
+{
+    std::string file, out;
+};
+
+Exit run_report(Context& c, const ReportArguments& o)
+{
+    auto log = Log::open(o.file);
+    if (!log) return c.fail(Exit::Failed, log.errors());
+    auto summary = recordings::summary_of(*log);
+    if (!summary) return c.fail(Exit::Failed, summary.errors());
+    if (auto written = recordings::write_file(o.out, recordings::report_html(*log, *summary)); !written)
+        return c.fail(Exit::Failed, written.errors());
+    return Exit::Done;
+}
+
+// ---- log ------------------------------------------------------------------------------------------------------------
+
+struct LogArguments
+{
+    std::string file, severity = "info";
+    recordings::LineOptions lines;
+};
+
+Exit log_live(const Context& c, const LogArguments& o)
+{
+    if (o.lines.span.from || o.lines.span.to) return c.fail(Exit::Usage, "--from and --to are for files: name one");
+    logger::Options options;
+    options.link = c.settings.link, options.filter = o.lines.filter, options.json = c.settings.json;
+    options.count = c.settings.count, options.duration = c.settings.duration;
+    options.timeout = c.timeout().count();
+    const logger::End end = logger::follow(options, c.stop());
+    if (c.stopped()) return Exit::Interrupted;
+    return end.code == 0 ? Exit::Done : c.fail(static_cast<Exit>(end.code), end.errors);
+}
+
+Exit run_log(const Context& c, LogArguments o)
+{
+    logger::Filter& filter = o.lines.filter;
+    // Either alone means only these; both or none mean all.
+    if (!filter.events && !filter.collisions) filter.events = filter.collisions = true;
+    filter.severity = logger::severity_of(o.severity);
+    if (o.file.empty()) return log_live(c, o);
+    auto log = Log::open(o.file);
+    if (!log) return c.fail(Exit::Failed, log.errors());
+    o.lines.json = c.settings.json, o.lines.count = c.settings.count;
+    auto out = recordings::TextOut::open("");
+    if (!out) return c.fail(Exit::Failed, out.errors());
+    auto written = recordings::write_lines(*log, o.lines, *out);
+    return written ? warn(c, *written) : c.fail(Exit::Failed, written.errors());
+}
+
+void add_diff(CLI::App& app, Context& context)
+{
+    auto o = std::make_shared<DiffArguments>();
+    CLI::App& command =
+        add_command(app, context,
+                    {"diff", "where two recordings differ first, and how the difference grows",
+                     "  plabctl diff a.mcap b.mcap\n  plabctl diff a.mcap b.mcap --plot growth.svg\n"
+                     "Steps that both have are compared: state hashes, then states. Exit code 0: no difference, 1: there is one.\n"},
+                    [o](Context& c) { return run_diff(c, *o); });
+    command.add_option("a", o->a, "recording")->required()->type_name("FILE");
+    command.add_option("b", o->b, "recording that it is compared with")->required()->type_name("FILE");
+    command.add_option("--plot", o->plot, "draw the growth of the difference into this .svg or .png")->type_name("FILE");
+}
+
+void add_plot(CLI::App& app, Context& context)
+{
+    auto o = std::make_shared<PlotArguments>();
+    CLI::App& command =
+        add_command(app, context,
+                    {"plot", "draw quantities of a recording over time, with its swaps and events",
+                     "  plabctl plot run.mcap --quantity red.position.z -o height.svg\n"
+                     "  plabctl plot run.mcap --quantity red.speed --quantity fan.speed --from 1 --to 2 -o speeds.png\n"
+                     "  plabctl plot run.mcap --quantity contact.response.cost --quantity energy.kinetic -o cost.svg\n"
+                     "Bodies: position, orientation, linear_velocity, angular_velocity (.x .y .z .norm), speed. Shafts: angle, speed.\n"
+                     "Interactions: cost, error, work, and their outputs. The scene: energy.kinetic, .stored, .total, .work,\n"
+                     ".unexplained, momentum, angular_momentum, real_time_factor, step_cost, contacts, deepest, residual.\n"},
+                    [o](Context& c) { return run_plot(c, *o); });
+    add_file(command, o->file);
+    command.add_option("-q,--quantity", o->quantities, "ID.QUANTITY (may be repeated); a panel for each unit")
+        ->required()
+        ->allow_extra_args(false)
+        ->type_name("NAME");
+    command.add_option("-o,--output", o->out, "picture: .svg or .png")->required()->type_name("FILE");
+    command.add_flag("--no-events{false}", o->has_events, "mark warnings and failures only, not every event");
+    command.add_flag("--log", o->has_log_scale, "logarithmic values; what is not positive is left out");
+    add_span(command, o->span);
+}
+
+void add_report(CLI::App& app, Context& context)
+{
+    auto o = std::make_shared<ReportArguments>();
+    CLI::App& command = add_command(app, context,
+                                    {"report", "a recording as one HTML page: energy, momentum, cost and error, swaps, events",
+                                     "  plabctl report run.mcap -o report.html\n"},
+                                    [o](Context& c) { return run_report(c, *o); });
+    add_file(command, o->file);
+    command.add_option("-o,--output", o->out, "page to write; '-' for standard output")->required()->type_name("FILE");
+}
+
+void add_log(CLI::App& app, Context& context)
+{
+    auto o = std::make_shared<LogArguments>();
+    o->lines.filter.events = o->lines.filter.collisions = false;  // flags
+    CLI::App& command =
+        add_command(app, context,
+                    {"log", "events and collisions as lines, of a recording or as they happen",
+                     "  plabctl log run.mcap --severity warning\n  plabctl log run.mcap --collisions --object red --from 2 --to 3\n"
+                     "  plabctl log run.mcap --json | jq 'select(.kind == \"script.print\")'\n"
+                     "  plabctl log                               what happens in a server, until Ctrl-C (as plab-log)\n"},
+                    [o](Context& c) { return run_log(c, *o); });
+    command.add_option("file", o->file, "recording (MCAP); without it a server is followed")->type_name("FILE");
+    command.add_flag("--events", o->lines.filter.events, "events only");
+    command.add_flag("--collisions", o->lines.filter.collisions, "collisions only");
+    command.add_option("--kind", o->lines.filter.kinds, "kinds that begin so (may be repeated): collision.impact, script.")
+        ->allow_extra_args(false)
+        ->type_name("KIND");
+    command.add_option("--object", o->lines.filter.objects, "what names this component (may be repeated)")
+        ->allow_extra_args(false)
+        ->type_name("ID");
+    command.add_option("--severity", o->severity, "least severity; collisions are info")
+        ->check(CLI::IsMember({"info", "warning", "failure"}))
+        ->type_name("WORD");
+    add_span(command, o->lines.span);
+}
+
+}  // namespace
+
+void add_recording_views(CLI::App& app, Context& context)
+{
+    add_diff(app, context);
+    add_plot(app, context);
+    add_report(app, context);
+    add_log(app, context);
+}
+
+}  // namespace plab::control

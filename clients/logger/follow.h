@@ -1,0 +1,19 @@
+/// plab-log without its command line: what `plabctl log` does as well.
+#pragma once
+
+#include "logger/options.h"
+
+namespace plab::logger
+{
+
+/// How it ended: 0, 1 (cannot write, no bus), 3 (no server), and why.
+struct End
+{
+    int code = 0;
+    Errors errors;
+};
+
+/// Joins, finds the server and writes its lines until `interrupted`, the number of entries or the time of `options`.
+End follow(const Options& options, const link::Stop& interrupted);
+
+}  // namespace plab::logger

@@ -1,0 +1,50 @@
+/// Keys of somebody who watches a playback, and the bar that shows where it is.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace plab::playback
+{
+
+enum class Key : unsigned char
+{
+    Pause,    ///< space
+    Back,     ///< left: a second
+    Forward,  ///< right
+    Faster,   ///< up
+    Slower,   ///< down
+    Quit,     ///< q
+};
+
+/// Bytes from a terminal as keys. A cursor key is three bytes, which may come one by one.
+class KeyParser
+{
+public:
+    std::vector<Key> take(std::string_view bytes);
+
+private:
+    enum class State : unsigned char
+    {
+        Plain,
+        Escape,
+        Sequence,
+    };
+    State state_ = State::Plain;
+};
+
+/// What the bar shows; seconds of the recording's time line.
+struct BarState
+{
+    double from = 0, to = 0, at = 0;
+    double rate = 1;
+    bool is_paused = false;
+    double time = 0;  ///< s, simulated
+    unsigned long long run = 0;
+};
+
+/// "1x  [=====>------]  3.20 / 10.00 s   t = 3.20 s, run 1   space q arrows", in so many columns.
+std::string bar(const BarState& state, std::size_t width);
+
+}  // namespace plab::playback

@@ -1,0 +1,125 @@
+/// Plays a recording on the bus, as the server that was recorded would send it: same topics, in its partition, the
+/// catalogue before what refers to it, everything at its time.
+///
+/// A jump back begins a new run, as a reset does, so that those who watch start afresh. Numbers of events and frames go
+/// on without gaps, but for those that the recording has itself.
+#pragma once
+
+#include <map>
+#include <set>
+
+#include "idl/recording/reader.h"
+#include "link/session.h"
+#include "playback/front.h"
+#include "playback/pace.h"
+#include "playback/shelf.h"
+#include "playback/track.h"
+
+namespace plab::playback
+{
+
+struct Options
+{
+    std::string file;
+    std::string name;            ///< of the server; empty: the recorded one's
+    std::string version;         ///< of this program
+    std::optional<double> from;  ///< s of the recording's time line; none: its begin
+    std::optional<double> to;    ///< s; none: its end
+    double rate = 1;
+    bool paused = false;
+    bool loop = false;
+    std::uint32_t readers = 0;  ///< begins when so many read the states
+    wire::DomainOptions domain = {};
+};
+
+class Player
+{
+public:
+    using Clock = std::chrono::steady_clock;
+
+    /// Opens the file, takes the name and joins the bus. Nothing is sent before the first step().
+    static Result<std::unique_ptr<Player>> open(const Options& options);
+    ~Player();
+    Player(const Player&) = delete;
+    Player& operator=(const Player&) = delete;
+
+    /// Sends what is due, a part of it if that is much. Nothing: goes on. An error: another server has the name.
+    Result<void> step(Clock::time_point now);
+    /// Waits until there is something to do, a request has come, or it is `latest`.
+    void wait(Clock::time_point latest);
+    /// Everything is sent, and it is no loop.
+    bool is_over() const { return is_over_; }
+    /// Those who read all that this playback sends of the states.
+    std::uint32_t readers() const;
+
+    void pause(bool paused, Clock::time_point now);
+    void set_rate(double rate, Clock::time_point now);
+    /// To a time on the recording's time line, ns.
+    void seek(std::uint64_t time, Clock::time_point now);
+
+    const Pace& pace() const { return pace_; }
+    const std::string& name() const { return front_.name(); }
+    Standing standing() const { return standing_; }
+    std::uint64_t sent() const { return sent_; }
+    /// Messages that are damaged, or no samples of their topic.
+    std::uint64_t broken() const { return broken_; }
+    /// Topics of the recording that are none of pLab's, and are not sent.
+    const std::vector<std::string>& foreign() const { return foreign_; }
+
+private:
+    Player(recording::Reader reader, Front front, const Pace& pace, const Options& options);
+    Result<void> join(const Options& options);
+    Result<void> make_tracks();
+    void show_scene();
+    void begin(Clock::time_point now);
+    void send_due(Clock::time_point now);
+    void end_or_loop(Clock::time_point now);
+    void jump_back(std::uint64_t time, Clock::time_point now);
+    std::uint64_t run_at(std::uint64_t time) const;
+    void jump(std::uint64_t time);
+    void put_catalogue(Shelf wanted);
+    void put_status(std::uint64_t until);
+    void put_latest(const std::string& topic, std::uint64_t until);
+    void put_frame(std::uint64_t until);
+    /// False: nothing is left.
+    bool fetch();
+    void send_next();
+    void send_entry(const recording::Found& found);
+    void send(const std::string& topic, recording::ByteView bytes);
+    void take_gone(recording::ByteView bytes);
+    void dispose(const std::set<Place>& places);
+    void note_place(recording::Peek& peek, recording::ByteView bytes);
+    void look_at_readers();
+    bool has_newcomers(const std::string& topic);
+    void tell_status(Clock::time_point now, bool at_once);
+    Track* track_of(const std::string& topic);
+
+    recording::Reader reader_;
+    Front front_;
+    Pace pace_;
+    bool loop_, moved_only_ = false;
+    Changes changes_;
+    std::vector<std::string> topics_, foreign_;
+    wire::Entity participant_, publisher_, subscriber_, waitset_;
+    std::map<std::string, std::unique_ptr<Track>> tracks_;
+    std::unique_ptr<recording::Peek> frames_, statuses_;
+
+    std::optional<recording::Cursor> cursor_;
+    std::optional<recording::Found> next_;  ///< the message that comes next
+    std::uint64_t position_ = 0;            ///< log_time of the last one
+    std::uint64_t jumped_to_ = 0;           ///< the catalogue of this time is on the bus already
+    std::uint32_t wanted_readers_;
+    bool has_begun_ = false, is_over_ = false;
+    Shelf shelf_;                                ///< what is on the bus
+    std::uint64_t shelf_shift_ = 0;              ///< run_shift with which it was written
+    std::set<Place> doomed_;                     ///< gone in the recording, and disposed of unless it is back in the same moment
+    std::uint64_t highest_run_ = 0;              ///< on the bus
+    std::map<std::string, std::uint32_t> seen_;  ///< readers so far, of topics that newcomers get at once
+
+    Standing standing_;
+    std::uint64_t sent_ = 0, broken_ = 0;
+    Clock::time_point told_{};
+    std::uint64_t told_position_ = 0;
+};
+
+}  // namespace plab::playback

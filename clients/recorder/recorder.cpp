@@ -1,0 +1,278 @@
+#include "recorder/recorder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace plab::recorder
+{
+namespace
+{
+
+constexpr std::chrono::seconds kTellEvery(1);  ///< gaps of one topic are told together
+/// Times that differ by less are the same (s): far below any step, far above the rounding of n * dt.
+constexpr double kSameTime = 1e-9;
+
+template <class T>
+bool is_topic(const wire::Topic& topic)
+{
+    return std::strcmp(topic.name, wire::topic_of<T>().name) == 0;
+}
+
+/// How many samples may wait to be taken, of each instance. A thread does nothing else than to take them.
+std::int32_t depth_of(wire::Delivery delivery)
+{
+    switch (delivery)
+    {
+        case wire::Delivery::Newest:
+            return 256;  // of 1000 bodies: 27 MB
+        case wire::Delivery::Catalogue:
+            return 64;
+        case wire::Delivery::Log:
+        case wire::Delivery::Request:
+        case wire::Delivery::Reply:
+            break;
+    }
+    return 4096;
+}
+
+std::string number(double value)
+{
+    std::array<char, 32> text{};
+    (void)std::snprintf(text.data(), text.size(), "%.17g", value);
+    return text.data();
+}
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+    return out;
+}
+
+recording::Metadata about(const link::ServerInfo& server, const Options& options)
+{
+    recording::Metadata out{"plab", {}};
+    out.values = {{"format", "1"},
+                  {"recorder", "plabctl"},
+                  {"server", server.name},
+                  {"version", server.version},
+                  {"host", server.host},
+                  {"started_ns", std::to_string(server.started_ns)},
+                  {"scene_file", server.scene_file},
+                  {"dt", number(server.dt)},
+                  {"threads", std::to_string(server.threads)},
+                  {"state_interval", number(options.state_rate ? 1 / *options.state_rate : 0)},
+                  {"states", "all"}};
+    if (!options.topics.empty()) out.values["topics"] = joined(options.topics);
+    return out;
+}
+
+}  // namespace
+
+Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::string>& names)
+{
+    const auto on_bus = [](const wire::Topic& t) { return !is_topic<plab_v1_Gone>(t); };
+    std::vector<const wire::Topic*> out;
+    for (const wire::Topic& t : wire::topics())
+    {
+        const bool is_named = std::find(names.begin(), names.end(), t.name) != names.end();
+        if (on_bus(t) && (is_named || (names.empty() && !is_topic<plab_v1_Image>(t)))) out.push_back(&t);
+    }
+    for (const std::string& name : names)
+        if (std::none_of(out.begin(), out.end(), [&](const wire::Topic* t) { return name == t->name; }))
+            return reason("'" + name + "' is no topic of pLab's: plabctl topics lists them");
+    // States last: who sees that they are read knows that the others are.
+    std::stable_partition(out.begin(), out.end(), [](const wire::Topic* t) { return !is_topic<plab_v1_Frame>(*t); });
+    return out;
+}
+
+Recorder::Recorder(const Options& options, const link::ServerInfo& server, std::unique_ptr<Tape> tape)
+    : options_(options), started_ns_(server.started_ns), tape_(std::move(tape)), run_(server.run)
+{
+    // The recording begins now, whichever sample comes first.
+    (void)timeline_.at(server.run, server.time);
+}
+
+Result<std::unique_ptr<Recorder>> Recorder::open(const link::Session& session, const link::ServerInfo& server, const Options& options)
+{
+    auto topics = choose_topics(options.topics);
+    if (!topics) return topics.errors();
+    // Without plab/server nobody would see the server go.
+    const wire::Topic* const presence = &wire::topic_of<plab_v1_Server>();
+    if (std::find(topics->begin(), topics->end(), presence) == topics->end()) topics->insert(topics->begin(), presence);
+    auto tape = Tape::open(options.tape, about(server, options));
+    if (!tape) return tape.errors();
+    std::unique_ptr<Recorder> out(new Recorder(options, server, tape.take()));
+    if (auto subscribed = out->subscribe(session, *topics); !subscribed) return subscribed.errors();
+    return out;
+}
+
+Result<void> Recorder::subscribe(const link::Session& session, const std::vector<const wire::Topic*>& topics)
+{
+    waitset_ = wire::Entity(dds_create_waitset(session.participant().get()));
+    for (const wire::Topic* topic : topics)
+    {
+        auto reader = link::RawReader::open(session, *topic, depth_of(topic->delivery));
+        if (!reader) return reader.errors();
+        // A condition, unlike a status, stays true while samples are left.
+        const dds_entity_t condition = dds_create_readcondition(reader->entity().get(), DDS_ANY_STATE);
+        if (const auto code = dds_waitset_attach(waitset_.get(), condition, 0); code < 0)
+            return wire::failed(std::string("cannot wait for ") + topic->name, code);
+        Track track;
+        track.topic = topic, track.reader = reader.take(), track.peek = recording::make_peek(*topic);
+        tracks_.push_back(std::move(track));
+    }
+    return {};
+}
+
+State Recorder::step(link::Seconds longest)
+{
+    if (state_ != State::Goes) return state_;
+    (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::duration_of(longest));
+    take_all();
+    const auto now = Clock::now();
+    write(partings_.take(now));
+    if (now - told_ >= kTellEvery) told_ = now, tell_gaps();
+    return state_;
+}
+
+Result<TapeProgress> Recorder::close()
+{
+    if (state_ == State::Goes) take_all();
+    // What was said last is believed, but for the goodbye of a server.
+    if (state_ == State::Goes || state_ == State::Done) write(partings_.take(Clock::time_point::max()));
+    tell_gaps();
+    return tape_->close();
+}
+
+/// Each topic comes for itself; the order in which the server wrote is in the time stamps of its one writing thread. In any
+/// other order a new run could seem to begin in the middle.
+void Recorder::take_all()
+{
+    arrived_.clear();
+    for (Track& track : tracks_) take(track);
+    const auto earlier = [](const Arrived& a, const Arrived& b) { return a.written_ns < b.written_ns; };
+    std::stable_sort(arrived_.begin(), arrived_.end(), earlier);
+    for (Arrived& sample : arrived_) look_at(sample);
+}
+
+void Recorder::take(Track& track)
+{
+    // One that never pauses must not keep the others waiting for ever.
+    constexpr std::size_t kMost = 256;
+    std::size_t taken = 0, batch = 0;
+    do {
+        batch = track.reader.take(
+            [&](const link::RawSample& sample)
+            {
+                const auto* const begin = reinterpret_cast<const std::uint8_t*>(sample.bytes.data());
+                arrived_.push_back(
+                    {&track, {begin, begin + sample.bytes.size()}, sample.has_value, sample.is_gone, sample.written_ns, sample.writer});
+            });
+        taken += batch;
+    } while (batch > 0 && taken < kMost);
+}
+
+void Recorder::look_at(Arrived& sample)
+{
+    if (state_ != State::Goes) return;
+    if (sample.is_gone) return look_at_gone(sample);
+    if (!sample.has_value) return;
+    Track& track = *sample.track;
+    const auto glance = track.peek->at(sample.data);
+    if (!glance)
+    {
+        ++broken_;
+        return;
+    }
+    if (is_topic<plab_v1_Server>(*track.topic)) note_server(*glance);
+    if (state_ != State::Goes) return;
+    const std::uint64_t log_time = glance->time && glance->run > 0 ? timeline_.at(glance->run, *glance->time) : timeline_.now();
+    run_ = std::max(run_, glance->run);
+    if (glance->entries > 0) note_gap(track, *glance, sample.writer, log_time);
+    track.last_log_time = log_time;
+    const auto stamp_ns = static_cast<std::uint64_t>(glance->stamp_ns > 0 ? glance->stamp_ns : sample.written_ns);
+    if (!is_left_out(track, *glance)) keep(track, *glance, {track.topic, log_time, stamp_ns, std::move(sample.data)});
+    const bool tells_time = is_topic<plab_v1_Frame>(*track.topic) || is_topic<plab_v1_Server>(*track.topic);
+    if (options_.until && tells_time && *glance->time >= *options_.until - kSameTime) state_ = State::Done;
+}
+
+void Recorder::keep(const Track& track, const recording::Glance& glance, Message&& message)
+{
+    if (!glance.key.empty()) write(partings_.take_before_return(track.topic->name, glance.key));
+    if (!has_blueprint_ && !glance.blueprint.empty())
+    {
+        has_blueprint_ = true;
+        tape_->attach(message.log_time, "blueprint.xml", "text/xml", glance.blueprint);
+    }
+    (void)tape_->put(std::move(message));  // what finds no room is counted there
+}
+
+void Recorder::look_at_gone(const Arrived& sample)
+{
+    const wire::Topic& topic = *sample.track->topic;
+    if (is_topic<plab_v1_Server>(topic))
+    {
+        state_ = State::Gone;
+        partings_.forget();
+        return;
+    }
+    const std::string key = recording::key_of_gone(sample.data);
+    // Metrics and replies have no instances that a scene could lose.
+    if (key.empty() || is_topic<plab_v1_Reply>(topic)) return;
+    partings_.add({topic.name, key, run_, timeline_.now(), static_cast<std::uint64_t>(sample.written_ns)}, Clock::now());
+}
+
+void Recorder::note_server(const recording::Glance& glance)
+{
+    if (glance.started_ns == started_ns_) return;
+    state_ = State::Restarted;
+    partings_.forget();
+}
+
+void Recorder::note_gap(Track& track, const recording::Glance& glance, std::uint64_t writer, std::uint64_t log_time)
+{
+    const auto missing = track.numbers.note(writer, glance.first, glance.entries);
+    track.missing.add({missing.count, 0, track.last_log_time, log_time});
+}
+
+bool Recorder::is_left_out(const Track& track, const recording::Glance& glance)
+{
+    const bool is_asked_for =
+        options_.topics.empty() || std::find(options_.topics.begin(), options_.topics.end(), track.topic->name) != options_.topics.end();
+    if (!is_asked_for) return true;
+    if (!options_.state_rate || !is_topic<plab_v1_Frame>(*track.topic)) return false;
+    if (!next_frame_ || next_frame_->first != glance.run) next_frame_ = {glance.run, *glance.time};
+    if (*glance.time < next_frame_->second - kSameTime) return true;
+    // On a grid of its own: a frame that is late does not make all that follow late.
+    const double interval = 1 / *options_.state_rate;
+    next_frame_->second += interval * std::max(1.0, std::ceil((*glance.time + kSameTime - next_frame_->second) / interval));
+    return false;
+}
+
+void Recorder::write(const std::vector<Parting>& partings)
+{
+    for (const Parting& p : partings)
+    {
+        plab_v1_Gone gone{};
+        std::string topic = p.topic, key = p.key;
+        gone.run = p.run, gone.topic_name = topic.data(), gone.component = key.data();
+        const auto bytes = encoder_.encode(gone);
+        if (!bytes) continue;  // two texts and a number are always a sample
+        (void)tape_->put({&wire::topic_of<plab_v1_Gone>(), p.log_time, p.publish_time, recording::Bytes(bytes->begin(), bytes->end())});
+    }
+}
+
+void Recorder::tell_gaps()
+{
+    for (Track& track : tracks_)
+    {
+        if (track.missing.messages == 0) continue;
+        tape_->put_gap(track.missing, std::string(track.topic->name) + ": did not arrive from the bus");
+        track.missing = {};
+    }
+}
+
+}  // namespace plab::recorder

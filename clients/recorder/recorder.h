@@ -1,0 +1,109 @@
+/// A recording of what a server sends, made by listening: the server does not know of it, but that there is one more
+/// reader.
+#pragma once
+
+#include <map>
+#include <set>
+
+#include "idl/recording/cdr.h"
+#include "idl/recording/glance.h"
+#include "idl/recording/timeline.h"
+#include "link/discovery.h"
+#include "link/sequence.h"
+#include "recorder/partings.h"
+#include "recorder/tape.h"
+
+namespace plab::recorder
+{
+
+struct Options
+{
+    TapeOptions tape;
+    std::vector<std::string> topics;   ///< none: all but images
+    std::optional<double> until;       ///< s, simulated: the recording ends there
+    std::optional<double> state_rate;  ///< frames per simulated second at the most; none: all that come
+};
+
+enum class State : std::uint8_t
+{
+    Goes,
+    Done,       ///< `until` is reached
+    Gone,       ///< the server has gone
+    Restarted,  ///< another server of that name has taken its place
+};
+
+/// Topics that are recorded. An error names the one that is none.
+Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::string>& names);
+
+class Recorder
+{
+public:
+    /// Opens the file and subscribes to everything. The session must outlive it.
+    static Result<std::unique_ptr<Recorder>> open(const link::Session& session, const link::ServerInfo& server, const Options& options);
+
+    /// Waits for samples up to `longest`, and takes those that are there.
+    State step(link::Seconds longest);
+    /// Ends the file. An error: not all of it could be written.
+    Result<TapeProgress> close();
+
+    TapeProgress progress() const { return tape_->progress(); }
+    /// s, of the recording's time line.
+    double length() const { return static_cast<double>(timeline_.now()) * 1e-9; }
+    /// Samples that were no samples of their topic.
+    std::uint64_t broken() const { return broken_; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    /// A topic that is read.
+    struct Track
+    {
+        const wire::Topic* topic = nullptr;
+        link::RawReader reader;
+        std::unique_ptr<recording::Peek> peek;
+        link::Sequence numbers;
+        recording::Losses missing;  ///< that the file does not tell of yet
+        std::uint64_t last_log_time = 0;
+    };
+
+    Recorder(const Options& options, const link::ServerInfo& server, std::unique_ptr<Tape> tape);
+    Result<void> subscribe(const link::Session& session, const std::vector<const wire::Topic*>& topics);
+    /// A sample that has come and is not looked at yet.
+    struct Arrived
+    {
+        Track* track = nullptr;
+        recording::Bytes data;
+        bool has_value = true, is_gone = false;
+        std::int64_t written_ns = 0;
+        std::uint64_t writer = 0;
+    };
+
+    void take_all();
+    void take(Track& track);
+    void look_at(Arrived& sample);
+    void keep(const Track& track, const recording::Glance& glance, Message&& message);
+    void look_at_gone(const Arrived& sample);
+    void note_server(const recording::Glance& glance);
+    void note_gap(Track& track, const recording::Glance& glance, std::uint64_t writer, std::uint64_t log_time);
+    bool is_left_out(const Track& track, const recording::Glance& glance);
+    void write(const std::vector<Parting>& partings);
+    void tell_gaps();
+
+    Options options_;
+    std::int64_t started_ns_ = 0;  ///< of the server that is recorded
+    std::unique_ptr<Tape> tape_;
+    std::vector<Track> tracks_;  ///< all of them, from subscribe() on
+    std::vector<Arrived> arrived_;
+    wire::Entity waitset_;
+    recording::Timeline timeline_;
+    Partings partings_;
+    recording::Encoder encoder_;
+    State state_ = State::Goes;
+    std::uint64_t run_ = 0;
+    std::optional<std::pair<std::uint64_t, double>> next_frame_;  ///< run, s: for state_rate
+    bool has_blueprint_ = false;
+    std::uint64_t broken_ = 0;
+    Clock::time_point told_{};
+};
+
+}  // namespace plab::recorder

@@ -1,0 +1,22 @@
+/// Events and collisions of a recording as the lines that plab-log writes.
+#pragma once
+
+#include "logger/filter.h"
+#include "recordings/log.h"
+#include "recordings/text_out.h"
+
+namespace plab::recordings
+{
+
+struct LineOptions
+{
+    logger::Filter filter = {};
+    bool json = false;
+    std::optional<std::uint64_t> count = {};  ///< end after so many entries
+    Span span = {};
+};
+
+/// In the order of time, with a line for each new run, and for entries that are missing.
+Result<Troubles> write_lines(const Log& log, const LineOptions& options, TextOut& out);
+
+}  // namespace plab::recordings

@@ -1,0 +1,60 @@
+/// A recording as a whole: where it comes from, who is in it, its messages.
+///
+///   auto log = Log::open("run.mcap");
+///   Stream stream = log->stream({"plab/states"}, {.from = 3.0});
+#pragma once
+
+#include <optional>
+
+#include "recordings/runs.h"
+#include "recordings/stream.h"
+#include "recordings/things.h"
+
+namespace plab::recordings
+{
+
+/// Nanoseconds as s, correctly rounded: 300000000 is 0.3.
+constexpr double seconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
+
+/// A part of the recording's own time line: simulated seconds since its beginning, which go on over a reset.
+struct Span
+{
+    std::optional<double> from = {}, to = {};
+};
+
+class Log
+{
+public:
+    /// An error: it is no recording, or cannot be read.
+    static Result<Log> open(const std::string& path);
+
+    const recording::Reader& reader() const { return *reader_; }
+    const std::string& path() const { return reader_->name(); }
+    /// What the metadata record "plab" says: server, version, host, started ..; empty if there is none.
+    const recording::Pairs& head() const { return head_; }
+    /// All objects and interactions that the recording tells of.
+    const Things& things() const { return things_; }
+    /// Runs that the catalogue, the journal and the server's state tell of; how long they were is not known yet.
+    const Runs& runs() const { return runs_; }
+    /// What was damaged of what open() has read.
+    const Troubles& troubles() const { return troubles_; }
+    bool has_topic(const std::string& topic) const;
+
+    /// Messages of these topics (none: all).
+    Stream stream(const std::vector<std::string>& topics = {}, const Span& span = {}) const;
+    static recording::Query query(const std::vector<std::string>& topics, const Span& span);
+
+private:
+    explicit Log(std::unique_ptr<recording::Reader> reader) : reader_(std::move(reader)) {}
+
+    std::unique_ptr<recording::Reader> reader_;  // stays where it is, for the streams
+    recording::Pairs head_;
+    Things things_;
+    Runs runs_;
+    Troubles troubles_;
+};
+
+/// "plab/states" for "states": the names of our topics without their head.
+std::string full_topic(const std::string& name);
+
+}  // namespace plab::recordings

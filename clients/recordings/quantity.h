@@ -1,0 +1,50 @@
+/// Quantities by name: "red.position.z", "axle.speed", "contact.response.cost", "energy.kinetic".
+///
+/// Bodies: position (m), orientation, velocity or linear_velocity (m/s), angular_velocity (rad/s), with .x .y .z (.w of an
+/// orientation) or .norm; speed (m/s). Shafts: angle (rad), speed (rad/s). Interactions: cost (ns per step), error, work
+/// (J), and their outputs by name. The scene: energy.kinetic .stored .total .work .of_requests .unexplained (J), momentum
+/// (N s), angular_momentum (N m s), real_time_factor, step_cost (ns), contacts, deepest (m), residual (m/s).
+/// A vector without a component stands for all of them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recordings/log.h"
+#include "recordings/merged.h"
+
+namespace plab::recordings
+{
+
+struct Quantity
+{
+    enum class Source : std::uint8_t
+    {
+        Object,
+        Interaction,
+        Scene,
+    };
+    Source source = Source::Scene;
+    std::string id;         ///< of an object or interaction
+    std::string what;       ///< "position", "cost", "energy.kinetic"
+    std::string component;  ///< "x" "y" "z" "w" "norm", or ""
+    std::string unit;       ///< of what is known beforehand; outputs tell theirs in each sample
+
+    std::string name() const;
+};
+
+/// An error says which ids or quantities there are that are near.
+Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Things& things);
+
+/// Nothing: the sample does not have it.
+std::optional<double> value_of(const Quantity& quantity, const plab_v1_BodyState& body);
+std::optional<double> value_of(const Quantity& quantity, const plab_v1_ShaftState& shaft);
+std::optional<double> value_of(const Quantity& quantity, const plab_v1_Metrics& metrics);
+/// Of an output of an interaction; "" if there is none.
+std::string unit_in(const Quantity& quantity, const plab_v1_Metrics& metrics);
+
+/// sqrt(x^2 + y^2 + z^2)
+double norm(const plab_v1_Vector& v);
+
+}  // namespace plab::recordings

@@ -1,0 +1,203 @@
+#include "recordings/report_tables.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "figures/axes.h"
+
+namespace plab::recordings
+{
+namespace
+{
+
+using figures::Page;
+using figures::PageCell;
+using figures::short_number;
+using Row = std::vector<PageCell>;
+
+constexpr std::size_t kMostRows = 300;
+
+std::string formatted(const char* format, double value)
+{
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
+}
+
+PageCell text(std::string value) { return {std::move(value), "", ""}; }
+PageCell number(double value) { return {short_number(value), std::isfinite(value) ? formatted("%.9e", value) : "-", ""}; }
+PageCell whole(std::uint64_t value) { return {std::to_string(value), std::to_string(value), ""}; }
+PageCell whole(std::int64_t value) { return {std::to_string(value), std::to_string(value), ""}; }
+/// A moment on the recording's time line: more digits than other numbers.
+PageCell moment(double value) { return {formatted("%.6g", value), formatted("%.9e", value), ""}; }
+Row head(std::initializer_list<const char*> names)
+{
+    Row out;
+    for (const char* name : names) out.push_back(text(name));
+    return out;
+}
+
+std::string microseconds(double ns) { return short_number(ns * 1e-3) + " µs"; }
+
+/// A long table is cut, and says so.
+void add_table(Page& page, const Row& columns, const std::vector<Row>& rows, std::uint64_t all)
+{
+    page.table(columns, rows);
+    if (all > rows.size()) page.paragraph("The first " + std::to_string(rows.size()) + " of " + std::to_string(all) + ".");
+}
+
+std::string joined(const plab_v1_Operation& o)
+{
+    std::string out;
+    for (std::uint32_t i = 0; i < o.values._length; ++i)
+        out += (i == 0 ? "" : ", ") + std::string(o.values._buffer[i].name) + " = " + o.values._buffer[i].text;
+    return out;
+}
+
+Row row_of(const plab_v1_EventInfo& e, std::int64_t step, double log_time)
+{
+    const std::string who =
+        std::string(e.component) + (*e.a != 0 ? std::string(" ") + e.a : "") + (*e.b != 0 ? std::string(" ") + e.b : "");
+    return {moment(log_time), whole(step), text(e.severity), text(e.kind), text(who), text(e.message)};
+}
+
+}  // namespace
+
+std::string sentence_of(const Swap& swap, const std::vector<Segment>& segments)
+{
+    const double at = seconds(swap.log_time);
+    std::string out = "At " + formatted("%.6g", at) + " s (step " + std::to_string(swap.step) + ") " + swap.component + " was exchanged, " +
+                      (swap.from.empty() ? "" : swap.from + " ") + "→ " + swap.to;
+    const Segment* before = nullptr;
+    const Segment* after = nullptr;
+    for (const Segment& s : segments)
+    {
+        if (s.component != swap.component || s.run != swap.run) continue;
+        if (s.end < at) before = &s;
+        if (s.begin >= at && after == nullptr && s.algorithm == swap.to) after = &s;
+    }
+    if (before == nullptr || after == nullptr) return out + ".";
+    std::vector<std::string> told;
+    if (before->mean_cost > 0 || after->mean_cost > 0)
+        told.push_back(microseconds(before->mean_cost) + " per step before, " + microseconds(after->mean_cost) + " after");
+    if (before->largest_error > 0 || after->largest_error > 0)
+        told.push_back("largest error " + short_number(before->largest_error) + " before, " + short_number(after->largest_error) +
+                       " after");
+    for (std::size_t i = 0; i < told.size(); ++i) out += (i == 0 ? ": " : "; ") + told[i];
+    return out + ".";
+}
+
+void add_segments(Page& page, const std::vector<Segment>& segments)
+{
+    std::vector<Row> rows;
+    for (const Segment& s : segments)
+        if (rows.size() < kMostRows)
+            rows.push_back({text(s.component),
+                            {s.algorithm, "", s.resolved},
+                            whole(s.run),
+                            moment(s.begin),
+                            moment(s.end),
+                            number(s.mean_cost * 1e-3),
+                            number(s.largest_error),
+                            number(s.work)});
+    if (rows.empty()) return;
+    page.paragraph("Each interaction with each algorithm that it had. A click on a column's head sorts by it.");
+    add_table(page, head({"interaction", "algorithm", "run", "from, s", "to, s", "cost, µs/step", "largest error", "work, J"}), rows,
+              segments.size());
+}
+
+void add_requests(Page& page, const Log& log)
+{
+    std::vector<Row> rows;
+    std::uint64_t all = 0;
+    Stream stream = log.stream({"plab/journal"});
+    while (const Entry* entry = stream.next())
+    {
+        const auto* journal = entry->as<plab_v1_Journal>();
+        for (std::uint32_t i = 0; journal != nullptr && i < journal->operations._length; ++i)
+        {
+            const plab_v1_Operation& o = journal->operations._buffer[i];
+            if (++all <= kMostRows)
+                rows.push_back({moment(seconds(entry->log_time)), whole(journal->step), text(o.verb), text(o.target), text(o.argument),
+                                text(joined(o)), text(journal->origin)});
+        }
+    }
+    if (rows.empty()) return;
+    page.heading("Requests");
+    page.paragraph("What was asked for and done, in the order in which it took effect.");
+    add_table(page, head({"at, s", "before step", "request", "target", "argument", "values", "from"}), rows, all);
+}
+
+void add_events(Page& page, const Log& log, const Summary& summary)
+{
+    if (summary.events.empty() && summary.collisions.empty()) return;
+    page.heading("Events");
+    std::vector<Row> kinds;
+    for (const KindCount& k : summary.events) kinds.push_back({text(k.kind), text(k.severity), whole(k.count)});
+    for (const KindCount& k : summary.collisions) kinds.push_back({text("collision." + k.kind), text("info"), whole(k.count)});
+    page.table(head({"kind", "severity", "number"}), kinds);
+    std::vector<Row> rows;
+    std::uint64_t all = 0;
+    Stream stream = log.stream({"plab/events"});
+    while (const Entry* entry = stream.next())
+    {
+        const auto* events = entry->as<plab_v1_Events>();
+        for (std::uint32_t i = 0; events != nullptr && i < events->entries._length; ++i)
+            if (const plab_v1_EventInfo& e = events->entries._buffer[i]; std::string_view(e.severity) != "info" && ++all <= kMostRows)
+                rows.push_back(row_of(e, events->step, seconds(entry->log_time)));
+    }
+    if (rows.empty()) return;
+    page.heading("Warnings and failures");
+    add_table(page, head({"at, s", "step", "severity", "kind", "who", "what"}), rows, all);
+}
+
+void add_runs(Page& page, const Summary& summary)
+{
+    std::vector<Row> rows;
+    for (const Run& r : summary.runs)
+        if (rows.size() < kMostRows)
+            rows.push_back({whole(r.number), text(r.cause), moment(seconds(r.begin)), moment(seconds(r.end)), whole(r.first_step),
+                            whole(r.last_step), moment(r.first_time), moment(r.last_time)});
+    if (summary.runs.size() < 2) return;
+    page.heading("Runs");
+    page.paragraph(
+        "A load, a reset, a restored snapshot begins a run. The recording's own time goes on, the simulated time of each run is its own.");
+    add_table(page, head({"run", "began with", "from, s", "to, s", "first step", "last step", "simulated from, s", "to, s"}), rows,
+              summary.runs.size());
+}
+
+void add_losses(Page& page, const Summary& summary)
+{
+    std::vector<Row> rows;
+    for (const TopicSummary& t : summary.topics)
+        if (t.missing > 0)
+            rows.push_back({text(t.name), whole(t.missing), text("in " + std::to_string(t.gaps) + " gaps of its numbers"), text("")});
+    for (const auto& [topic, samples] : summary.dropped)
+        rows.push_back({text(topic), whole(samples), text("dropped by the server"), text("")});
+    for (const NotedGap& g : summary.gaps)
+        rows.push_back({text("all topics"), whole(g.messages), text(g.reason),
+                        text(formatted("%.6g", seconds(g.from)) + " to " + formatted("%.6g", seconds(g.to)))});
+    for (const std::string& trouble : summary.troubles.texts) rows.push_back({text("the file"), {"–", "-", ""}, text(trouble), text("")});
+    if (rows.empty()) return;
+    page.heading("What is missing");
+    page.table(head({"of", "messages", "why", "when, s"}), rows);
+}
+
+void add_topics(Page& page, const Summary& summary)
+{
+    std::vector<Row> rows;
+    for (const TopicSummary& t : summary.topics)
+        rows.push_back({text(t.name), text(t.schema), whole(t.messages), number(t.rate()), number(static_cast<double>(t.bytes) * 1e-3)});
+    page.table(head({"topic", "type", "messages", "per second", "kB"}), rows);
+    if (summary.snapshots.empty()) return;
+    std::vector<Row> snapshots;
+    for (const SnapshotSummary& s : summary.snapshots)
+        if (snapshots.size() < kMostRows)
+            snapshots.push_back(
+                {whole(s.run), whole(s.step), moment(s.time), text(s.cause), text(s.name), number(static_cast<double>(s.bytes) * 1e-3)});
+    page.paragraph("Snapshots, from which a run can be continued:");
+    add_table(page, head({"run", "step", "time, s", "cause", "name", "kB"}), snapshots, summary.snapshots.size());
+}
+
+}  // namespace plab::recordings

@@ -1,0 +1,70 @@
+#include "recordings/segments.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::recordings
+{
+namespace
+{
+
+class Collector
+{
+public:
+    void note(const plab_v1_Metrics& metrics, double time)
+    {
+        for (std::uint32_t i = 0; i < metrics.interactions._length; ++i) note(metrics.interactions._buffer[i], metrics, time);
+    }
+    std::vector<Segment> take()
+    {
+        std::vector<Segment> out;
+        for (auto& [component, course] : courses_)
+            for (Segment& segment : course.segments) out.push_back(std::move(segment));
+        return out;
+    }
+
+private:
+    struct Course
+    {
+        std::vector<Segment> segments;
+        double last_work = 0;        ///< J since the run began
+        std::uint64_t measured = 0;  ///< samples of the last segment that have a cost
+    };
+
+    void note(const plab_v1_InteractionMetrics& m, const plab_v1_Metrics& all, double time)
+    {
+        Course& course = courses_[m.component];
+        const bool is_new_run = course.segments.empty() || course.segments.back().run != all.run;
+        if (is_new_run || course.segments.back().algorithm != m.requested)
+        {
+            Segment& segment = course.segments.emplace_back();
+            course.measured = 0;
+            segment.component = m.component, segment.algorithm = m.requested, segment.run = all.run, segment.begin = time;
+        }
+        if (is_new_run) course.last_work = m.work;
+        Segment& now = course.segments.back();
+        now.resolved = m.resolved, now.end = time;
+        ++now.samples;
+        // The first sample of a run comes before its first step: nothing was measured.
+        if (all.step_ns > 0) now.mean_cost += (m.cost_ns - now.mean_cost) / static_cast<double>(++course.measured);
+        // A comparison with what is no number is false.
+        if (!(std::fabs(m.error) <= now.largest_error)) now.largest_error = std::fabs(m.error);
+        now.work += m.work - course.last_work;
+        course.last_work = m.work;
+    }
+
+    std::map<std::string, Course> courses_;
+};
+
+}  // namespace
+
+std::vector<Segment> segments_of(const Log& log)
+{
+    Collector collector;
+    Stream stream = log.stream({"plab/metrics"});
+    while (const Entry* entry = stream.next())
+        if (const auto* metrics = entry->as<plab_v1_Metrics>()) collector.note(*metrics, seconds(entry->log_time));
+    return collector.take();
+}
+
+}  // namespace plab::recordings

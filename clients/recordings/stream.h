@@ -1,0 +1,89 @@
+/// The messages of a recording in the order of their time, decoded.
+///
+///   Stream stream(reader, {.topics = {"plab/states"}});
+///   while (const Entry* entry = stream.next())
+///       if (const auto* frame = entry->as<plab_v1_Frame>()) use(*frame);
+///
+/// Memory: what the reader holds open, and one sample of each type.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <variant>
+
+#include "idl/recording/reader.h"
+#include "idl/topics.h"
+
+namespace plab::recordings
+{
+
+/// The sample, of a topic of ours; nothing for what others write, or another version of the wire.
+using Content =
+    std::variant<std::monostate, const plab_v1_Server*, const plab_v1_Scene*, const plab_v1_Object*, const plab_v1_Shape*,
+                 const plab_v1_Interaction*, const plab_v1_Type*, const plab_v1_Frame*, const plab_v1_Collisions*, const plab_v1_Events*,
+                 const plab_v1_Metrics*, const plab_v1_Request*, const plab_v1_Reply*, const plab_v1_Image*, const plab_v1_Journal*,
+                 const plab_v1_Hashes*, const plab_v1_Snapshot*, const plab_v1_Gone*>;
+
+/// One message; valid until the stream goes on.
+struct Entry
+{
+    const recording::Channel* channel = nullptr;
+    std::uint64_t log_time = 0;      ///< ns, of the recording
+    std::uint64_t publish_time = 0;  ///< ns since 1970
+    recording::ByteView data;
+    Content content;
+
+    template <class T>
+    const T* as() const
+    {
+        const auto* held = std::get_if<const T*>(&content);
+        return held == nullptr ? nullptr : *held;
+    }
+};
+
+/// What could not be read: chunks that are damaged, samples that are none.
+struct Troubles
+{
+    static constexpr std::size_t kMostTexts = 16;
+
+    std::uint64_t count = 0;
+    std::vector<std::string> texts;  ///< of the first ones
+
+    void add(const std::string& text);
+    /// Those of another pass over the same file: what both have seen counts once.
+    void merge(const Troubles& other);
+};
+
+class Stream
+{
+public:
+    /// The reader must outlive the stream and stay where it is.
+    Stream(const recording::Reader& reader, const recording::Query& query);
+    ~Stream();
+    Stream(Stream&&) noexcept;
+    Stream& operator=(Stream&&) = delete;
+
+    /// Null at the end. What is damaged is left out, and counted among the troubles.
+    const Entry* next();
+    const Troubles& troubles() const { return troubles_; }
+
+private:
+    struct Samples;
+    using Decode = Result<Content> (*)(Samples&, recording::ByteView);
+    template <class T>
+    static Result<Content> decode(Samples& samples, recording::ByteView bytes);
+    template <class T>
+    static void enter(std::map<std::string_view, Decode>& table);
+    static const std::map<std::string_view, Decode>& table();
+    Decode decode_for(const recording::Channel& channel);
+
+    const recording::Reader* reader_;
+    recording::Cursor cursor_;
+    std::unique_ptr<Samples> samples_;
+    std::map<recording::ChannelId, Decode> decodes_;
+    Entry entry_;
+    Troubles troubles_;
+};
+
+}  // namespace plab::recordings

@@ -1,0 +1,236 @@
+#include "viewer/file_source.h"
+
+#include <cstdio>
+
+#include "link/catalogue_convert.h"
+#include "viewer/scene_model.h"
+
+namespace plab::view
+{
+namespace
+{
+
+/// A recording that was made from the bus has the catalogue in the order of its coming, which may be after the first
+/// frame of its revision: by so much.
+constexpr std::uint64_t kSettle = 150'000'000;  // ns of wall time
+constexpr std::uint64_t kFar = 1'000'000'000;   // ns of the recording: no further, whatever the clocks say
+
+template <class T>
+const std::string& name_of()
+{
+    static const std::string name = wire::topic_of<T>().name;
+    return name;
+}
+
+template <class T>
+bool is_topic(const recording::Found& found)
+{
+    return found.channel->topic == name_of<T>();
+}
+
+std::optional<link::Metrics> metrics_of(recording::ByteView bytes)
+{
+    recording::Sample<plab_v1_Metrics> sample;
+    recording::Decoder decoder;
+    if (!decoder.decode(bytes, sample)) return {};
+    return link::metrics_of(*sample);
+}
+
+/// The last ones until `time`, or the first ones; none: there are none.
+std::optional<link::Metrics> metrics_at(const recording::Reader& reader, std::uint64_t time)
+{
+    const auto last = reader.last_at(name_of<plab_v1_Metrics>(), time);
+    if (last && *last) return metrics_of((*last)->data);
+    recording::Cursor cursor = reader.messages({{name_of<plab_v1_Metrics>()}});
+    const auto first = cursor.next();
+    return first && *first ? metrics_of((*first)->message.data) : std::nullopt;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> FileSource::open(const std::string& file, std::optional<double> from)
+{
+    auto reader = recording::Reader::open(file);
+    if (!reader) return reader.errors();
+    if (reader->channels_of({name_of<plab_v1_Object>()}).empty())
+        return reason(file + ": has no " + name_of<plab_v1_Object>() + ": there is nothing to draw");
+    std::unique_ptr<FileSource> out(new FileSource(reader.take()));
+    out->start(from);
+    return std::unique_ptr<Source>(std::move(out));
+}
+
+/// Far into a file nobody wants to read all that was before. Time and time line differ by a constant within a run.
+void FileSource::start(std::optional<double> from)
+{
+    catalogue_.emplace(reader_.messages({{name_of<plab_v1_Scene>(), name_of<plab_v1_Object>(), name_of<plab_v1_Shape>(),
+                                          name_of<plab_v1_Interaction>(), name_of<plab_v1_Gone>()}}));
+    for (const wire::Topic* topic : {&wire::topic_of<plab_v1_Scene>(), &wire::topic_of<plab_v1_Object>(),
+                                     &wire::topic_of<plab_v1_Interaction>(), &wire::topic_of<plab_v1_Gone>()})
+        peeks_.emplace(topic->name, recording::make_peek(*topic));
+    const std::vector<std::string> states{name_of<plab_v1_Frame>()};
+    frames_.emplace(reader_.messages({states}));
+    const auto first = next_frame();
+    const std::uint64_t log_time = first ? first->message.log_time : 0;
+    const bool is_later = first && from && decode_frame(*first) && frame_->time < *from;
+    const std::uint64_t run = is_later ? frame_->run : 0;
+    const double ahead = is_later ? *from - frame_->time : 0;
+    const std::uint64_t begin = frame_that_leads_to(log_time, static_cast<std::uint64_t>(ahead * 1e9));
+    frames_.emplace(reader_.messages({states, begin}));
+    if (begin == log_time) return;
+    const auto there = next_frame();
+    // In another run the constant is another: then there is no short cut.
+    const bool is_there = there && decode_frame(*there) && frame_->run == run;
+    frames_.emplace(reader_.messages({states, is_there ? begin : 0}));
+}
+
+/// When the frame is from which the one at `first` + `ahead` can be drawn: the one before it; where frames name only what
+/// moved, one before the last that names everything.
+std::uint64_t FileSource::frame_that_leads_to(std::uint64_t first, std::uint64_t ahead) const
+{
+    constexpr auto kBack = static_cast<std::uint64_t>(1.5e9 * recording::kFullFrameEvery);
+    const auto about = reader_.metadata("plab");
+    const bool moved_only = about && about->values.contains("states") && about->values.at("states") == "moved";
+    if (moved_only) return first + (ahead > kBack ? ahead - kBack : 0);
+    const auto before = reader_.last_at(name_of<plab_v1_Frame>(), first + ahead);
+    return before && *before ? (*before)->message.log_time : first;
+}
+
+std::optional<recording::Found> FileSource::next_frame()
+{
+    while (true)
+    {
+        auto found = frames_->next();
+        if (found) return *found;
+        ++broken_;  // a chunk: the cursor goes on behind it
+    }
+}
+
+bool FileSource::decode_frame(const recording::Found& found)
+{
+    if (decoder_.decode(found.message.data, frame_)) return true;
+    ++broken_;
+    return false;
+}
+
+std::optional<Moment> FileSource::pop(link::Seconds)
+{
+    while (const auto found = next_frame())
+    {
+        if (!decode_frame(*found)) continue;
+        const bool is_new = frame_->run != run_ || frame_->revision != revision_;
+        run_ = frame_->run, revision_ = frame_->revision, time_ = frame_->time;
+        follow_scene(found->message, is_new);
+        show(found->message.log_time);
+        any_ = true;
+        return Moment{state_of(whole_.with(*frame_)), shown_};
+    }
+    if (!any_ && !closed_)
+        if (auto moment = only_catalogue()) return moment;
+    char text[64];
+    std::snprintf(text, sizeof text, "the recording ends at t = %.3f s", time_);
+    closed_ = text;
+    if (broken_ > 0) *closed_ += ", and " + std::to_string(broken_) + " of its parts are damaged (plabctl recover)";
+    return {};
+}
+
+/// A server that was paused all the time has sent no states: everything is where it was last listed.
+std::optional<Moment> FileSource::only_catalogue()
+{
+    const auto info = server();
+    if (!info) return {};
+    any_ = true, time_ = info->time;
+    while (ahead()) apply(*std::exchange(ahead_, std::nullopt));
+    show(std::numeric_limits<std::uint64_t>::max());
+    return Moment{state_of_catalogue(*shown_, *info), shown_};
+}
+
+FileSource::Ahead& FileSource::ahead()
+{
+    while (!ahead_)
+    {
+        auto next = catalogue_->next();
+        if (next)
+        {
+            ahead_ = *next;
+            break;
+        }
+        ++broken_;
+    }
+    return ahead_;
+}
+
+void FileSource::follow_scene(const recording::Message& frame, bool is_new)
+{
+    const auto is_due = [&](const recording::Message& m)
+    {
+        if (m.log_time <= frame.log_time) return true;
+        return is_new && m.log_time <= frame.log_time + kFar && m.publish_time > 0 && m.publish_time <= frame.publish_time + kSettle;
+    };
+    while (ahead() && is_due(ahead_->message) && !is_of_later(*ahead_)) apply(*std::exchange(ahead_, std::nullopt));
+}
+
+/// Whether a message of the catalogue is of a step after the frame's. What says no time is dated by what was last heard of
+/// before it: where frames are rare, that may be long before.
+bool FileSource::is_of_later(const recording::Found& found)
+{
+    const auto peek = peeks_.find(found.channel->topic);
+    if (peek == peeks_.end()) return false;
+    const auto glance = peek->second->at(found.message.data);
+    return glance && (glance->run > frame_->run || (glance->run == frame_->run && glance->step > frame_->step));
+}
+
+void FileSource::apply(const recording::Found& found)
+{
+    const auto decoded = [&]<class T>(recording::Sample<T>& sample)
+    {
+        if (!is_topic<T>(found)) return false;
+        if (decoder_.decode(found.message.data, sample)) return is_changed_ = true;
+        ++broken_;
+        return false;
+    };
+    recording::Sample<plab_v1_Scene> scene;
+    recording::Sample<plab_v1_Object> object;
+    recording::Sample<plab_v1_Shape> shape;
+    recording::Sample<plab_v1_Interaction> interaction;
+    recording::Sample<plab_v1_Gone> gone;
+    if (decoded(scene)) now_.scene = link::scene_of(*scene);
+    if (decoded(object)) now_.objects.insert_or_assign(object->component, link::object_of(*object));
+    if (decoded(shape)) now_.shapes.insert_or_assign(shape->component, link::shape_of(*shape));
+    if (decoded(interaction)) now_.interactions.insert_or_assign(interaction->component, link::interaction_of(*interaction));
+    if (decoded(gone)) erase(gone->topic_name, gone->component);
+}
+
+void FileSource::erase(const std::string& topic, const std::string& id)
+{
+    const auto erase_from = [&]<class T>(std::map<std::string, T>& things)
+    {
+        if (id.empty())
+            things.clear();
+        else
+            things.erase(id);
+    };
+    if (topic == name_of<plab_v1_Object>()) erase_from(now_.objects);
+    if (topic == name_of<plab_v1_Shape>()) erase_from(now_.shapes);
+    if (topic == name_of<plab_v1_Interaction>()) erase_from(now_.interactions);
+}
+
+/// The scene as it is shown from now on; costs decide which captions there are, so it gets the last ones, or the first.
+void FileSource::show(std::uint64_t time)
+{
+    if (!is_changed_) return;
+    is_changed_ = false;
+    now_.metrics = metrics_at(reader_, time);
+    shown_ = std::make_shared<const link::Snapshot>(now_);
+}
+
+std::optional<link::ServerInfo> FileSource::server() const
+{
+    const auto last = reader_.last_at(name_of<plab_v1_Server>(), std::numeric_limits<std::uint64_t>::max());
+    if (!last || !*last) return {};
+    recording::Sample<plab_v1_Server> sample;
+    recording::Decoder decoder;
+    if (!decoder.decode((*last)->data, sample)) return {};
+    return link::server_of(*sample);
+}
+
+}  // namespace plab::view

@@ -1,0 +1,89 @@
+/// A player and those who watch it, in one process and on one thread: whoever waits lets the player go on.
+#pragma once
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <map>
+
+#include "idl/recording/reader.h"
+#include "playback/player.h"
+#include "recorder/recorder.h"
+#include "recordings/made_recording.h"
+
+namespace plab::test
+{
+
+using Clock = std::chrono::steady_clock;
+using link::Seconds;
+
+/// Tests may run side by side, in several checkouts.
+inline wire::DomainOptions test_domain() { return {60 + static_cast<std::uint32_t>(getpid()) % 150, {}}; }
+
+inline playback::Options play_options(const std::string& file, const std::string& name)
+{
+    playback::Options options;
+    options.file = file, options.name = name, options.version = "test", options.domain = test_domain();
+    return options;
+}
+
+inline std::unique_ptr<playback::Player> open_player(const playback::Options& options)
+{
+    auto player = playback::Player::open(options);
+    REQUIRE_MESSAGE(player.ok(), player.error().text());
+    return player.take();
+}
+
+/// Lets the player go on until `is_enough`, for 10 s at the most; whether it was.
+template <class Condition>
+bool play_until(playback::Player& player, Condition is_enough)
+{
+    const auto end = Clock::now() + std::chrono::seconds(10);
+    bool is_there = is_enough();
+    for (; !is_there && Clock::now() < end; is_there = is_enough())
+    {
+        const auto now = Clock::now();
+        REQUIRE(player.step(now).ok());
+        if (!player.is_over()) player.wait(now + std::chrono::milliseconds(5));
+    }
+    return is_there;
+}
+
+inline link::Session watch(const std::string& name)
+{
+    link::Options options;
+    options.server = name, options.domain = test_domain();
+    auto session = link::Session::join(options);
+    REQUIRE_MESSAGE(session.ok(), session.error().text());
+    return session.take();
+}
+
+/// All that a reader of T has been given so far, by `note`.
+template <class T, class Note>
+void take_all(wire::Reader<T>& reader, Note note)
+{
+    (void)reader.take(
+        [&](const T& sample, const dds_sample_info_t& info)
+        {
+            if (info.valid_data) note(sample);
+        });
+}
+
+inline recording::Reader open_file(const std::string& file)
+{
+    auto reader = recording::Reader::open(file);
+    REQUIRE_MESSAGE(reader.ok(), reader.error().text());
+    return reader.take();
+}
+
+/// The bytes of all messages of a topic, in their order.
+inline std::vector<recording::Bytes> messages_of(const recording::Reader& reader, const std::string& topic)
+{
+    std::vector<recording::Bytes> out;
+    recording::Cursor cursor = reader.messages({{topic}});
+    for (auto next = cursor.next(); next && *next; next = cursor.next())
+        out.emplace_back((*next)->message.data.begin(), (*next)->message.data.end());
+    return out;
+}
+
+}  // namespace plab::test
