@@ -43,7 +43,7 @@ std::string scene_of(int objects, int hz)
     for (int i = 0; i < objects; ++i)
     {
         const std::string n = std::to_string(i);
-        text += "<component id=\"b" + n + "\" type=\"State/RigidBody\" shape=\"s\" position=\"" + n + " 0 0\" angular_velocity=\"0." + n +
+        text += "<component id=\"b" + n + "\" type=\"State/RigidBody\" shape=\"s\" mass=\"1\" position=\"" + n + " 0 0\" angular_velocity=\"0." + n +
                 " 1 2\"/>";
     }
     return text + "</plab>";

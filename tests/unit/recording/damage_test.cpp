@@ -271,6 +271,21 @@ TEST_CASE("two chunks that call different things by one id: the second is an err
     CHECK(read_all(*open(out.bytes)).lines == back.lines);
 }
 
+TEST_CASE("a chunk that contradicts itself is an error")
+{
+    ChunkBuilder chunk;
+    chunk.add(Channel{1, 0, "a", "text", {}});
+    chunk.add(Channel{1, 0, "b", "text", {}});
+    Bytes bytes;
+    Compressor none(Compression::None, 0);
+    REQUIRE(chunk.write(bytes, none));
+    ChunkData data;
+    const auto loaded = data.load(MemorySource(bytes), 0, {});
+    REQUIRE(!loaded);
+    CHECK(loaded.error().text() == "byte 0: Chunk: Channel record 40 contradicts another one of its id");
+    CHECK(data.messages().empty());
+}
+
 TEST_CASE("the start of a file is gone: what follows is found, and what is lost is told")
 {
     const SampleFile file(Compression::Lz4, 5, false);
