@@ -282,7 +282,7 @@ TEST_CASE("a chunk that contradicts itself is an error")
     ChunkData data;
     const auto loaded = data.load(MemorySource(bytes), 0, {});
     REQUIRE(!loaded);
-    CHECK(loaded.error().text() == "byte 0: Chunk: Channel record 40 contradicts another one of its id");
+    CHECK(loaded.error().text() == "byte 0: Chunk: Channel record 30 contradicts another one of its id");
     CHECK(data.messages().empty());
 }
 
