@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "world/world.h"
@@ -164,11 +165,66 @@ void World::save_state(std::uint32_t component, ByteWriter& out) const
     if (c.host_index != kNoIndex) plab::world::save_state(host_, c.ref(component), out);
 }
 
+namespace
+{
+
+/// hash_bytes() of bytes that come piece by piece: the same as that of all of them together.
+class RunningHash
+{
+public:
+    explicit RunningHash(std::uint64_t start) : hash_(start) {}
+    void add(const void* data, std::size_t size)
+    {
+        const auto* bytes = static_cast<const std::uint8_t*>(data);
+        while (waiting_ > 0 && size > 0)
+        {
+            word_[waiting_++] = *bytes++, --size;
+            if (waiting_ == sizeof word_) hash_ = hash_bytes(hash_, word_), waiting_ = 0;
+        }
+        const std::size_t whole = size - size % sizeof word_;
+        hash_ = hash_bytes(hash_, {bytes, whole});
+        for (std::size_t i = whole; i < size; ++i) word_[waiting_++] = bytes[i];
+    }
+    std::uint64_t finish() const { return hash_bytes(hash_, {word_.data(), waiting_}); }
+
+private:
+    std::uint64_t hash_;
+    std::array<std::uint8_t, 8> word_{};  ///< bytes that make no word yet
+    std::size_t waiting_ = 0;
+};
+
+void add_body(const Bodies& b, std::uint32_t i, RunningHash& hash)
+{
+    hash.add(&b.position[i], sizeof(Vec3));
+    hash.add(&b.orientation[i], sizeof(Quat));
+    hash.add(&b.velocity[i], sizeof(Vec3));
+    hash.add(&b.angular_velocity[i], sizeof(Vec3));
+    hash.add(&b.angular_momentum[i], sizeof(Vec3));
+}
+
+}  // namespace
+
+/// The bytes of save_state() for all components, without a copy of those of bodies: recordings ask for it at each step.
 std::uint64_t World::state_hash(std::uint64_t h) const
 {
+    std::vector<std::uint8_t> has_state(tables_.size());
+    for (std::size_t t = 0; t < tables_.size(); ++t)
+        for (const Field& field : tables_[t]->schema().fields())
+            if (field.kind == FieldKind::State && !field.hosted) has_state[t] = 1;
+    RunningHash hash(h);
     ByteWriter bytes;
-    for (const std::uint32_t i : in_id_order_) save_state(i, bytes);
-    return hash_bytes(h, bytes.bytes());
+    for (const std::uint32_t i : in_id_order_)
+    {
+        const Component& c = directory_->components[i];
+        if (c.table == kNoIndex) continue;
+        const bool is_body = c.facet == Facet::Body && c.host_index != kNoIndex;
+        bytes.clear();
+        if (has_state[c.table]) tables_[c.table]->save(c.row, kStateKinds, bytes);
+        if (c.host_index != kNoIndex && !is_body) plab::world::save_state(host_, c.ref(i), bytes);
+        hash.add(bytes.bytes().data(), bytes.bytes().size());
+        if (is_body) add_body(host_.bodies, c.host_index, hash);
+    }
+    return hash.finish();
 }
 
 std::uint64_t hash_bytes(std::uint64_t h, std::span<const std::uint8_t> bytes)
