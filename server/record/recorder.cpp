@@ -1,13 +1,12 @@
 #include "record/recorder.h"
 
 #include <pthread.h>
-#include <unistd.h>
 
 #include <array>
 #include <csignal>
 #include <filesystem>
 
-#include "wire/wire_view.h"
+#include "idl/identity.h"
 
 namespace plab::record
 {
@@ -17,14 +16,6 @@ namespace
 constexpr std::size_t kQueue = 16384;
 /// Beyond the frames that are in flight, this many are kept for later ones.
 constexpr std::size_t kSpareFrames = 64;
-
-wire::Identity identity_of(const RecordOptions& options)
-{
-    std::array<char, 256> host{};
-    (void)gethostname(host.data(), host.size() - 1);
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return {options.server, options.version, host.data(), getpid(), std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()};
-}
 
 Result<recording::Compression> compression_of(const std::string& name)
 {
@@ -89,14 +80,14 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecordOptions& options)
     file.chunk_time = std::chrono::milliseconds(15);
     auto writer = recording::Writer::create(options.file, file, options.overwrite ? recording::Overwrite::Yes : recording::Overwrite::No);
     if (!writer) return writer.errors();
-    if (auto done = introduce(*writer, options, identity_of(options)); !done) return done.errors();
+    if (auto done = introduce(*writer, options, wire::identify(options.server, options.version)); !done) return done.errors();
     return std::unique_ptr<Recorder>(new Recorder(options, writer.take()));
 }
 
 Recorder::Recorder(const RecordOptions& options, recording::Writer writer)
     : options_(options),
       writer_(std::move(writer)),
-      topics_(writer_, identity_of(options), options.topics, options.moved_only),
+      topics_(writer_, wire::identify(options.server, options.version), options.topics, options.moved_only),
       queue_(kQueue),
       spare_(kSpareFrames)
 {
