@@ -39,7 +39,7 @@ int fail(const plab::Errors& errors)
 }
 
 int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLibrary& library, const plab::daemon::Options& options,
-              std::chrono::steady_clock::time_point start)
+              std::chrono::steady_clock::time_point start, const std::vector<std::string>& waiting = {})
 {
     auto wake = plab::daemon::Wake::make();
     if (!wake) return fail(wake.errors());
@@ -56,6 +56,7 @@ int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLib
         }
         if (!options.record.file.empty())
             if (auto opened = service.open_recording(options); !opened) return fail(opened.errors());
+        if (auto taken = service.take_over(waiting); !taken) return fail(taken.errors());
         code = plab::daemon::run(simulation, service, options, *wake, stop);
     }
     sleeper = nullptr;
@@ -69,8 +70,8 @@ int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::Options& op
     if (!snapshot) return fail(snapshot.errors());
     plab::simulation::Simulation simulation(library, options.threads);
     simulation.history().configure(plab::daemon::history_of(options));
-    if (auto restored = simulation.restore(*snapshot); !restored) return fail(restored.errors());
-    return run_scene(simulation, library, options, start);
+    if (auto restored = simulation.restore(snapshot->snapshot); !restored) return fail(restored.errors());
+    return run_scene(simulation, library, options, start, snapshot->waiting);
 }
 
 int carry_out(const plab::daemon::Options& options)

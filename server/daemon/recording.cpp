@@ -62,7 +62,7 @@ simulation::HistoryOptions history_of(const Options& options)
     return out;
 }
 
-void SnapshotDesk::begin(const simulation::Snapshot& snapshot, std::string name, const char* cause)
+void SnapshotDesk::begin(const simulation::Snapshot& snapshot, std::vector<std::string> waiting, std::string name, const char* cause)
 {
     // Types are asked here, on the step thread: a plugin may have to be loaded for them.
     if (scene_ != snapshot->world.scene) scene_ = snapshot->world.scene, blueprint_ = blueprint::write_long_form(*scene_, *types_);
@@ -70,10 +70,8 @@ void SnapshotDesk::begin(const simulation::Snapshot& snapshot, std::string name,
     out.run = snapshot->run, out.revision = snapshot->revision, out.step = snapshot->clock.tick, out.time = snapshot->clock.time();
     out.name = std::move(name), out.cause = cause, out.state_hash = snapshot->state_hash;
     out.blueprint = blueprint_;
-    const auto make = [snapshot, out = std::move(out)]() mutable -> Result<publish::SnapshotRecord>
+    const auto make = [snapshot, waiting = std::move(waiting), out = std::move(out)]() mutable -> Result<publish::SnapshotRecord>
     {
-        // What still waits is in the journal when it takes effect: the record has a place for each, and nothing in it.
-        const std::vector<std::string> waiting(snapshot->waiting.size());
         auto bytes = simulation::encode(snapshot, waiting);
         if (!bytes) return bytes.errors();
         out.data = bytes.take();
@@ -89,9 +87,8 @@ std::optional<Result<publish::SnapshotRecord>> SnapshotDesk::take(bool wait)
     return work_.get();
 }
 
-Result<void> write_snapshot(const simulation::Snapshot& snapshot, const std::string& file)
+Result<void> write_snapshot(const simulation::Snapshot& snapshot, std::span<const std::string> waiting, const std::string& file)
 {
-    const std::vector<std::string> waiting(snapshot->waiting.size());
     auto bytes = simulation::encode(snapshot, waiting);
     if (!bytes) return bytes.errors();
     const std::string part = file + ".part";
@@ -104,7 +101,7 @@ Result<void> write_snapshot(const simulation::Snapshot& snapshot, const std::str
     return reason("cannot write " + file + ": " + why);
 }
 
-Result<simulation::Snapshot> read_snapshot(const std::string& file, model::TypeSource& types)
+Result<simulation::SnapshotFile> read_snapshot(const std::string& file, model::TypeSource& types)
 {
     std::ifstream in(file, std::ios::binary | std::ios::ate);
     if (!in) return reason("cannot read " + file + ": " + std::strerror(errno));
@@ -121,7 +118,7 @@ Result<simulation::Snapshot> read_snapshot(const std::string& file, model::TypeS
             if (e.where.file.empty()) e.where.file = file;
         return errors;
     }
-    return decoded->snapshot;
+    return decoded;
 }
 
 }  // namespace plab::daemon

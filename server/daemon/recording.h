@@ -5,7 +5,9 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "daemon/options.h"
 #include "model/type_registry.h"
@@ -13,6 +15,7 @@
 #include "publish/collector.h"
 #include "record/record.h"
 #include "simulation/simulation.h"
+#include "simulation/snapshot/format.h"
 #include "simulation/snapshot/history.h"
 
 namespace plab::daemon
@@ -44,8 +47,8 @@ class SnapshotDesk
 {
 public:
     explicit SnapshotDesk(model::TypeSource& types) : types_(&types) {}
-    /// Waits for one that is under way.
-    void begin(const simulation::Snapshot& snapshot, std::string name, const char* cause);
+    /// Waits for one that is under way. `waiting`: the words of the snapshot's waiting requests, one for each.
+    void begin(const simulation::Snapshot& snapshot, std::vector<std::string> waiting, std::string name, const char* cause);
     bool is_busy() const { return work_.valid(); }
     /// The record, once it is made; at once if `wait`. Nothing: none is under way, or it is not ready.
     std::optional<Result<publish::SnapshotRecord>> take(bool wait);
@@ -58,7 +61,7 @@ private:
 };
 
 /// A snapshot's file: written whole or not at all (a new file takes the old one's place).
-Result<void> write_snapshot(const simulation::Snapshot& snapshot, const std::string& file);
-Result<simulation::Snapshot> read_snapshot(const std::string& file, model::TypeSource& types);
+Result<void> write_snapshot(const simulation::Snapshot& snapshot, std::span<const std::string> waiting, const std::string& file);
+Result<simulation::SnapshotFile> read_snapshot(const std::string& file, model::TypeSource& types);
 
 }  // namespace plab::daemon

@@ -70,7 +70,7 @@ int replay_recording(plugins::PluginLibrary& library, const Options& options, co
     const bool nothing = options.replay.verify && report->verified == 0 && !report->mismatch;
     if (nothing) std::fputs("nothing was verified: the recording holds no hashes there\n", stderr);
     if (!options.save.empty())
-        if (auto saved = write_snapshot(simulation.capture(), options.save); !saved) return fail(saved.errors());
+        if (auto saved = write_snapshot(simulation.capture(), {}, options.save); !saved) return fail(saved.errors());
     if (!options.out.empty() && !write_end_state(simulation, options.out)) return 1;
     return report->mismatch || nothing ? 1 : 0;
 }

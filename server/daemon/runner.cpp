@@ -72,6 +72,7 @@ private:
     bool serve();
     void step();
     void tell_rate(Clock::time_point now);
+    bool save();
     bool finish();
 
     simulation::Simulation& s_;
@@ -151,12 +152,23 @@ void Run::tell_rate(Clock::time_point now)
     spdlog::warn("too slow for the rate: {:.3f} s slipped so far", told_slip_);
 }
 
+/// What still waits goes with the snapshot. True if there is one now.
+bool Run::save()
+{
+    if (options_.save.empty()) return false;
+    const auto saved = service_.save(options_.save);
+    if (!saved) spdlog::error("{}", saved.error().text());
+    fine_ = fine_ && saved;
+    return static_cast<bool>(saved);
+}
+
 bool Run::finish()
 {
     table_.show(s_, true);
     if (trace_) trace_->sample(s_, true);
     if (options_.maps) print_mapped_libraries();
-    if (const std::size_t own = service_.close(); own > 0)
+    const bool saved = save();
+    if (const std::size_t own = service_.close(); own > 0 && !saved)
     {
         spdlog::error("{} requests found no step to take effect at: the run did not reach it", own);
         fine_ = false;
@@ -167,12 +179,6 @@ bool Run::finish()
         fine_ = false;
     }
     fine_ = service_.close_recording() && fine_;
-    if (!options_.save.empty())
-        if (auto saved = write_snapshot(s_.capture(), options_.save); !saved)
-        {
-            spdlog::error("{}", saved.error().text());
-            fine_ = false;
-        }
     if (!options_.out.empty()) fine_ = write_end_state(s_, options_.out) && fine_;
     return fine_;
 }

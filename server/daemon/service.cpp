@@ -11,6 +11,8 @@ namespace plab::daemon
 namespace
 {
 
+constexpr std::size_t kMostTimed = 4096;
+
 void wake_up(void* wake) { static_cast<const Wake*>(wake)->wake(); }
 
 /// Text of others, for a log: no control characters, no more than a line.
@@ -71,43 +73,19 @@ Result<void> Service::open_bus(const Options& options, const Wake& wake)
     return {};
 }
 
-Result<void> Service::open_recording(const Options& options)
-{
-    auto module = RecordModule::load_for_writing();
-    if (!module) return module.errors();
-    record::RecordOptions record = record_options(options, *simulation_, *library_);
-    record.log = [](void*, const char* line) { spdlog::warn("{}", line); };
-    auto opened = module->record(record);
-    if (!opened) return opened.errors();
-    record_module_ = module.take(), recording_ = opened.take();
-    collector_.attach(*recording_);
-    simulation_->draw_for(this);
-    return {};
-}
-
-bool Service::wanted() const
-{
-    return (bus_ && bus_->wants(publish::Stream::Images)) || (recording_ && recording_->wants(publish::Stream::Images));
-}
-
-bool Service::close_recording()
-{
-    if (!recording_) return true;
-    send_snapshot(true);
-    const auto closed = recording_->close();
-    const publish::RecordingStatus status = recording_->progress();
-    if (!closed) spdlog::error("{}", closed.error().reason);
-    if (status.dropped > 0) spdlog::warn("{}: {} messages were dropped on the way to the file", status.file, status.dropped);
-    spdlog::info("recorded {} messages in {} bytes: {}", status.messages, status.bytes, status.file);
-    return static_cast<bool>(closed);
-}
-
 void Service::post(simulation::Request request)
 {
     Origin origin;
-    for (const simulation::Operation& op : request.operations)
-        origin.operations.push_back(control::description_of(op)), origin.texts.push_back(control::text_of(op));
+    for (const simulation::Operation& op : request.operations) origin.texts.push_back(control::text_of(op));
+    post(std::move(request), std::move(origin));
+}
+
+void Service::post(simulation::Request request, Origin origin)
+{
+    for (const simulation::Operation& op : request.operations) origin.operations.push_back(control::description_of(op));
     request.id = ++last_request_;
+    if (request.at) timed_.emplace(request.id, origin.texts);
+    if (timed_.size() > kMostTimed) timed_.erase(timed_.begin());
     waiting_.emplace(request.id, std::move(origin));
     simulation_->post(std::move(request));
 }
@@ -134,12 +112,20 @@ void Service::accept(const publish::RequestText& text, control::Wanted wanted, d
 {
     Origin origin;
     origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
-    origin.read_ns = read_ns;
-    for (const simulation::Operation& op : wanted.request.operations) origin.operations.push_back(control::description_of(op));
-    origin.texts = text.operations;
-    wanted.request.id = ++last_request_;
-    waiting_.emplace(last_request_, std::move(origin));
-    simulation_->post(std::move(wanted.request));
+    origin.read_ns = read_ns, origin.texts = text.operations;
+    post(std::move(wanted.request), std::move(origin));
+}
+
+/// Who asked; of one that a snapshot made wait again only what it said, since its client was answered long ago.
+std::optional<Service::Origin> Service::origin_of(std::uint64_t request)
+{
+    if (auto asked = waiting_.extract(request)) return std::move(asked.mapped());
+    const auto said = timed_.find(request);
+    if (said == timed_.end()) return {};
+    Origin origin;
+    origin.texts = said->second;
+    for (const publish::OperationText& op : origin.texts) origin.operations.push_back({op.verb, op.target, op.argument});
+    return origin;
 }
 
 std::size_t Service::close()
@@ -201,10 +187,9 @@ bool Service::answer()
     bool fine = true;
     for (simulation::Reply& reply : simulation_->take_replies())
     {
-        const auto found = waiting_.find(reply.request);
-        if (found == waiting_.end()) continue;  // nobody asked for it under this number
-        const Origin origin = std::move(found->second);
-        waiting_.erase(found);
+        const auto asked = origin_of(reply.request);
+        if (!asked) continue;  // nobody asked for it under this number
+        const Origin& origin = *asked;
         reply.pause_ns += origin.read_ns;
         ++(reply.done ? done_ : refused_);
         if (reply.done) write_journal(origin, reply);
@@ -249,45 +234,6 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
     }
 }
 
-void Service::write_journal(const Origin& origin, const simulation::Reply& reply)
-{
-    publish::JournalRecord entry;
-    entry.run = simulation_->run(), entry.revision = reply.revision, entry.step = reply.step, entry.time = simulation_->time();
-    entry.origin = origin.from_bus ? "client" : "command line";
-    entry.client = origin.client, entry.request = origin.number, entry.operations = origin.texts;
-    collector_.journal(std::move(entry));
-    send_named_snapshots(origin);
-}
-
-/// Whoever reads snapshots gets those that are asked for, too: this is how a client brings one home.
-void Service::send_named_snapshots(const Origin& origin)
-{
-    if (!collector_.anybody_reads_snapshots()) return;
-    for (const publish::OperationText& op : origin.texts)
-    {
-        if (op.verb != "snapshot") continue;
-        const auto& named = simulation_->history().named();
-        if (const auto kept = named.find(op.target); kept != named.end()) make_snapshot(kept->second.snapshot, op.target, "request");
-    }
-}
-
-void Service::make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause)
-{
-    send_snapshot(true);
-    snapshots_.begin(snapshot, name, cause);
-}
-
-/// Hands over the snapshot that has been made, if there is one.
-void Service::send_snapshot(bool wait)
-{
-    auto made = snapshots_.take(wait);
-    if (!made) return;
-    if (*made)
-        collector_.snapshot(**made);
-    else
-        spdlog::error("no snapshot was recorded: {}", made->error().text());
-}
-
 void Service::publish(bool stepped)
 {
     collector_.collect(*simulation_, simulation_->take_changes(), stepped);
@@ -308,14 +254,6 @@ void Service::idle()
         make_snapshot(simulation_->capture(), "", *cause);
         send_snapshot(true);
     }
-}
-
-std::vector<publish::KeptSnapshot> Service::kept_snapshots() const
-{
-    std::vector<publish::KeptSnapshot> out;
-    for (const auto& [name, kept] : simulation_->history().named())
-        out.push_back({name, kept.snapshot->run, kept.snapshot->clock.tick, kept.snapshot->clock.time(), kept.bytes});
-    return out;
 }
 
 void Service::publish_status(double rate_reached, double slipped, bool slipping)

@@ -28,6 +28,10 @@ public:
 
     /// A request of the command line.
     void post(simulation::Request request);
+    /// Requests that waited when a snapshot was written, in its words, wait again.
+    Result<void> take_over(const std::vector<std::string>& waiting);
+    /// A snapshot of the present, with what waits.
+    Result<void> save(const std::string& file) const;
     /// Requests that have arrived on the bus go to the simulation; those that are nonsense are refused.
     void take_requests();
     /// Answers those that took effect (or did not): to clients, as events, as log lines. False if one of the command line
@@ -69,6 +73,9 @@ private:
     void answer_client(const Origin& origin, simulation::Reply reply);
     void shut_down(const publish::RequestText& text);
     void note(const Origin& origin, const simulation::Reply& reply);
+    void post(simulation::Request request, Origin origin);
+    std::optional<Origin> origin_of(std::uint64_t request);
+    std::vector<std::string> words_of(const simulation::Snapshot& snapshot) const;
     void write_journal(const Origin& origin, const simulation::Reply& reply);
     void make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause);
     void send_snapshot(bool wait);
@@ -86,6 +93,8 @@ private:
     publish::Collector collector_;
     SnapshotDesk snapshots_;
     std::map<std::uint64_t, Origin> waiting_;
+    /// What requests that name a step said, also after they took effect: a snapshot may make them wait again.
+    std::map<std::uint64_t, std::vector<publish::OperationText>> timed_;
     std::uint64_t last_request_ = 0, done_ = 0, refused_ = 0;
     bool shutdown_ = false;
 };

@@ -153,7 +153,7 @@ int run_shadow(plugins::PluginLibrary& library, const Options& options, const st
     if (!snapshot) return fail(snapshot.errors());
     Future without(library, options.threads), with(library, options.threads);
     for (Future* future : {&without, &with})
-        if (auto restored = future->simulation.restore(*snapshot); !restored) return fail(restored.errors());
+        if (auto restored = future->simulation.restore(snapshot->snapshot); !restored) return fail(restored.errors());
     Outcome outcome;
     outcome.from = without.simulation.tick(), outcome.begin = without.simulation.time();
     simulation::Request swap;

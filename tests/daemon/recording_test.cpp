@@ -138,6 +138,24 @@ TEST_CASE("a run that was saved goes on as if it had never been left")
     std::filesystem::remove(file);
 }
 
+TEST_CASE("a request that waits for its step goes with the snapshot, and takes effect there")
+{
+    const std::string file = fresh("waiting.snapshot");
+    const std::string swap = "300:contact.response=Response/None", set = "310:red.mass=0.02";
+    const Outcome whole = plabd({kScene, "--no-bus", "--until", "4", "--hashes", "--swap", swap, "--set", set});
+    const Outcome half = plabd({kScene, "--no-bus", "--until", "1", "--swap", swap, "--set", set, "--save", file});
+    CHECK_MESSAGE(half.code == 0, half.errors);
+    const Outcome rest = plabd({"--load", file, "--no-bus", "--until", "4", "--hashes"});
+    REQUIRE_MESSAGE(rest.code == 0, rest.errors);
+    const std::vector<std::string> all = lines_of(whole.output);
+    REQUIRE(all.size() == 960);
+    CHECK(lines_of(rest.output) == std::vector<std::string>(all.begin() + 240, all.end()));
+    // Without them the course is another one.
+    const Outcome plain = plabd({kScene, "--no-bus", "--until", "4", "--hashes"});
+    CHECK(lines_of(plain.output).back() != all.back());
+    std::filesystem::remove(file);
+}
+
 TEST_CASE("killed at any moment: what is older than 20 ms is in the file, and is the same run again")
 {
     constexpr int kKills = 10;

@@ -1,0 +1,127 @@
+/// What of the service concerns recordings, snapshots and requests that wait in them.
+#include <spdlog/spdlog.h>
+
+#include "control/waiting.h"
+#include "daemon/service.h"
+#include "simulation/snapshot/history.h"
+
+namespace plab::daemon
+{
+
+Result<void> Service::open_recording(const Options& options)
+{
+    auto module = RecordModule::load_for_writing();
+    if (!module) return module.errors();
+    record::RecordOptions record = record_options(options, *simulation_, *library_);
+    record.log = [](void*, const char* line) { spdlog::warn("{}", line); };
+    auto opened = module->record(record);
+    if (!opened) return opened.errors();
+    record_module_ = module.take(), recording_ = opened.take();
+    collector_.attach(*recording_);
+    simulation_->draw_for(this);
+    return {};
+}
+
+bool Service::wanted() const
+{
+    return (bus_ && bus_->wants(publish::Stream::Images)) || (recording_ && recording_->wants(publish::Stream::Images));
+}
+
+bool Service::close_recording()
+{
+    if (!recording_) return true;
+    send_snapshot(true);
+    const auto closed = recording_->close();
+    const publish::RecordingStatus status = recording_->progress();
+    if (!closed) spdlog::error("{}", closed.error().reason);
+    if (status.dropped > 0) spdlog::warn("{}: {} messages were dropped on the way to the file", status.file, status.dropped);
+    spdlog::info("recorded {} messages in {} bytes: {}", status.messages, status.bytes, status.file);
+    return static_cast<bool>(closed);
+}
+
+Result<void> Service::take_over(const std::vector<std::string>& waiting)
+{
+    for (const std::string& words : waiting)
+    {
+        auto text = control::read_request(words);
+        if (!text) return text.errors();
+        auto wanted = control::wanted_of(*text, *library_);
+        if (!wanted) return wanted.errors();
+        Origin origin;
+        origin.texts = std::move(text->operations);
+        post(std::move(wanted->request), std::move(origin));
+    }
+    return {};
+}
+
+std::vector<std::string> Service::words_of(const simulation::Snapshot& snapshot) const
+{
+    std::vector<std::string> out;
+    for (const auto& request : snapshot->waiting)
+    {
+        publish::RequestText text;
+        if (const auto said = timed_.find(request->id); said != timed_.end())
+            text.operations = said->second;
+        else
+            spdlog::warn("a request that waits for step {} is too old: the snapshot goes without it", request->at.value_or(-1));
+        if (request->at) text.at = *request->at;
+        if (request->revision) text.revision = static_cast<std::int64_t>(*request->revision);
+        out.push_back(control::text_of(text));
+    }
+    return out;
+}
+
+Result<void> Service::save(const std::string& file) const
+{
+    const simulation::Snapshot snapshot = simulation_->capture();
+    return write_snapshot(snapshot, words_of(snapshot), file);
+}
+
+void Service::write_journal(const Origin& origin, const simulation::Reply& reply)
+{
+    publish::JournalRecord entry;
+    entry.run = simulation_->run(), entry.revision = reply.revision, entry.step = reply.step, entry.time = simulation_->time();
+    entry.origin = origin.from_bus ? "client" : "command line";
+    entry.client = origin.client, entry.request = origin.number, entry.operations = origin.texts;
+    collector_.journal(std::move(entry));
+    send_named_snapshots(origin);
+}
+
+/// Whoever reads snapshots gets those that are asked for, too: this is how a client brings one home.
+void Service::send_named_snapshots(const Origin& origin)
+{
+    if (!collector_.anybody_reads_snapshots()) return;
+    for (const publish::OperationText& op : origin.texts)
+    {
+        if (op.verb != "snapshot") continue;
+        const auto& named = simulation_->history().named();
+        if (const auto kept = named.find(op.target); kept != named.end()) make_snapshot(kept->second.snapshot, op.target, "request");
+    }
+}
+
+void Service::make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause)
+{
+    send_snapshot(true);
+    snapshots_.begin(snapshot, words_of(snapshot), name, cause);
+}
+
+/// Hands over the snapshot that has been made, if there is one.
+void Service::send_snapshot(bool wait)
+{
+    auto made = snapshots_.take(wait);
+    if (!made) return;
+    if (*made)
+        collector_.snapshot(**made);
+    else
+        spdlog::error("no snapshot was recorded: {}", made->error().text());
+}
+
+std::vector<publish::KeptSnapshot> Service::kept_snapshots() const
+{
+    std::vector<publish::KeptSnapshot> out;
+    for (const auto& [name, kept] : simulation_->history().named())
+        out.push_back({name, kept.snapshot->run, kept.snapshot->clock.tick, kept.snapshot->clock.time(), kept.bytes});
+    return out;
+}
+
+}  // namespace plab::daemon
