@@ -1,6 +1,7 @@
 // Going back: snapshots by name, and rewinding a run, with what was asked in between.
 #include "simulation/snapshot/history.h"
 
+#include "support/ball.h"
 #include "support/scene.h"
 
 namespace plab::test
@@ -8,13 +9,6 @@ namespace plab::test
 namespace
 {
 
-constexpr const char* kBalls = R"(
-  <component id="earth" type="Field/Gravity" between="ball"/>
-  <component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
-  <component id="round" type="Shape/Sphere" radius="0.1"/>
-  <component id="ball" type="State/RigidBody" shape="round" mass="1" position="0 0 0.5" linear_velocity="0.3 0 0"/>
-  <component id="contact" type="CDetection/ODE" between="*"/>
-  <component id="wind" type="Field/Drag" between="ball" linear="0.01"/>)";
 simulation::HistoryOptions every(double interval, std::size_t bytes = 64u << 20)
 {
     simulation::HistoryOptions options;
@@ -25,7 +19,7 @@ simulation::HistoryOptions every(double interval, std::size_t bytes = 64u << 20)
 /// A scene whose run keeps its history from the beginning on.
 struct Kept
 {
-    explicit Kept(const simulation::HistoryOptions& options) : scene(kBalls, "dt=\"1/100\"")
+    explicit Kept(const simulation::HistoryOptions& options) : scene(kBall, "dt=\"1/100\"")
     {
         REQUIRE_MESSAGE(scene.loaded(), scene.error());
         scene.simulation().history().configure(options);
@@ -125,7 +119,7 @@ TEST_CASE("what cannot be reached is refused, and nothing has changed")
     CHECK(kept.scene.hash() == hash);
     CHECK(kept.s().run() == run);
 
-    Scene plain(kBalls);
+    Scene plain(kBall);
     REQUIRE(plain.loaded());
     plain.step(5);
     CHECK(refusal(plain.ask(simulation::RewindOperation{0, false})).find("no history is kept") != std::string::npos);

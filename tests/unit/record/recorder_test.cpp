@@ -13,6 +13,7 @@
 #include "record/file_log.h"
 #include "replay/replay.h"
 #include "simulation/snapshot/format.h"
+#include "support/ball.h"
 #include "support/scene.h"
 
 namespace plab::test
@@ -20,13 +21,6 @@ namespace plab::test
 namespace
 {
 
-constexpr const char* kBalls = R"(
-  <component id="earth" type="Field/Gravity" between="ball"/>
-  <component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
-  <component id="round" type="Shape/Sphere" radius="0.1"/>
-  <component id="ball" type="State/RigidBody" shape="round" mass="1" position="0 0 0.5" linear_velocity="0.3 0 0"/>
-  <component id="contact" type="CDetection/ODE" between="*"/>
-  <component id="wind" type="Field/Drag" between="ball" linear="0.01"/>)";
 std::string fresh_file(const std::string& name)
 {
     const std::string file = std::string(PLAB_BINARY_DIR) + "/" + name + "-" + std::to_string(getpid()) + ".mcap";
@@ -48,7 +42,7 @@ class Recorded
 {
 public:
     explicit Recorded(const record::RecordOptions& options)
-        : file(options.file), scene(kBalls, "dt=\"1/100\""), collector({}, library().summaries())
+        : file(options.file), scene(kBall, "dt=\"1/100\""), collector({}, library().summaries())
     {
         REQUIRE_MESSAGE(scene.loaded(), scene.error());
         auto opened = record::Recorder::open(options);
@@ -216,7 +210,7 @@ TEST_CASE("when the writer cannot keep up, frames are given up and counted, and 
 
 TEST_CASE("a disk without room stops the recording and says so; the simulation is what it is without one")
 {
-    Scene alone(kBalls, "dt=\"1/100\"");
+    Scene alone(kBall, "dt=\"1/100\"");
     alone.step(300);
 
     const std::string file = fresh_file("disk");

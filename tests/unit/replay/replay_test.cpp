@@ -6,6 +6,7 @@
 
 #include "publish/states.h"
 #include "simulation/snapshot/format.h"
+#include "support/ball.h"
 #include "support/scene.h"
 
 namespace plab::test
@@ -13,13 +14,6 @@ namespace plab::test
 namespace
 {
 
-constexpr const char* kBalls = R"(
-  <component id="earth" type="Field/Gravity" between="ball"/>
-  <component id="floor" type="Shape/Plane"/><component id="ground" type="State/Static" shape="floor"/>
-  <component id="round" type="Shape/Sphere" radius="0.1"/>
-  <component id="ball" type="State/RigidBody" shape="round" mass="1" position="0 0 0.5" linear_velocity="0.3 0 0"/>
-  <component id="contact" type="CDetection/ODE" between="*"/>
-  <component id="wind" type="Field/Drag" between="ball" linear="0.01"/>)";
 /// A recording in memory: what a recorder would have written of a run.
 class Tape final : public record::RunLog
 {
@@ -128,7 +122,7 @@ replay::ReplayReport made_again(Tape& tape, replay::ReplayOptions options = {}, 
 
 TEST_CASE("a run with a swap, a set, an added and a removed component gives the same hashes, for one and two threads")
 {
-    Taping taping(kBalls);
+    Taping taping(kBall);
     taping.step(20);
     taping.ask({{"set", "ball", "", "", {{"mass", "2 kg"}}}});
     taping.step(20);
@@ -157,7 +151,7 @@ TEST_CASE("a run with a swap, a set, an added and a removed component gives the 
 
 TEST_CASE("runs follow one another, each from its own first snapshot")
 {
-    Taping taping(kBalls);
+    Taping taping(kBall);
     taping.step(30);
     taping.ask({{"reset", "", "", "", {}}});
     taping.keep_snapshot("begin");
@@ -173,7 +167,7 @@ TEST_CASE("runs follow one another, each from its own first snapshot")
 
 TEST_CASE("a request that the recording does not know shows at its step, with object, column and both values")
 {
-    Taping taping(kBalls);
+    Taping taping(kBall);
     taping.step(25);
     REQUIRE(taping.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);  // behind the recorder's back
     taping.step(25);
@@ -196,7 +190,7 @@ TEST_CASE("a request that the recording does not know shows at its step, with ob
 
 TEST_CASE("one wrong bit in a recorded hash is found")
 {
-    Taping taping(kBalls);
+    Taping taping(kBall);
     taping.step(10);
     taping.tape.hashes[6].hashes[0] ^= 1;
     const replay::ReplayReport report = made_again(taping.tape);
@@ -207,7 +201,7 @@ TEST_CASE("one wrong bit in a recorded hash is found")
 
 TEST_CASE("a recording without a snapshot is refused, and so is a request that cannot be carried out again")
 {
-    Taping taping(kBalls);
+    Taping taping(kBall);
     taping.step(3);
     simulation::Simulation simulation(library());
     taping.tape.entries.push_back({});
