@@ -24,7 +24,7 @@ enum class Exit : int
     Usage = 2,
     NoServer = 3,  ///< or time-out
     Refused = 4,
-    Lost = 5,  ///< of a recording: something could not be recovered
+    Lost = 5,  ///< of a recording: something could not be recovered, or found no place on the disk
     Interrupted = 130,
 };
 

@@ -25,6 +25,7 @@ void catch_interrupts()
     (void)std::signal(SIGINT, note_interrupt);
     (void)std::signal(SIGTERM, note_interrupt);
     (void)std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is seen when writing
+    (void)std::signal(SIGXFSZ, SIG_IGN);  // so is a file at its limit
 }
 
 bool is_interrupted() { return interrupted; }

@@ -22,8 +22,8 @@ constexpr const char* kExamples = R"(Examples:
 )";
 
 constexpr const char* kExitCodes = R"(
-Exit codes: 0 done, 1 failed, 2 usage, 3 no server or time-out, 4 refused with the reason, 5 lost (recover),
-130 interrupted.
+Exit codes: 0 done, 1 failed, 2 usage, 3 no server or time-out, 4 refused with the reason,
+5 lost (recover, record), 130 interrupted.
 Environment: PLAB_SERVER, PLAB_DOMAIN, PLAB_INTERFACE, NO_COLOR; CYCLONEDDS_URI wins over --interface.
 )";
 

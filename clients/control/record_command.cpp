@@ -101,12 +101,22 @@ void print_end(const Context& c, const std::string& file, const recorder::Record
                           {"bytes", p.bytes},
                           {"missing", p.missing},
                           {"dropped", p.dropped.messages},
+                          {"trouble", p.last_trouble ? Json(p.last_trouble->text()) : Json()},
                           {"broken", recorder.broken()}});
     else
         c.console.out(printable(file) + ": " + seconds_text(recorder.length()) + " of server '" + c.session().server() + "', " +
                       counts_text(p) + "\n");
     if (recorder.broken() > 0)
         c.console.say("plabctl: " + std::to_string(recorder.broken()) + " samples were no samples of their topic, and are left out");
+}
+
+/// Of a file that was ended, and has gaps.
+Exit tell_losses(const Context& c, const recorder::TapeProgress& p)
+{
+    if (p.dropped.messages == 0) return Exit::Done;
+    c.console.say("plabctl: " + std::to_string(p.dropped.messages) + " messages are not in the file: " +
+                  (p.last_trouble ? printable(p.last_trouble->text()) : std::string("the disk was too slow for what came")));
+    return Exit::Lost;
 }
 
 Exit run_record(Context& c, RecordOptions o)
@@ -122,17 +132,16 @@ Exit run_record(Context& c, RecordOptions o)
     if (!recorder) return c.fail(Exit::Failed, recorder.errors());
     const recorder::State state = follow(c, **recorder, file);
     const auto closed = (*recorder)->close();
-    if (!closed)
-    {
-        // After Ctrl-C as well: who ended it wants to know what became of the file.
-        for (const Error& e : closed.errors()) c.console.say("plabctl: " + printable(e.text()));
-        return Exit::Failed;
-    }
     if (state == recorder::State::Gone) c.console.say("plabctl: server '" + c.session().server() + "' has gone");
     if (state == recorder::State::Restarted)
         c.console.say("plabctl: server '" + c.session().server() + "' was started anew: a recording is of one server's life");
-    print_end(c, file, **recorder, *closed);
-    return Exit::Done;
+    // After Ctrl-C as well: who ended it wants to know what became of the file.
+    const recorder::TapeProgress progress = (*recorder)->progress();
+    print_end(c, file, **recorder, progress);
+    if (closed) return tell_losses(c, progress);
+    for (const Error& e : closed.errors()) c.console.say("plabctl: " + printable(e.text()));
+    if (!progress.is_ended) c.console.say("plabctl: the file was not ended; what is in it can be read: plabctl recover " + printable(file));
+    return Exit::Failed;
 }
 
 }  // namespace

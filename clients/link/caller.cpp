@@ -1,6 +1,7 @@
 #include "link/caller.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
 
@@ -34,6 +35,36 @@ Reply reply_of(const plab_v1_Reply& r)
             {s.component, s.from_type, s.to_type, fates_of(s), s.energy_before, outcome_of(s.with_old), outcome_of(s.with_new)});
     }
     return out;
+}
+
+using Guid = std::array<std::uint8_t, sizeof(dds_guid_t)>;
+using Endpoint = dds_builtintopic_endpoint_t* (*)(dds_entity_t, dds_instance_handle_t);
+
+/// The participants behind what an entity is matched with.
+std::vector<Guid> participants_of(const wire::Entity& entity, dds_return_t (*matched)(dds_entity_t, dds_instance_handle_t*, std::size_t),
+                                  Endpoint data)
+{
+    std::vector<Guid> out;
+    std::vector<dds_instance_handle_t> handles(static_cast<std::size_t>(std::max(0, matched(entity.get(), nullptr, 0))));
+    const auto count = std::max(0, matched(entity.get(), handles.data(), handles.size()));
+    handles.resize(std::min(handles.size(), static_cast<std::size_t>(count)));
+    for (const dds_instance_handle_t handle : handles)
+    {
+        dds_builtintopic_endpoint_t* const endpoint = data(entity.get(), handle);
+        if (endpoint == nullptr) continue;  // gone meanwhile
+        std::memcpy(out.emplace_back().data(), &endpoint->participant_key, sizeof(Guid));
+        dds_builtintopic_free_endpoint(endpoint);
+    }
+    return out;
+}
+
+/// Whether one who answers requests also reads them. Others read them too (a recorder), and one of those may be found first:
+/// what is sent before the server is there does not reach it.
+bool reaches_server(const wire::Entity& requests, const wire::Entity& replies)
+{
+    const auto readers = participants_of(requests, &dds_get_matched_subscriptions, &dds_get_matched_subscription_data);
+    const auto servers = participants_of(replies, &dds_get_matched_publications, &dds_get_matched_publication_data);
+    return std::find_first_of(readers.begin(), readers.end(), servers.begin(), servers.end()) != readers.end();
 }
 
 /// DDS only reads what it is given, though its types have no const.
@@ -71,7 +102,7 @@ Result<Caller> Caller::make(const Session& session, Seconds timeout, const Stop&
     if (!requests) return requests.errors();
     state.replies = replies.take(), state.requests = requests.take();
     const auto end = moment_after(timeout);
-    while (state.replies.writers() == 0 || state.requests.readers() == 0)
+    while (!reaches_server(state.requests.entity(), state.replies.entity()))
     {
         if (Clock::now() >= end || (stop && stop())) return reason("server '" + session.server() + "' did not answer");
         dds_sleepfor(DDS_MSECS(1));
@@ -129,7 +160,9 @@ Presence Caller::presence() const
 
 Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& stop)
 {
-    constexpr Seconds kAgain(1.0), kSlice(0.1), kGone(0.5);
+    constexpr Seconds kMostBetween(1.0), kSlice(0.1), kGone(0.5);
+    // The server's reader may know this writer a little later than the other way round, and what comes before is not kept for it.
+    Seconds between(0.02);
     const auto end = moment_after(timeout);
     auto number = send(request);
     if (!number) return number.errors();
@@ -143,16 +176,17 @@ Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& 
         const Seconds left = Seconds(end - Clock::now());
         if (left <= Seconds(0)) return reason("no reply from server '" + state_->session->server() + "' within the time-out");
         if (stop && stop()) return reason("interrupted before the reply");
-        (void)state_->session->wait(state_->replies, std::min(left, kSlice));
+        (void)state_->session->wait(state_->replies,
+                                    std::min({left, kSlice, std::max(between - Seconds(Clock::now() - sent_at), Seconds(1e-3))}));
         take(
             [&](std::uint64_t of, Reply reply)
             {
                 if (of == *number) answer = std::move(reply);
             });
-        if (answer || Clock::now() - sent_at < kAgain) continue;
+        if (answer || Clock::now() - sent_at < between) continue;
         // A request for a later step is answered when that step is there: repeating it does no harm, it has its number.
         if (auto sent = send_again(request, *number); !sent) return sent.errors();
-        sent_at = Clock::now();
+        sent_at = Clock::now(), between = std::min(2 * between, kMostBetween);
     }
     return *answer;
 }

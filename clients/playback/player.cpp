@@ -114,7 +114,8 @@ Result<void> Player::make_tracks()
     {
         const recording::Schema* const schema = reader_.schema_of(channel);
         const auto all = wire::topics();
-        const auto topic = std::find_if(all.begin(), all.end(), [&](const wire::Topic& t) { return channel.topic == t.name; });
+        const auto topic =
+            std::find_if(all.begin(), all.end(), [&, &channel = channel](const wire::Topic& t) { return channel.topic == t.name; });
         const bool is_ours =
             topic != all.end() && channel.message_encoding == "cdr" && (schema == nullptr || schema->name == topic->type->m_typename);
         if (!is_ours)

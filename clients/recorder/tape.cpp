@@ -90,9 +90,13 @@ Result<void> Tape::stop()
     }
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
+    // A last trial: what waits for the disk since it failed may still find its place.
+    if (writer_.retry()) attach_pending();
     note_no_room();
     const Result<void> closed = writer_.close();
+    if (!pending_.empty() && !refused_) refused_ = reason(options_.file + ": " + pending_.front().name + " found no place in it");
     report();
+    note_end(closed);
     if (!closed) return closed;
     if (refused_) return *refused_;
     return {};
@@ -168,7 +172,11 @@ void Tape::mend(Clock::time_point now)
 {
     if (now - tried_ < kPatience) return;
     tried_ = now;
-    if (writer_.trouble() && !writer_.retry()) return;
+    if (writer_.trouble())
+    {
+        report();  // a disk that fails once only is to be told of as well
+        if (!writer_.retry()) return;
+    }
     note_no_room();
 }
 
@@ -189,8 +197,16 @@ void Tape::report()
     progress_.messages = statistics.messages;
     progress_.bytes = writer_.file_size();
     progress_.trouble = writer_.trouble();
+    if (writer_.trouble()) progress_.last_trouble = writer_.trouble();
     progress_.dropped = no_room_;
     progress_.dropped.add(writer_.dropped());
+}
+
+void Tape::note_end(const Result<void>& closed)
+{
+    const std::lock_guard lock(mutex_);
+    progress_.is_ended = closed.ok();
+    if (!closed) progress_.last_trouble = closed.error();
 }
 
 }  // namespace plab::recorder

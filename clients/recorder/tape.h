@@ -35,11 +35,13 @@ struct TapeOptions
 
 struct TapeProgress
 {
-    std::uint64_t messages = 0;    ///< in the file
-    std::uint64_t bytes = 0;       ///< of the file
-    recording::Losses dropped;     ///< no room in the queue, or the disk failed
-    std::uint64_t missing = 0;     ///< that never came
-    std::optional<Error> trouble;  ///< why nothing is written at present
+    std::uint64_t messages = 0;         ///< in the file
+    std::uint64_t bytes = 0;            ///< of the file
+    recording::Losses dropped;          ///< no room in the queue, or the disk failed
+    std::uint64_t missing = 0;          ///< that never came
+    std::optional<Error> trouble;       ///< why nothing is written at present
+    std::optional<Error> last_trouble;  ///< the last of all, though the disk may take data again
+    bool is_ended = false;              ///< after close(): the file has its end
 };
 
 class Tape
@@ -61,7 +63,8 @@ public:
     void attach(std::uint64_t log_time, std::string name, std::string media_type, std::string text);
 
     TapeProgress progress() const;
-    /// Writes what waits and ends the file. An error: the file is as after a crash, whole up to what failed.
+    /// Writes what waits and ends the file. An error: the file is as after a crash, whole up to what failed; progress() still
+    /// says how far it came.
     Result<TapeProgress> close();
 
 private:
@@ -96,6 +99,7 @@ private:
     void mend(recording::Clock::time_point now);
     void note_no_room();
     void report();
+    void note_end(const Result<void>& closed);
 
     TapeOptions options_;
     recording::Writer writer_;

@@ -170,7 +170,7 @@ void BlockMatrix::order_nodes()
             earlier_.push_back(node), later_.push_back(i);
             merged_.clear();
             std::set_union(neighbours_[i].begin(), neighbours_[i].end(), around.begin(), around.end(), std::back_inserter(merged_));
-            std::erase_if(merged_, [&](std::uint32_t k) { return k == i || k == node; });
+            std::erase_if(merged_, [i, node = node](std::uint32_t k) { return k == i || k == node; });
             neighbours_[i].assign(merged_.begin(), merged_.end());
             note(i);
         }

@@ -8,6 +8,9 @@ namespace plab::managers
 namespace
 {
 
+/// kappa of law_of: what a held contact's stiffness is, beside 1 / K.
+constexpr double kLeastStiffness = 1e6, kMostStiffness = 1e12;
+
 /// What one step asks of a point: dj = change - G du. Who presses and who slips is read off tau with rho = 1 / K, at which
 /// impulses and speeds weigh alike; what presses or sticks is held by rho = kappa / K.
 void law_of(const Point& p, const Vec3& u, double kappa, Vec3& change, Mat3& G)
@@ -149,8 +152,8 @@ void NewtonSolver::recall(Problem& problem) const
 bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
 {
     constexpr int kPatience = 4;
-    constexpr double kLeast = 1e6, kGrowth = 1e2, kMost = 1e12;
-    double now = total_violation(problem), best = now, kappa = kLeast;
+    constexpr double kGrowth = 1e2;
+    double now = total_violation(problem), best = now, kappa = kLeastStiffness;
     remember(problem);
     for (int since_best = 0; out.steps < how.most_steps && since_best < kPatience && !settled(problem, now, how.tolerance);)
     {
@@ -158,16 +161,20 @@ bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
         const double before = now;
         now = advance(problem, now);
         ++out.steps, ++since_best;
-        // Slow where masses differ much: then the contacts have to be taken as stiffer.
-        if (now > 0.05 * before) kappa = std::min(kMost, kappa * kGrowth);
+        // Slow where masses differ much: then the contacts have to be taken as stiffer. Not at the floor of rounding, where it
+        // would multiply what depths of redundant contacts disagree by.
+        if (now > 0.05 * before && now > how.tolerance) kappa = std::min(kMostStiffness, kappa * kGrowth);
         if (!(now < best)) continue;
         if (now < 0.5 * best) since_best = 0;
         best = now;
         remember(problem);
     }
     if (!(now <= best)) recall(problem);
-    if (!settled(problem, best, how.tolerance)) return false;
-    polish(problem, best, kappa, how, out);
+    // What rounding leaves is known once the impulses are.
+    Solving within = how;
+    within.tolerance = std::max(how.tolerance, problem.rounding(terms_of(problem)));
+    if (!settled(problem, best, within.tolerance)) return false;
+    polish(problem, best, kappa, within, out);
     return true;
 }
 
@@ -176,7 +183,10 @@ bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
 void NewtonSolver::polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out)
 {
     constexpr double kFine = 1e-2;
-    const int most = problem.rounding() > how.finest ? 3 : 1;
+    const double coarse = problem.rounding() / how.finest;
+    const int most = coarse > 1 ? 3 : 1;
+    // As much stiffer as rounding is coarser: a heavy body gets there, and redundant contacts keep their shares.
+    if (coarse > 1) kappa = std::max(kappa, std::min(kMostStiffness, kLeastStiffness * coarse));
     for (int i = 0; i < most && best > kFine * how.finest; ++i, ++out.steps)
     {
         if (!find_step(problem, kappa)) return;
@@ -260,8 +270,8 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
     if (settled(problem, guess, exact.tolerance))
     {
         // Good as far as rounding lets one see: a heavy body may see further.
-        constexpr double kStiff = 1e12;
-        if (problem.rounding() > how.tolerance && guess > how.tolerance) matrix_.shape(problem), polish(problem, guess, kStiff, how, out);
+        if (problem.rounding() > how.tolerance && guess > how.tolerance)
+            matrix_.shape(problem), polish(problem, guess, kLeastStiffness, how, out);
     }
     else
     {

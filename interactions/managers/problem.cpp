@@ -260,22 +260,26 @@ double Problem::rounding(double terms) const
     return std::max(0x1p-46 * speed, 0x1p-50 * std::sqrt(terms) * given);
 }
 
+// What holds is judged by its speed itself: beside a large impulse a small one is lost to rounding.
 double violation(const Point& p, const Vec3& u)
 {
     if (!(p.K(2, 2) > 0)) return 0;
-    const double normal = std::max(0.0, p.impulse.z - (u.z - p.least) / p.K(2, 2));
-    const double of_normal = std::fabs(normal - p.impulse.z) * p.K(2, 2);
+    const bool presses = p.impulse.z - (u.z - p.least) / p.K(2, 2) > 0;
+    const double of_normal = presses ? std::fabs(u.z - p.least) : std::fabs(p.impulse.z) * p.K(2, 2);
     if (!p.frictional()) return of_normal;
-    const double k = p.slip_mobility;
-    const Vec3 held = within_disc({p.impulse.x - u.x / k, p.impulse.y - u.y / k, 0}, p.friction * std::max(0.0, p.impulse.z));
-    return std::max(of_normal, std::hypot(held.x - p.impulse.x, held.y - p.impulse.y) * k);
+    const double k = p.slip_mobility, x = p.impulse.x - u.x / k, y = p.impulse.y - u.y / k, size = std::hypot(x, y);
+    const double radius = p.friction * std::max(0.0, p.impulse.z);
+    if (size <= radius) return std::max(of_normal, std::hypot(u.x, u.y));
+    const double share = radius / size;
+    return std::max(of_normal, std::hypot(x * share - p.impulse.x, y * share - p.impulse.y) * k);
 }
 
 double violation(const Line& line, double rate)
 {
     if (line.count == 0) return 0;
-    const double held = std::clamp(line.impulse - (rate - line.target) / line.mobility, line.least, line.most);
-    return std::fabs(held - line.impulse) * line.mobility;
+    const double off = rate - line.target, wanted = line.impulse - off / line.mobility;
+    const double held = std::clamp(wanted, line.least, line.most);
+    return held == wanted ? std::fabs(off) : std::fabs(held - line.impulse) * line.mobility;
 }
 
 double kinetic_energy(const Problem& problem)

@@ -84,7 +84,7 @@ void Service::post(simulation::Request request, Origin origin)
 {
     for (const simulation::Operation& op : request.operations) origin.operations.push_back(control::description_of(op));
     request.id = ++last_request_;
-    if (request.at) timed_.emplace(request.id, origin.texts);
+    if (request.at) timed_.emplace(request.id, origin);
     if (timed_.size() > kMostTimed) timed_.erase(timed_.begin());
     waiting_.emplace(request.id, std::move(origin));
     simulation_->post(std::move(request));
@@ -116,15 +116,14 @@ void Service::accept(const publish::RequestText& text, control::Wanted wanted, d
     post(std::move(wanted.request), std::move(origin));
 }
 
-/// Who asked; of one that a snapshot made wait again only what it said, since its client was answered long ago.
+/// Who asked. A request that a snapshot made wait again is still that client's, who was answered long ago.
 std::optional<Service::Origin> Service::origin_of(std::uint64_t request)
 {
     if (auto asked = waiting_.extract(request)) return std::move(asked.mapped());
     const auto said = timed_.find(request);
     if (said == timed_.end()) return {};
-    Origin origin;
-    origin.texts = said->second;
-    for (const publish::OperationText& op : origin.texts) origin.operations.push_back({op.verb, op.target, op.argument});
+    Origin origin = said->second;
+    origin.was_answered = true, origin.read_ns = 0;
     return origin;
 }
 
@@ -195,10 +194,10 @@ bool Service::answer()
         if (reply.done) write_journal(origin, reply);
         note(origin, reply);
         for (const simulation::SwapReport& swap : reply.swaps) log_swap(reply, swap);
-        if (origin.from_bus)
-            answer_client(origin, std::move(reply));
-        else
+        if (!origin.from_bus)
             fine = fine && reply.done;
+        else if (!origin.was_answered)
+            answer_client(origin, std::move(reply));
     }
     return fine;
 }

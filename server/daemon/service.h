@@ -61,6 +61,7 @@ private:
     struct Origin
     {
         bool from_bus = false;
+        bool was_answered = false;  ///< in a run before: a snapshot makes it wait again, and its client has gone on since
         publish::ClientId client{};
         std::uint64_t number = 0;
         std::int64_t arrived_ns = 0;
@@ -93,8 +94,8 @@ private:
     publish::Collector collector_;
     SnapshotDesk snapshots_;
     std::map<std::uint64_t, Origin> waiting_;
-    /// What requests that name a step said, also after they took effect: a snapshot may make them wait again.
-    std::map<std::uint64_t, std::vector<publish::OperationText>> timed_;
+    /// Requests that name a step, also after they took effect: a snapshot may make them wait again.
+    std::map<std::uint64_t, Origin> timed_;
     std::uint64_t last_request_ = 0, done_ = 0, refused_ = 0;
     bool shutdown_ = false;
 };

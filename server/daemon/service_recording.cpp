@@ -61,7 +61,7 @@ std::vector<std::string> Service::words_of(const simulation::Snapshot& snapshot)
     {
         publish::RequestText text;
         if (const auto said = timed_.find(request->id); said != timed_.end())
-            text.operations = said->second;
+            text.operations = said->second.texts;
         else
             spdlog::warn("a request that waits for step {} is too old: the snapshot goes without it", request->at.value_or(-1));
         if (request->at) text.at = *request->at;

@@ -7,6 +7,9 @@ namespace plab::publish
 
 BodyState state_of(const Bodies& bodies, std::uint32_t row, std::uint32_t handle)
 {
+    // Most frames B stand in the centre of mass.
+    if (bodies.center_B[row] == Vec3{})
+        return {handle, bodies.position[row], bodies.orientation[row], bodies.velocity[row], bodies.angular_velocity[row]};
     const Pose X_WB = bodies.pose(row);
     return {handle, X_WB.p, X_WB.q, bodies.velocity_at(row, X_WB.p), bodies.angular_velocity[row]};
 }
@@ -16,11 +19,15 @@ void fill_frame(const simulation::Simulation& s, const Roster& roster, Frame& fr
     using std::chrono::duration_cast, std::chrono::nanoseconds, std::chrono::system_clock;
     frame.run = s.run(), frame.revision = s.revision(), frame.step = s.tick(), frame.time = s.time();
     frame.stamp_ns = duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
-    frame.bodies.clear(), frame.shafts.clear();
+    frame.shafts.clear();
     const Bodies& bodies = s.world().host().bodies;
     const Shafts& shafts = s.world().host().shafts;
+    // Over what the frame held before: entries that stay are not built anew.
+    frame.bodies.resize(roster.bodies().size());
+    std::size_t count = 0;
     for (const Roster::Place& body : roster.bodies())
-        if (bodies.motion[body.row] != Motion::Static) frame.bodies.push_back(state_of(bodies, body.row, body.handle));
+        if (bodies.motion[body.row] != Motion::Static) frame.bodies[count++] = state_of(bodies, body.row, body.handle);
+    frame.bodies.resize(count);
     for (const Roster::Place& shaft : roster.shafts())
         frame.shafts.push_back({shaft.handle, shafts.angle[shaft.row], shafts.speed[shaft.row]});
 }

@@ -56,7 +56,7 @@ Result<void> compare_with_frame(record::RunLog& log, const simulation::Simulatio
         for (const publish::ShaftState& shaft : (*frame)->shafts)
         {
             if (shaft.handle != handle || c.facet != Facet::Shaft) continue;
-            const auto compare = [&](const char* field, double recorded, double replayed)
+            const auto compare = [&, &id = id](const char* field, double recorded, double replayed)
             {
                 if (!same_bits(recorded, replayed) && mismatch.in_frame.size() < kMost)
                     mismatch.in_frame.push_back({id, field, model::format_real(recorded), model::format_real(replayed)});

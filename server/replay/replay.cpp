@@ -4,7 +4,6 @@
 #include <array>
 #include <cinttypes>
 #include <cstdio>
-#include <limits>
 #include <map>
 
 #include "replay/divergence.h"
@@ -14,8 +13,6 @@ namespace plab::replay
 {
 namespace
 {
-
-constexpr Tick kNever = std::numeric_limits<Tick>::max();
 
 /// The recorded hashes of one run, step by step.
 class Hashes

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cstring>
 
 #include "world/world.h"
@@ -168,77 +168,67 @@ void World::save_state(std::uint32_t component, ByteWriter& out) const
 namespace
 {
 
-/// hash_bytes() of bytes that come piece by piece: the same as that of all of them together.
-class RunningHash
-{
-public:
-    explicit RunningHash(std::uint64_t start) : hash_(start) {}
-    void add(const void* data, std::size_t size)
-    {
-        const auto* bytes = static_cast<const std::uint8_t*>(data);
-        while (waiting_ > 0 && size > 0)
-        {
-            word_[waiting_++] = *bytes++, --size;
-            if (waiting_ == sizeof word_) hash_ = hash_bytes(hash_, word_), waiting_ = 0;
-        }
-        const std::size_t whole = size - size % sizeof word_;
-        hash_ = hash_bytes(hash_, {bytes, whole});
-        for (std::size_t i = whole; i < size; ++i) word_[waiting_++] = bytes[i];
-    }
-    std::uint64_t finish() const { return hash_bytes(hash_, {word_.data(), waiting_}); }
+constexpr std::uint64_t kHashPrime = 0x100000001b3ull;
 
-private:
-    std::uint64_t hash_;
-    std::array<std::uint8_t, 8> word_{};  ///< bytes that make no word yet
-    std::size_t waiting_ = 0;
-};
-
-void add_body(const Bodies& b, std::uint32_t i, RunningHash& hash)
+std::uint64_t mix(std::uint64_t h, std::uint64_t word)
 {
-    hash.add(&b.position[i], sizeof(Vec3));
-    hash.add(&b.orientation[i], sizeof(Quat));
-    hash.add(&b.velocity[i], sizeof(Vec3));
-    hash.add(&b.angular_velocity[i], sizeof(Vec3));
-    hash.add(&b.angular_momentum[i], sizeof(Vec3));
+    h = (h ^ word) * kHashPrime;
+    return h ^ (h >> 29);  // carries high bits down: a plain word-wise FNV would ignore many sign flips
+}
+
+std::uint64_t hash_of(const Vec3& v)
+{
+    return mix(mix(mix(0, std::bit_cast<std::uint64_t>(v.x)), std::bit_cast<std::uint64_t>(v.y)), std::bit_cast<std::uint64_t>(v.z));
+}
+
+std::uint64_t hash_of(const Quat& q) { return mix(hash_of(Vec3{q.w, q.x, q.y}), std::bit_cast<std::uint64_t>(q.z)); }
+
+/// Of what save_state() writes of a body, column by column.
+std::uint64_t hash_of_body(const Bodies& b, std::uint32_t i)
+{
+    const std::uint64_t place = mix(hash_of(b.position[i]), hash_of(b.orientation[i]));
+    const std::uint64_t speed = mix(hash_of(b.velocity[i]), hash_of(b.angular_velocity[i]));
+    return mix(mix(place, speed), hash_of(b.angular_momentum[i]));
 }
 
 }  // namespace
 
-/// The bytes of save_state() for all components, without a copy of those of bodies: recordings ask for it at each step.
+/// Short chains that do not wait for each other: a processor works on several at once, where one chain through all bytes waits
+/// for each product. Recordings ask for it at each step.
 std::uint64_t World::state_hash(std::uint64_t h) const
 {
     std::vector<std::uint8_t> has_state(tables_.size());
     for (std::size_t t = 0; t < tables_.size(); ++t)
         for (const Field& field : tables_[t]->schema().fields())
             if (field.kind == FieldKind::State && !field.hosted) has_state[t] = 1;
-    RunningHash hash(h);
     ByteWriter bytes;
     for (const std::uint32_t i : in_id_order_)
     {
         const Component& c = directory_->components[i];
         if (c.table == kNoIndex) continue;
-        const bool is_body = c.facet == Facet::Body && c.host_index != kNoIndex;
+        if (c.facet == Facet::Body && c.host_index != kNoIndex && !has_state[c.table])
+        {
+            h = mix(h, hash_of_body(host_.bodies, c.host_index));
+            continue;
+        }
         bytes.clear();
         if (has_state[c.table]) tables_[c.table]->save(c.row, kStateKinds, bytes);
-        if (c.host_index != kNoIndex && !is_body) plab::world::save_state(host_, c.ref(i), bytes);
-        hash.add(bytes.bytes().data(), bytes.bytes().size());
-        if (is_body) add_body(host_.bodies, c.host_index, hash);
+        if (c.host_index != kNoIndex) plab::world::save_state(host_, c.ref(i), bytes);
+        if (!bytes.bytes().empty()) h = mix(h, hash_bytes(0, bytes.bytes()));
     }
-    return hash.finish();
+    return h;
 }
 
 std::uint64_t hash_bytes(std::uint64_t h, std::span<const std::uint8_t> bytes)
 {
-    constexpr std::uint64_t kPrime = 0x100000001b3ull;
     std::size_t i = 0;
     for (; i + 8 <= bytes.size(); i += 8)
     {
         std::uint64_t word = 0;
         std::memcpy(&word, bytes.data() + i, 8);
-        h = (h ^ word) * kPrime;
-        h ^= h >> 29;  // carries high bits down: a plain word-wise FNV would ignore many sign flips
+        h = mix(h, word);
     }
-    for (; i < bytes.size(); ++i) h = (h ^ bytes[i]) * kPrime;
+    for (; i < bytes.size(); ++i) h = (h ^ bytes[i]) * kHashPrime;
     return h;
 }
 

@@ -1,19 +1,22 @@
 #!/usr/bin/env bash
 # Builds plabd in variants and compares the state hash of each step of each scene.
 #
-#   run.sh FOLDER             compare; FOLDER holds the builds, a second run builds only what changed
-#   run.sh FOLDER --update    the same, then write the hashes of the last step to hashes.txt, for review
+#   run.sh FOLDER                  gcc -O2, gcc -O0, clang -O2; FOLDER holds the builds, a second run builds only what changed
+#   run.sh FOLDER --update         the same, then write the hashes of the last step to hashes.txt, for review
+#   run.sh FOLDER --built BUILD    plabd as it stands in BUILD, and clang -O0
 #
-# Every variant runs each scene with 1 and 2 threads, with and without --trace. JOBS: compilers at a time (default 2).
+# Every variant runs each scene with 1 and 2 threads, with and without --trace, and replays what the first one recorded.
+# JOBS: compilers at a time (default 2).
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
-work=${1:?usage: run.sh FOLDER [--update]}
+work=${1:?usage: run.sh FOLDER [--update | --built BUILD]}
 update=${2:-}
 until=3
 scenes=("$root/scenes/fan_and_balloons.xml" "$here"/scenes/*.xml)
 mkdir -p "$work"
+skipped=77  # as ctest knows it
 
 build() # NAME, COMPILERS, FLAGS
 {
@@ -42,6 +45,20 @@ hashes() # VARIANT, SCENE, FILE, OPTIONS...
     fi
 }
 
+# What the first variant recorded is made again, hash by hash, by each.
+replay() # SCENE, NAME
+{
+    local file=$work/$2.mcap log=$work/$2.replay variant
+    timeout 120 "$work/${variants[0]}/bin/plabd" "$1" --until 1 --rate max --no-bus --record "$file" --overwrite --log-level warning >"$log" 2>&1 ||
+        { tail -n 5 "$log"; echo "golden: $2: ${variants[0]} does not record"; return 1; }
+    for variant in "${variants[@]}"; do
+        timeout 120 "$work/$variant/bin/plabd" --replay "$file" --verify --rate max --no-bus --threads 2 >"$log" 2>&1 && continue
+        tail -n 5 "$log"
+        echo "golden: $2: $variant does not replay what ${variants[0]} recorded"
+        return 1
+    done
+}
+
 compare() # EXPECTED, FOUND, SCENE, WHAT
 {
     cmp -s "$1" "$2" && return
@@ -52,18 +69,26 @@ compare() # EXPECTED, FOUND, SCENE, WHAT
     return 1
 }
 
-variants=(gcc-O2 gcc-O0)
-declare -A compilers=([gcc-O2]=gcc/g++ [gcc-O0]=gcc/g++ [clang-O2]=clang/clang++)
-declare -A flags=([gcc-O2]=-O2 [gcc-O0]=-O0 [clang-O2]=-O2)
-if command -v clang++ >/dev/null; then
-    variants+=(clang-O2)
+declare -A compilers=([gcc-O2]=gcc/g++ [gcc-O0]=gcc/g++ [clang-O2]=clang/clang++ [clang-O0]=clang/clang++)
+declare -A flags=([gcc-O2]=-O2 [gcc-O0]=-O0 [clang-O2]=-O2 [clang-O0]=-O0)
+if [[ $update == --built ]]; then
+    ln -sfn "$(realpath "${3:?--built needs the folder of a build}")" "$work/built"
+    variants=(built)
+    others=(clang-O0)
 else
-    echo "golden: clang-O2 skipped: there is no clang++ on the path (Debian package clang)"
+    variants=(gcc-O2 gcc-O0)
+    others=(clang-O2)
+fi
+if command -v clang++ >/dev/null; then
+    variants+=("${others[@]}")
+else
+    echo "golden: ${others[*]} skipped: there is no clang++ on the path (Debian package clang)"
+    [[ $update != --built ]] || exit "$skipped"
 fi
 
 failed=0
 for variant in "${variants[@]}"; do
-    build "$variant" "${compilers[$variant]}" "${flags[$variant]}" || exit 1
+    [[ $variant == built ]] || build "$variant" "${compilers[$variant]}" "${flags[$variant]}" || exit 1
 done
 
 : >"$work/hashes.txt"
@@ -83,7 +108,8 @@ for scene in "${scenes[@]}"; do
             done
         done
     done
-    echo "golden: $name: ${variants[*]}, 1 and 2 threads, with and without --trace, $(wc -l <"$first") steps compared"
+    replay "$scene" "$name" || failed=1
+    echo "golden: $name: ${variants[*]}, 1 and 2 threads, with and without --trace, $(wc -l <"$first") steps compared, replayed"
 done
 
 if [[ $update == --update && $failed == 0 ]]; then

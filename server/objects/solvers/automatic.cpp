@@ -64,7 +64,7 @@ public:
         remember(!found.too_much);
         if (found.too_much)
         {
-            if (at_once) take_back_runge_kutta4(h_, trial_, system_, slopes);
+            if (at_once) take_back_runge_kutta4(h_, system_, slopes);
             return advance_stiff();
         }
         say(fast ? Method::RotationSplitting : Method::RungeKutta4);
@@ -94,7 +94,7 @@ public:
         remember(!found.too_much);
         if (found.too_much)
         {
-            if (at_once) take_back_runge_kutta4(h_, trial_, system_, slopes);
+            if (at_once) take_back_runge_kutta4(h_, system_, slopes);
             system_.evaluate(0, 0);
             return false;
         }
@@ -117,7 +117,8 @@ private:
     bool expects_soft() const
     {
         const Integers& soft = rows_.soft_turns[row_];
-        return trial_ || (m_.call < soft.size() && soft[m_.call] != 0);
+        if (trial_) return std::find(soft.begin(), soft.end(), 0) == soft.end();  // turns are not counted
+        return m_.call < soft.size() && soft[m_.call] != 0;
     }
     void remember(bool soft)
     {
@@ -129,16 +130,16 @@ private:
 
     void advance_stiff()
     {
-        if (advance_by_exponential(h_, trial_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
+        if (advance_by_exponential(h_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
         if (FlatSystem(system_).size() > kRadauSize)
         {
             say(Method::DormandPrince54);
-            const DormandPrinceCounts counts = advance_by_dormand_prince(h_, trial_, kTolerance, kMaxSubsteps, m_.dormand, system_);
+            const DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kMaxSubsteps, m_.dormand, system_);
             if (!trial_ && counts.reached < h_) tell_dormand_prince_gave_up(start_, row_, counts);
             return;
         }
         say(Method::Radau5);
-        const Radau5Counts counts = advance_by_radau(h_, trial_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);
+        const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);
         if (!trial_ && counts.reached < h_) tell_radau_gave_up(start_, row_, counts);
     }
 

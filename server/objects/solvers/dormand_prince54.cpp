@@ -31,8 +31,8 @@ double weight_of(std::size_t stage) { return stage < kStages - 1 ? kWeight[stage
 class Advance
 {
 public:
-    Advance(double h, bool trial, const Tolerance& tolerance, DormandPrinceMemory& memory, DynamicSystem& system)
-        : h_(h), trial_(trial), tolerance_(tolerance), m_(memory), flat_(system)
+    Advance(double h, const Tolerance& tolerance, DormandPrinceMemory& memory, DynamicSystem& system)
+        : h_(h), tolerance_(tolerance), m_(memory), flat_(system)
     {
         m_.fit(flat_.size());
         flat_.read(m_.y);
@@ -97,7 +97,7 @@ private:
     void first_stage(double step)
     {
         const double share = kWeight[0] * step / h_;
-        if (!trial_ && share != booked_) flat_.evaluate(t_, m_.y, m_.error, share - booked_);
+        if (share != booked_) flat_.evaluate(t_, m_.y, m_.error, share - booked_);
         booked_ = share;
     }
 
@@ -141,7 +141,6 @@ private:
     /// Takes back what the stages after the first one of a refused internal step had booked. The slopes stay.
     void take_back(double step)
     {
-        if (trial_) return;
         for (std::size_t s = 1; s + 1 < kStages; ++s)
         {
             if (kWeight[s] == 0) continue;
@@ -161,7 +160,6 @@ private:
 
     double h_, t_ = 0;
     double booked_ = 0;  ///< share of the first stage of the present internal step
-    bool trial_;
     Tolerance tolerance_;
     DormandPrinceMemory& m_;
     FlatSystem flat_;
@@ -182,10 +180,10 @@ void DormandPrince54Rows::describe(Schema& schema)
     schema.scratch(memory, "memory", "working vectors");
 }
 
-DormandPrinceCounts advance_by_dormand_prince(double h, bool trial, const Tolerance& tolerance, std::int64_t max_substeps,
-                                              DormandPrinceMemory& memory, DynamicSystem& system)
+DormandPrinceCounts advance_by_dormand_prince(double h, const Tolerance& tolerance, std::int64_t max_substeps, DormandPrinceMemory& memory,
+                                              DynamicSystem& system)
 {
-    return Advance(h, trial, tolerance, memory, system).run(max_substeps);
+    return Advance(h, tolerance, memory, system).run(max_substeps);
 }
 
 void tell_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts)
@@ -197,8 +195,7 @@ void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince
 {
     const StepContext start = context;  // evaluations change the host's
     const Tolerance tolerance{rows.relative_tolerance[row], rows.absolute_tolerance[row]};
-    const DormandPrinceCounts counts =
-        advance_by_dormand_prince(start.dt, is_trial(start), tolerance, rows.max_substeps[row], rows.memory[row], system);
+    const DormandPrinceCounts counts = advance_by_dormand_prince(start.dt, tolerance, rows.max_substeps[row], rows.memory[row], system);
     if (is_trial(start)) return;
     rows.report(row, counts);
     if (counts.reached < start.dt) tell_dormand_prince_gave_up(start, row, counts);

@@ -42,8 +42,8 @@ struct DormandPrince54Rows : ErrorControlRows
 };
 
 /// The method itself, for solvers that choose it.
-DormandPrinceCounts advance_by_dormand_prince(double h, bool trial, const Tolerance& tolerance, std::int64_t max_substeps,
-                                              DormandPrinceMemory& memory, DynamicSystem& system);
+DormandPrinceCounts advance_by_dormand_prince(double h, const Tolerance& tolerance, std::int64_t max_substeps, DormandPrinceMemory& memory,
+                                              DynamicSystem& system);
 /// The event solver.gave_up.
 void tell_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts);
 

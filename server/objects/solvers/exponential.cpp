@@ -23,8 +23,7 @@ constexpr std::int64_t kRadauSubsteps = 100000;
 class Advance
 {
 public:
-    Advance(double h, bool trial, std::size_t most, ExponentialMemory& memory, DynamicSystem& system)
-        : h_(h), trial_(trial), most_(most), m_(memory), flat_(system)
+    Advance(double h, std::size_t most, ExponentialMemory& memory, DynamicSystem& system) : h_(h), most_(most), m_(memory), flat_(system)
     {
         m_.fit(flat_.size());
         flat_.read(m_.y);
@@ -45,7 +44,7 @@ public:
             out.sways = out.fine && !is_steady();
             out.fine = out.fine && !out.sways;
         }
-        if (out.fine && !trial_ && !(bend <= kSlight && book_by_moments())) book();
+        if (out.fine && !(bend <= kSlight && book_by_moments())) book();
         if (out.fine) along(0, 1, m_.work);
         out.fine = out.fine && all_finite(m_.work);
         flat_.write(out.fine ? m_.work : m_.y);
@@ -340,7 +339,6 @@ private:
     }
 
     double h_;
-    bool trial_;
     std::size_t most_;
     ExponentialMemory& m_;
     FlatSystem flat_;
@@ -365,10 +363,9 @@ void ExponentialRows::describe(Schema& schema)
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 
-ExponentialCounts advance_by_exponential(double h, bool trial, bool only_linear, std::size_t most, ExponentialMemory& memory,
-                                         DynamicSystem& system)
+ExponentialCounts advance_by_exponential(double h, bool only_linear, std::size_t most, ExponentialMemory& memory, DynamicSystem& system)
 {
-    return Advance(h, trial, most, memory, system).run(only_linear);
+    return Advance(h, most, memory, system).run(only_linear);
 }
 
 void advance_exponential(const StepContext& context, Row row, ExponentialRows& rows, DynamicSystem& system)
@@ -376,7 +373,7 @@ void advance_exponential(const StepContext& context, Row row, ExponentialRows& r
     const StepContext start = context;  // evaluations change the host's
     ExponentialMemory& memory = rows.memory[row];
     const auto most = static_cast<std::size_t>(rows.max_size[row]);
-    const ExponentialCounts counts = advance_by_exponential(start.dt, is_trial(start), false, most, memory, system);
+    const ExponentialCounts counts = advance_by_exponential(start.dt, false, most, memory, system);
     if (!is_trial(start)) rows.evaluations[row] = counts.evaluations, rows.linear[row] = counts.linear;
     if (counts.fine) return rows.told.say(start, row, "Exponential");
     rows.told.fall_back(start, row, Fallback::TooLarge, "Radau5",
@@ -385,7 +382,7 @@ void advance_exponential(const StepContext& context, Row row, ExponentialRows& r
                                   " numbers (places and speeds), of which more than max_size = " + std::to_string(most) + " move"
                         : counts.sways ? "what stiff forces do beside their line changes within the step"
                                        : "the exponential of this step overflows");
-    const Radau5Counts done = advance_by_radau(start.dt, is_trial(start), kRadauTolerance, kRadauSubsteps, memory.radau, system);
+    const Radau5Counts done = advance_by_radau(start.dt, kRadauTolerance, kRadauSubsteps, memory.radau, system);
     if (is_trial(start)) return;
     rows.evaluations[row] = done.evaluations, rows.linear[row] = false;
     if (done.reached < start.dt) tell_radau_gave_up(start, row, done);

@@ -64,7 +64,6 @@ void advance_exponential(const StepContext& context, Row row, ExponentialRows& r
 
 /// The method itself, for solvers that choose it, where at most `most` numbers move. With `only_linear` a step along which
 /// the forces bend (looked at in three more points) is not made.
-ExponentialCounts advance_by_exponential(double h, bool trial, bool only_linear, std::size_t most, ExponentialMemory& memory,
-                                         DynamicSystem& system);
+ExponentialCounts advance_by_exponential(double h, bool only_linear, std::size_t most, ExponentialMemory& memory, DynamicSystem& system);
 
 }  // namespace plab::solvers

@@ -17,8 +17,8 @@ using namespace radau;
 class Advance
 {
 public:
-    Advance(double h, bool trial, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
-        : h_(h), trial_(trial), m_(memory), flat_(system), stages_(flat_, memory)
+    Advance(double h, const Tolerance& tolerance, Radau5Memory& memory, DynamicSystem& system)
+        : h_(h), m_(memory), flat_(system), stages_(flat_, memory)
     {
         // The estimate is of order 3: see the header.
         const double relative = 0.1 * std::pow(tolerance.relative, 2.0 / 3);
@@ -141,7 +141,6 @@ private:
 
     void book(double step)
     {
-        if (trial_) return;
         for (std::size_t s = 0; s < 3; ++s)
         {
             for (std::size_t i = 0; i < m_.y.size(); ++i) m_.work[i] = m_.y[i] + m_.z[s][i];
@@ -152,7 +151,6 @@ private:
     static constexpr double kSafety = 0.9, kShrink = 1.0 / 5, kGrow = 8;
     static constexpr double kLeast = 1e-10;  ///< of the whole step
     double h_, t_ = 0;
-    bool trial_;
     Tolerance inner_;
     double newton_limit_ = 0;
     Radau5Memory& m_;
@@ -181,10 +179,9 @@ void Radau5Rows::describe(Schema& schema)
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 
-Radau5Counts advance_by_radau(double h, bool trial, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory,
-                              DynamicSystem& system)
+Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system)
 {
-    return Advance(h, trial, tolerance, memory, system).run(max_substeps);
+    return Advance(h, tolerance, memory, system).run(max_substeps);
 }
 
 void tell_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts)
@@ -216,7 +213,7 @@ void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, Dynam
 {
     const StepContext start = context;  // evaluations change the host's
     const Tolerance tolerance{rows.relative_tolerance[row], rows.absolute_tolerance[row]};
-    const Radau5Counts counts = advance_by_radau(start.dt, is_trial(start), tolerance, rows.max_substeps[row], rows.memory[row], system);
+    const Radau5Counts counts = advance_by_radau(start.dt, tolerance, rows.max_substeps[row], rows.memory[row], system);
     if (is_trial(start)) return;
     tell_size(start, row, rows, FlatSystem(system).size());
     rows.report(row, counts);

@@ -9,7 +9,8 @@
 namespace plab::solvers
 {
 
-/// A trial advance finds out where bodies would be: it leaves no trace in states, outputs or events.
+/// A trial advance finds out where bodies would be: it leaves no trace in states, outputs or events. In the ledger
+/// it may: what an event undoes is taken back by a trial of the same piece, so that solvers book in trials as ever.
 inline bool is_trial(const StepContext& context) { return context.events == nullptr; }
 
 /// Fallbacks that a row has told of already, as bits of a declared state, so that an event tells of each once.

@@ -93,9 +93,9 @@ void find_slopes(double h, DynamicSystem& system, StageSlopes& slopes)
     go_to_stage(0, h, system, slopes);
 }
 
-void take_back_runge_kutta4(double h, bool trial, DynamicSystem& system, const StageSlopes& slopes)
+void take_back_runge_kutta4(double h, DynamicSystem& system, const StageSlopes& slopes)
 {
-    for (std::size_t s = 0; s < kStages.size() && !trial; ++s)
+    for (std::size_t s = 0; s < kStages.size(); ++s)
     {
         go_to_stage(s, h, system, slopes);
         system.evaluate(kStages[s].time * h, -kStages[s].weight);

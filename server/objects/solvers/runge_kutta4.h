@@ -33,8 +33,7 @@ struct StageSlopes
 void advance_by_runge_kutta4(double h, DynamicSystem& system, StageSlopes* slopes = nullptr);
 /// Only the slopes: nothing is booked, and the system is as it was.
 void find_slopes(double h, DynamicSystem& system, StageSlopes& slopes);
-/// After an advance with slopes: back to the start. What had been booked is taken back, unless it was a trial, which books
-/// nothing.
-void take_back_runge_kutta4(double h, bool trial, DynamicSystem& system, const StageSlopes& slopes);
+/// After an advance with slopes: back to the start. What had been booked is taken back.
+void take_back_runge_kutta4(double h, DynamicSystem& system, const StageSlopes& slopes);
 
 }  // namespace plab::solvers

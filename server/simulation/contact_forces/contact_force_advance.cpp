@@ -260,7 +260,7 @@ void ContactForces::advance_island(const Island& island, double from, double to,
     piece.begin = piece.t = from, piece.end = to;
     piece.book = book, piece.trial = trial;
     // Whoever moves as told is where it is at `from`.
-    piece.system->begin(from, from, {}, nullptr);
+    piece.system->begin(from, from, book, nullptr);
     piece.system->move_prescribed();
     order_ = std::max(1, s_->world_.type_of(piece.solver)->info.order);
     start(from);

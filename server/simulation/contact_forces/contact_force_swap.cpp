@@ -194,7 +194,9 @@ bool ContactForces::soften_contact(const KnownContact& hard, const FoundContact&
     if (k > 0) soft.stretch = (held - c.normal * press) * (-1 / k);
     soft.force = held;
     expect(soft, at, 0);
-    soft.liveliest = length(held) * soft.rates.mobility * soft.half_period / std::numbers::pi;
+    // It may be taken over in the middle of an impact, which gets as many pieces as from the touch on.
+    soft.lively = std::fabs(s_->normal_velocity(c));
+    soft.liveliest = std::max(soft.lively, length(held) * soft.rates.mobility * soft.half_period / std::numbers::pi);
     return true;
 }
 

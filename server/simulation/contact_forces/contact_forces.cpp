@@ -85,7 +85,8 @@ void ContactForces::fill_reach(double h)
 {
     // Speeds, and what the forces of now would do; half as much again for what they do later.
     GroupSystem& system = s_->system_for(s_->island_all_, {});
-    system.begin(0, h, {}, nullptr);
+    // To begin joins speeds to the rows of joints that have just come: that is work, whoever is the first to do it.
+    system.begin(0, h, {&s_->work_, 1}, nullptr);
     system.evaluate(0, 0);
     const auto members = system.bodies();
     for (std::size_t i = 0; i < members.size(); ++i) reach_[members[i]] = 0.75 * h * h * length(system.acceleration(i));

@@ -14,6 +14,10 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Where refinement has nothing more to gain, relative to the largest terms of a sum.
 constexpr double kResidualFloor = 4 * kEpsilon;
 constexpr double kIdleShare = 1e-6;
+/// Refinement that leaves less than this has done its work.
+constexpr double kSettled = 1e-14;
+/// By this share the square of the members' accelerations may differ by rounding and by what was left.
+constexpr double kSameSpeed = 1e-3;
 
 }  // namespace
 
@@ -85,15 +89,17 @@ void RowEquations::fill_masses()
     }
 }
 
-void RowEquations::factor(double compliance)
+void RowEquations::factor(double implied, double others)
 {
-    compliance_ = compliance;
+    compliance_ = implied;
     factors_.clear();
     fill_masses();
     const auto first_joint = static_cast<std::uint32_t>(members_.size());
-    for (const Slot& slot : slots_)
+    for (std::size_t s = 0; s < slots_.size(); ++s)
     {
+        const Slot& slot = slots_[s];
         const Joint& joint = joints_[slot.joint];
+        const double compliance = implied_.empty() || implied_[s] != 0 ? implied : others;
         for (std::uint32_t e = slot.first_entry; e < slot.first_entry + slot.entries; ++e)
         {
             const Entry& entry = entries_[e];
@@ -265,6 +271,54 @@ bool RowEquations::solve_refined()
         break;
     }
     return is_finite();
+}
+
+void RowEquations::note_implied()
+{
+    forget_implied();
+    factor(kSharpCompliance);
+    const auto small = factors_.small();
+    const auto pivots = factors_.pivots();
+    implied_.assign(slots_.size(), 0);
+    for (std::size_t s = 0; s < slots_.size(); ++s)
+    {
+        const std::uint32_t u = unknown_of(slots_[s]);
+        const bool compliant = joints_[slots_[s].joint].compliant;
+        implied_[s] = small[u] != 0 || (compliant && !(pivots[u] > 10 * kSharpCompliance * slots_[s].mobility)) ? 1 : 0;
+    }
+}
+
+bool RowEquations::rank_fell() const
+{
+    for (std::size_t s = 0; s < implied_.size(); ++s)
+        if (implied_[s] == 0 && redundant(s)) return true;
+    return false;
+}
+
+/// x . M x of the members.
+double RowEquations::speed_of_result() const
+{
+    double sum = 0;
+    for (std::uint32_t i = 0; i < members_.size(); ++i)
+    {
+        const double* x = result(i);
+        double mx[6];
+        times_mass(members_[i], x, mx);
+        for (std::uint32_t c = 0; c < size_of(members_[i]); ++c) sum += mx[c] * x[c];
+    }
+    return sum;
+}
+
+void RowEquations::sharpen()
+{
+    if (!rank_fell()) return;
+    const double left = residual();
+    if (!(left > kSettled)) return;
+    const double most = (1 + kSameSpeed) * speed_of_result();
+    std::copy(x_.begin(), x_.end(), blunt_.begin());
+    factor(kCompliance, kSharpCompliance);
+    if (solve_refined() && speed_of_result() <= most && residual() < left) return;
+    std::copy(blunt_.begin(), blunt_.end(), x_.begin());
 }
 
 bool RowEquations::redundant(std::size_t s) const

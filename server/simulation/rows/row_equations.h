@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "plab/rows.h"
-#include "simulation/shafts/constraint_graph.h"
 #include "simulation/rows/sparse_ldlt.h"
+#include "simulation/shafts/constraint_graph.h"
 #include "world/host_tables.h"
 
 namespace plab::simulation
@@ -37,6 +37,8 @@ public:
     static constexpr double kCompliance = 1e-8;
     /// The same where rows contradict one another: least squares, at a cost in digits that does not matter there.
     static constexpr double kSoftCompliance = 1e-6;
+    /// The same for rows that nothing but a singular configuration makes depend on others: see sharpen().
+    static constexpr double kSharpCompliance = 1e-12;
     /// A row is redundant if others leave it less than this share of its own mobility.
     static constexpr double kRedundant = 1e-6;
 
@@ -52,7 +54,9 @@ public:
     /// Takes the rows in at the tables' present state; shafts stand for their roots. Rows that may yield are skipped.
     /// Analyses anew if who takes part in what has changed.
     void set_rows(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces);
-    void factor(double compliance = kCompliance);
+    /// That part of set_rows() alone. True if rows may depend on one another: compliant().
+    bool analyse(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces);
+    void factor(double compliance = kCompliance) { factor(compliance, compliance); }
     /// Of the last factorisation.
     double compliance() const { return compliance_; }
 
@@ -66,6 +70,16 @@ public:
     bool solve();
     /// The same, refined against the rows as they are now, without compliance.
     bool solve_refined();
+    /// Notes which rows the others imply, at the tables' present state; factors anew. To be called where the members stand on
+    /// their rows: off them, rows that imply one another seem not to, and contradict each other.
+    void note_implied();
+    /// As long as nothing is noted, sharpen() does nothing.
+    void forget_implied() { implied_.clear(); }
+    /// After solve_refined(). Close to a singular configuration, where more rows depend on one another than was noted, that ends
+    /// too early: compliance lets members go in the direction that is about to become free. Solves again with
+    /// kSharpCompliance for the rows that were not noted (the others keep theirs: stages are off the rows). Takes the result
+    /// if it leaves less of the equations and moves the members no faster: errors of rows must not become movements.
+    void sharpen();
     /// What the result leaves of the equations as they are now, without compliance, relative to the terms of their sums.
     double left() { return residual(); }
 
@@ -145,6 +159,9 @@ private:
     void find_loops();
     void fill(Slot& slot, const ConstraintRow& row);
     void fill_masses();
+    void factor(double implied, double others);
+    bool rank_fell() const;
+    double speed_of_result() const;
     void weigh(Member& member) const;
     void times_mass(const Member& member, const double* x, double* out) const;
     void over_mass(const Member& member, const double* g, double* out) const;
@@ -175,8 +192,9 @@ private:
     SparseLdlt factors_;
     double compliance_ = -1;  ///< -1: not factored yet
     bool any_small_ = false;
-    std::vector<double> rhs_, x_, r_, before_, scale_;  // by unknown
-    std::vector<double> joint_error_, joint_scale_;     // by joint
+    std::vector<std::uint8_t> implied_;                         // by slot; empty: not noted
+    std::vector<double> rhs_, x_, r_, before_, blunt_, scale_;  // by unknown
+    std::vector<double> joint_error_, joint_scale_;             // by joint
 };
 
 }  // namespace plab::simulation

@@ -22,6 +22,8 @@ public:
         for (std::uint32_t i = 0; i < out_.held_.size(); ++i) take(i);
         out_.find_loops();
         make_matrix();
+        out_.implied_.reserve(out_.slots_.size());
+        out_.forget_implied();
     }
 
 private:
@@ -95,7 +97,8 @@ private:
         for (const Joint& j : out_.joints_) nodes.push_back({j.rows, true, !j.loop});
         for (SparseEdge& e : edges_) e.joint += count;
         out_.factors_.analyse(nodes, edges_);
-        for (auto* v : {&out_.rhs_, &out_.x_, &out_.r_, &out_.before_, &out_.scale_}) v->assign(out_.factors_.unknowns(), 0.0);
+        for (auto* v : {&out_.rhs_, &out_.x_, &out_.r_, &out_.before_, &out_.blunt_, &out_.scale_})
+            v->assign(out_.factors_.unknowns(), 0.0);
         for (auto* v : {&out_.joint_error_, &out_.joint_scale_}) v->assign(out_.joints_.size(), 0.0);
     }
 
@@ -230,13 +233,19 @@ bool RowEquations::same_pattern(std::span<const ConstraintRow> rows) const
     return true;
 }
 
-void RowEquations::set_rows(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces)
+bool RowEquations::analyse(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces)
 {
     list_held(rows, pieces);
     if (!same_pattern(rows))
         Analysis(*this, rows).run();
     else
         for (Slot& slot : slots_) slot.row = held_[slot.held].row, slot.piece = held_[slot.held].piece;
+    return any_compliant_;
+}
+
+void RowEquations::set_rows(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces)
+{
+    (void)analyse(rows, pieces);
     for (Member& m : members_) weigh(m);
     for (Slot& slot : slots_) fill(slot, rows[slot.row]);
 }

@@ -21,6 +21,8 @@ constexpr double kShareOfPlace = 1e-3;
 /// What iteration cannot bring below this share is a contradiction.
 constexpr double kContradiction = 1e-8;
 constexpr double kSpeedContradiction = 1e-4;
+/// Members stand on their rows if no error is above this share: what a projection leaves, and no more.
+constexpr double kOnRows = 1e-12;
 /// Speeds that miss their rows by less than this share are left to the projection at the end of the advance.
 constexpr double kMisfit = 1e-8;
 constexpr int kMostIterations = 40;
@@ -235,7 +237,7 @@ void RowSystem::count_redundant(ProjectionReport& report)
 {
     redundant_.assign(pieces_.size(), 0);
     // By the last factorisation: of a state close to the present one, but not by one that lets rows give way.
-    if (equations_.compliance() != RowEquations::kCompliance) return;
+    if (equations_.compliance() > RowEquations::kCompliance) return;
     const auto slots = equations_.slots();
     for (std::size_t s = 0; s < slots.size(); ++s)
         if (equations_.redundant(s)) ++redundant_[slots[s].piece], ++report.redundant;
@@ -301,6 +303,12 @@ void RowSystem::join(const StepContext& context, const RowBook& book)
 {
     collect(context);
     if (misfits(context.dt)) (void)project_speeds(context, book);
+    equations_.forget_implied();
+    if (!equations_.analyse(rows_, pieces_)) return;
+    equations_.set_rows(rows_, pieces_);
+    if (measure_positions() > kOnRows) return;
+    equations_.note_implied();
+    factored_ = false;
 }
 
 }  // namespace plab::simulation

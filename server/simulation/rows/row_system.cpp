@@ -138,6 +138,7 @@ void RowSystem::configure(world::HostTables& host, RowSource& source, const Cons
 {
     host_ = &host, source_ = &source, graph_ = &graph;
     equations_.bind(host, graph);
+    equations_.forget_implied();
     rows_.clear(), geared_.clear(), pieces_.clear(), lambda_.clear();
     position_error_.clear(), speed_error_.clear(), redundant_.clear();
     may_yield_ = factored_ = false;
@@ -215,7 +216,9 @@ bool RowSystem::react(const StepContext& context, Wrenches& wrenches)
     equations_.clear_right_hand_side();
     load_forces(wrenches);
     for (std::size_t s = 0; s < slots.size(); ++s) equations_.wanted(s) = rows_[slots[s].row].bias;
-    const bool finite = equations_.solve_refined() && (!equations_.compliant() || calm(context.dt));
+    bool finite = equations_.solve_refined();
+    if (finite && equations_.compliant()) equations_.sharpen();
+    finite = finite && (!equations_.compliant() || calm(context.dt));
     if (finite)
     {
         for (std::size_t s = 0; s < slots.size(); ++s) lambda_[slots[s].row] = equations_.multiplier(s);

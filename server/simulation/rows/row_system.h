@@ -15,9 +15,9 @@
 
 #include "plab/rows.h"
 #include "plab/wrenches.h"
-#include "simulation/shafts/constraint_graph.h"
 #include "simulation/groups/groups.h"
 #include "simulation/rows/row_equations.h"
+#include "simulation/shafts/constraint_graph.h"
 
 namespace plab::simulation
 {

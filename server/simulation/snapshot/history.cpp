@@ -2,12 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "model/values.h"
 #include "simulation/simulation.h"
+#include "simulation/watch/divergence_watch.h"
 
 namespace plab::simulation
 {
+
+/// The present run, set aside as it is while an earlier state of it is made again. A snapshot would not do: a restored one
+/// is a run of its own, with its own number, and what waited in the present one would be refused.
+struct History::Present
+{
+    explicit Present(Simulation& s)
+        : live{std::move(s.world_), std::move(s.stepper_)},
+          watch(std::exchange(s.watch_, std::make_unique<DivergenceWatch>())),
+          loaded(s.loaded_),
+          clock{s.tick_, s.dt_, s.base_tick_, s.base_time_, s.paused_, s.steps_left_, s.rate_, 0, 0, 0},
+          kinetic_at_start(s.kinetic_at_start_),
+          run(s.run_),
+          revision(s.revision_),
+          requests(s.requests_),
+          changes(s.changes_),
+          events(s.events_),
+          changed_by_scripts(s.changed_by_scripts_)
+    {
+    }
+    void put_back(Simulation& s)
+    {
+        s.stepper_ = std::move(live.stepper), s.world_ = std::move(live.world), s.watch_ = std::move(watch);
+        s.loaded_ = std::move(loaded);
+        s.tick_ = clock.tick, s.dt_ = clock.dt, s.base_tick_ = clock.base_tick, s.base_time_ = clock.base_time;
+        s.paused_ = clock.paused, s.steps_left_ = clock.steps_left, s.rate_ = clock.rate;
+        s.kinetic_at_start_ = kinetic_at_start, s.run_ = run, s.revision_ = revision;
+        s.requests_ = std::move(requests), s.changes_ = std::move(changes), s.events_ = std::move(events);
+        s.changed_by_scripts_ = std::move(changed_by_scripts);
+    }
+
+    Simulation::Live live;
+    std::unique_ptr<DivergenceWatch> watch;
+    std::shared_ptr<const model::SceneSpec> loaded;
+    ClockImage clock;  ///< but for the step before, which the stepper knows
+    double kinetic_at_start = 0;
+    std::uint64_t run = 0, revision = 0;
+    std::deque<Simulation::Waiting> requests;
+    Changes changes;
+    std::vector<Event> events;
+    std::set<std::uint32_t> changed_by_scripts;
+};
+
 std::size_t bytes_of(const Snapshot& snapshot)
 {
     if (!snapshot) return 0;
@@ -114,11 +158,11 @@ Result<void> History::rewind(Simulation& simulation, double time)
     std::vector<Asked> again;
     for (const Asked& a : asked_)
         if (a.step >= from.step) again.push_back(a);
-    const Snapshot present = simulation.capture();
+    Present present(simulation);
     is_rewinding_ = true;
     auto done = simulation.restore(from.snapshot);
     if (done) done = go_forward(simulation, again, time);
-    if (!done) (void)simulation.restore(present);
+    if (!done) present.put_back(simulation);
     is_rewinding_ = false;
     if (!done) return done;
     const Tick step = simulation.tick();

@@ -53,7 +53,8 @@ public:
     /// A request took effect at the present boundary.
     void note(const Simulation& simulation, const Request& request);
     /// The present run as it stood at the step nearest to a time, made from the last snapshot before it; what was asked
-    /// at or after that step is forgotten. A new run begins. On error nothing has changed.
+    /// at or after that step is forgotten. A new run begins. On error nothing has changed: the run, its number and who waits
+    /// are what they were.
     Result<void> rewind(Simulation& simulation, double time);
 
 private:
@@ -69,6 +70,7 @@ private:
         Request request;
         Tick step = 0;
     };
+    struct Present;
     void add_point(const Simulation& simulation);
     void thin();
     Result<void> go_forward(Simulation& simulation, const std::vector<Asked>& asked, double time);

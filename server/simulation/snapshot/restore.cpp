@@ -115,7 +115,7 @@ Result<Simulation::Live> Simulation::revive(const SnapshotContent& from) const
     stepper.continue_after(from.clock.last_tick, from.clock.last_start, from.clock.last_step);
     if (stepper.state_hash() == from.state_hash || !knows_all_states(from.world, *live.world)) return live;
 
-    std::string where = "no component shows where";
+    std::string where = "no component shows where; a file of another version of plabd may have made its hash another way";
     const ContactsImage contacts = image_of(stepper.contacts());
     if (const auto difference = compare_worlds(from.world, from.contacts, live.world->image(), contacts)) where = difference->text();
     return reason("the restored state is not the one that was captured: " + where);

@@ -35,6 +35,61 @@ std::string refusal(const simulation::Reply& reply)
     return reply.errors.empty() ? "" : reply.errors.front().text();
 }
 
+/// Types of this build, but for one that can be taken away: as with a plugin whose file has gone.
+class Fickle final : public model::TypeSource
+{
+public:
+    Result<const model::ComponentType*> require(const std::string& name) override
+    {
+        if (name == taken_away) return reason("the file of '" + name + "' has gone");
+        return library().require(name);
+    }
+    std::vector<std::string> names() const override { return library().names(); }
+
+    std::string taken_away;
+};
+
+simulation::Request mass_at(std::uint64_t id, Tick step, const std::string& mass)
+{
+    simulation::Request request;
+    request.id = id, request.at = step;
+    request.operations.push_back(simulation::SetOperation{"ball", "mass", mass});
+    return request;
+}
+
+/// 60 steps, with a type that comes before step 45, a request before step 42 and one that waits for step 90.
+struct Sixty
+{
+    Sixty() : s(types)
+    {
+        s.history().configure(every(0.1));
+        const auto scene = compile_text(whole_scene(kBall, "dt=\"1/100\""));
+        REQUIRE(scene);
+        REQUIRE(s.load(*scene));
+        s.post(mass_at(7, 90, "3")), s.post(mass_at(8, 42, "2"));
+        step(45);
+        simulation::Request add;
+        add.operations.push_back(simulation::AddBlueprintOperation{
+            blueprint::read_blueprint("<component id=\"crate\" type=\"Shape/Box\" half_extents=\"1 1 1\"/>", "add").take()});
+        const simulation::Reply added = s.carry_out_now(add);
+        REQUIRE_MESSAGE(added.done, first_error(added.errors));
+        step(15);
+    }
+    void step(int n)
+    {
+        for (; n > 0; --n) REQUIRE(s.step());
+    }
+    simulation::Reply rewind(double time)
+    {
+        simulation::Request request;
+        request.operations.push_back(simulation::RewindOperation{time, false});
+        return s.carry_out_now(request);
+    }
+
+    Fickle types;
+    simulation::Simulation s;
+};
+
 }  // namespace
 
 TEST_CASE("a rewound run stands where it stood, to the last bit, and goes on as it went")
@@ -123,6 +178,37 @@ TEST_CASE("what cannot be reached is refused, and nothing has changed")
     REQUIRE(plain.loaded());
     plain.step(5);
     CHECK(refusal(plain.ask(simulation::RewindOperation{0, false})).find("no history is kept") != std::string::npos);
+}
+
+TEST_CASE("a past that cannot be made again leaves the present as it is: its number, who waits, and what comes")
+{
+    Sixty plain, tried;
+    REQUIRE(plain.s.take_replies().size() == 1);
+    REQUIRE(tried.s.take_replies().size() == 1);
+    const std::uint64_t run = tried.s.run(), revision = tried.s.revision();
+    tried.types.taken_away = "Shape/Box";
+    // On the way from the snapshot at 0.4 s, after the request of step 42; and at the snapshot of 0.5 s itself.
+    CHECK(refusal(tried.rewind(0.48)).find("a request of step 45 cannot be carried out again") != std::string::npos);
+    CHECK(refusal(tried.rewind(0.5)).find("the file of 'Shape/Box' has gone") != std::string::npos);
+    CHECK(tried.s.run() == run);
+    CHECK(tried.s.revision() == revision);
+    CHECK(tried.s.tick() == 60);
+    CHECK(tried.s.pending_requests() == 1);
+    CHECK(tried.s.state_hash() == plain.s.state_hash());
+    for (int i = 0; i < 40; ++i)
+    {
+        plain.step(1), tried.step(1);
+        REQUIRE(tried.s.state_hash() == plain.s.state_hash());
+    }
+    const auto replies = tried.s.take_replies();
+    REQUIRE(replies.size() == 1);
+    CHECK(replies.front().request == 7);
+    CHECK(replies.front().done);
+    // And what could be reached before can be reached still.
+    tried.types.taken_away.clear();
+    CHECK(tried.rewind(0.48).done);
+    CHECK(tried.s.tick() == 48);
+    CHECK(tried.s.run() == run + 1);
 }
 
 TEST_CASE("named snapshots outlive runs and swaps, and are given up by name")

@@ -1,0 +1,281 @@
+// Disks that are full, broken, or slow, under the recorder's file.
+#include "recorder/tape.h"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+
+#include "idl/recording/metadata.h"
+#include "idl/recording/reader.h"
+
+using namespace plab;
+using namespace plab::recording;
+using namespace std::chrono_literals;
+using recorder::Tape;
+using recorder::TapeProgress;
+
+namespace
+{
+
+/// What a test does to the disk while the tape writes.
+struct Disk
+{
+    std::mutex mutex;
+    Bytes bytes;
+    std::size_t capacity = std::numeric_limits<std::size_t>::max();  ///< beyond it: as on a full disk, a short write, then an error
+    bool is_broken = false;                                          ///< every call fails, truncate() too
+    std::atomic<bool> is_stuck{false};                               ///< a write does not come back
+
+    Bytes copy()
+    {
+        const std::lock_guard lock(mutex);
+        return bytes;
+    }
+};
+
+class DiskSink final : public Sink
+{
+public:
+    explicit DiskSink(std::shared_ptr<Disk> disk) : disk_(std::move(disk)) {}
+    Result<void> append(ByteView more) override
+    {
+        while (disk_->is_stuck) std::this_thread::sleep_for(1ms);
+        const std::lock_guard lock(disk_->mutex);
+        if (disk_->is_broken) return broken();
+        const std::size_t room = disk_->capacity - std::min(disk_->capacity, disk_->bytes.size());
+        const ByteView part = more.first(std::min(room, more.size()));
+        disk_->bytes.insert(disk_->bytes.end(), part.begin(), part.end());
+        if (part.size() < more.size()) return reason("run.mcap: cannot write: No space left on device");
+        return {};
+    }
+    Result<void> truncate(std::uint64_t size) override
+    {
+        const std::lock_guard lock(disk_->mutex);
+        if (disk_->is_broken) return broken();
+        disk_->bytes.resize(size);
+        return {};
+    }
+    Result<void> sync() override { return answer(); }
+    Result<void> close() override { return answer(); }
+
+private:
+    static Result<void> broken() { return reason("run.mcap: cannot write: Input/output error"); }
+    Result<void> answer() const
+    {
+        const std::lock_guard lock(disk_->mutex);
+        return disk_->is_broken ? broken() : Result<void>();
+    }
+
+    std::shared_ptr<Disk> disk_;
+};
+
+/// A tape that is fed with numbers, one each millisecond.
+class Fed
+{
+public:
+    explicit Fed(std::size_t most_waiting_bytes = 64u << 20)
+    {
+        recorder::TapeOptions options;
+        options.file = "run.mcap", options.compression = Compression::None, options.most_waiting_bytes = most_waiting_bytes;
+        auto opened = Tape::open(std::make_unique<DiskSink>(disk), options, {"plab", {{"format", "1"}}});
+        REQUIRE(opened);
+        tape = opened.take();
+    }
+    void put(int count)
+    {
+        for (int i = 0; i < count; ++i, ++offered)
+        {
+            Bytes data(256, 0);
+            std::memcpy(data.data(), &offered, sizeof offered);
+            (void)tape->put({&wire::topic_of<plab_v1_Frame>(), offered * 1'000'000, 0, std::move(data)});
+            std::this_thread::sleep_for(1ms);
+        }
+    }
+    /// Until `is_so` of the progress; false after 3 s.
+    template <class Condition>
+    bool comes_to(Condition is_so)
+    {
+        for (int i = 0; i < 600 && !is_so(tape->progress()); ++i) std::this_thread::sleep_for(5ms);
+        return is_so(tape->progress());
+    }
+
+    std::shared_ptr<Disk> disk = std::make_shared<Disk>();
+    std::unique_ptr<Tape> tape;
+    std::uint64_t offered = 0;
+};
+
+/// What is on the disk now, as a reader finds it.
+struct OnDisk
+{
+    explicit OnDisk(Disk& disk) : bytes(disk.copy()), reader(open(bytes)) {}
+    static Reader open(const Bytes& bytes)
+    {
+        auto reader = Reader::open(std::make_unique<MemorySource>(bytes));
+        REQUIRE_MESSAGE(reader.ok(), reader.error().text());
+        return reader.take();
+    }
+    Bytes bytes;
+    Reader reader;
+};
+
+std::vector<std::uint64_t> numbers_in(const Reader& reader)
+{
+    std::vector<std::uint64_t> out;
+    Cursor messages = reader.messages();
+    for (auto next = messages.next();; next = messages.next())
+    {
+        REQUIRE(next);
+        if (!*next) return out;
+        std::uint64_t number = 0;
+        std::memcpy(&number, (*next)->message.data.data(), sizeof number);
+        out.push_back(number);
+    }
+}
+
+/// 0, 1, 2, ... but for those that are missing.
+bool ascends(const std::vector<std::uint64_t>& numbers)
+{
+    return std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) == numbers.end();
+}
+
+/// Messages that the file itself says are missing.
+std::uint64_t told_missing(const Reader& reader)
+{
+    std::uint64_t out = 0;
+    for (const auto& at : reader.index().metadata)
+        if (const auto record = reader.metadata(at); record && record->name == "gap") out += std::stoull(record->values.at("messages"));
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("a disk that fills up and stays full: the end says so, soon, and what came before is whole")
+{
+    Fed fed;
+    fed.put(100);
+    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.messages == 100; }));
+    {
+        const std::lock_guard lock(fed.disk->mutex);
+        fed.disk->capacity = fed.disk->bytes.size() + 100;  // less than a chunk: a short write
+    }
+    fed.put(200);
+    CHECK(fed.comes_to([](const TapeProgress& p) { return p.trouble && p.dropped.messages > 0; }));
+    CHECK(fed.tape->progress().trouble->text() == "run.mcap: cannot write: No space left on device");
+    CHECK(numbers_in(OnDisk(*fed.disk).reader).size() == 100);
+
+    const auto begin = Clock::now();
+    const auto closed = fed.tape->close();
+    CHECK(Clock::now() - begin < 1s);
+    REQUIRE(!closed);
+    CHECK(closed.error().text() == "run.mcap: cannot write: No space left on device");
+    const TapeProgress end = fed.tape->progress();
+    CHECK(end.messages == 100);
+    CHECK(end.messages + end.dropped.messages == fed.offered);
+    CHECK(!end.is_ended);
+    const OnDisk found(*fed.disk);
+    const Reader& reader = found.reader;
+    const auto numbers = numbers_in(reader);
+    CHECK(numbers.size() == 100);
+    CHECK(ascends(numbers));
+    CHECK(!reader.index().is_closed);
+}
+
+TEST_CASE("a disk that has room for all messages and none for the end of the file: nothing is lost, and that is an error")
+{
+    Fed fed;
+    fed.put(100);
+    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.messages == 100; }));
+    {
+        const std::lock_guard lock(fed.disk->mutex);
+        fed.disk->capacity = fed.disk->bytes.size() + 50;
+    }
+    CHECK(!fed.tape->close());
+    const TapeProgress end = fed.tape->progress();
+    CHECK(!end.is_ended);
+    CHECK(end.dropped.messages == 0);
+    REQUIRE(end.last_trouble);
+    CHECK(end.last_trouble->text() == "run.mcap: cannot write: No space left on device");
+    const OnDisk found(*fed.disk);
+    CHECK(!found.reader.index().is_closed);
+    CHECK(numbers_in(found.reader).size() == 100);
+}
+
+TEST_CASE("a disk that fails for a while: the file goes on, tells its gap, and nobody forgets that there was one")
+{
+    Fed fed;
+    fed.put(50);
+    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.messages == 50; }));
+    const auto set_broken = [&](bool is_broken)
+    {
+        const std::lock_guard lock(fed.disk->mutex);
+        fed.disk->is_broken = is_broken;
+    };
+    set_broken(true);
+    fed.put(60);
+    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.trouble.has_value(); }));
+    set_broken(false);
+    REQUIRE(fed.comes_to([](const TapeProgress& p) { return !p.trouble; }));
+    fed.put(50);
+    const auto closed = fed.tape->close();
+    REQUIRE_MESSAGE(closed.ok(), closed.error().text());
+    CHECK(closed->is_ended);
+    CHECK(closed->dropped.messages > 0);
+    REQUIRE(closed->last_trouble);
+    CHECK(closed->last_trouble->text() == "run.mcap: cannot write: Input/output error");
+    CHECK(closed->messages + closed->dropped.messages == fed.offered);
+    const OnDisk found(*fed.disk);
+    const Reader& reader = found.reader;
+    CHECK(reader.index().is_closed);
+    CHECK(reader.index().troubles.empty());
+    const auto numbers = numbers_in(reader);
+    CHECK(numbers.size() == closed->messages);
+    CHECK(ascends(numbers));
+    CHECK(told_missing(reader) == closed->dropped.messages);
+}
+
+TEST_CASE("what waits for a disk that works again only at the end is in the file all the same")
+{
+    Fed fed;
+    {
+        const std::lock_guard lock(fed.disk->mutex);
+        fed.disk->is_broken = true;
+    }
+    fed.put(40);
+    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.trouble.has_value(); }));
+    fed.tape->attach(0, "blueprint.xml", "text/xml", "<plab/>");
+    fed.put(1);  // wakes the writer, whose next trial is some time away
+    {
+        const std::lock_guard lock(fed.disk->mutex);
+        fed.disk->is_broken = false;
+    }
+    const auto closed = fed.tape->close();
+    REQUIRE_MESSAGE(closed.ok(), closed.error().text());
+    const OnDisk found(*fed.disk);
+    const Reader& reader = found.reader;
+    REQUIRE(reader.index().attachments.size() == 1);
+    CHECK(told_missing(reader) == closed->dropped.messages);
+    CHECK(closed->dropped.messages + closed->messages == fed.offered);
+}
+
+TEST_CASE("a disk that does not answer: who records does not wait, and what finds no room is counted")
+{
+    constexpr std::size_t kRoom = 20'000;
+    Fed fed(kRoom);
+    fed.put(20);
+    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.messages == 20; }));
+    fed.disk->is_stuck = true;
+    fed.put(30);  // the writer is in it now
+    const auto begin = Clock::now();
+    for (int i = 0; i < 200; ++i, ++fed.offered)
+        (void)fed.tape->put({&wire::topic_of<plab_v1_Frame>(), fed.offered * 1'000'000, 0, Bytes(256, 0)});
+    CHECK(Clock::now() - begin < 1s);
+    const std::uint64_t lost = fed.tape->progress().dropped.messages;
+    CHECK(lost > 200 - kRoom / 256);
+    CHECK(lost < 230);
+    fed.disk->is_stuck = false;
+    const auto closed = fed.tape->close();
+    REQUIRE_MESSAGE(closed.ok(), closed.error().text());
+    CHECK(closed->messages + closed->dropped.messages == fed.offered);
+    CHECK(!closed->last_trouble);
+    CHECK(told_missing(OnDisk(*fed.disk).reader) == closed->dropped.messages);
+}
