@@ -177,7 +177,4 @@ private:
     std::vector<Parked> parked_;
 };
 
-/// Adds bytes to a running 64-bit hash (FNV-1a over 8-byte words, then bytes).
-std::uint64_t hash_bytes(std::uint64_t h, std::span<const std::uint8_t> bytes);
-
 }  // namespace plab::world

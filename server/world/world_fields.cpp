@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
+#include "world/state_hash.h"
 #include "world/world.h"
 
 namespace plab::world
@@ -167,21 +167,6 @@ void World::save_state(std::uint32_t component, ByteWriter& out) const
 
 namespace
 {
-
-constexpr std::uint64_t kHashPrime = 0x100000001b3ull;
-
-std::uint64_t mix(std::uint64_t h, std::uint64_t word)
-{
-    h = (h ^ word) * kHashPrime;
-    return h ^ (h >> 29);  // carries high bits down: a plain word-wise FNV would ignore many sign flips
-}
-
-std::uint64_t hash_of(const Vec3& v)
-{
-    return mix(mix(mix(0, std::bit_cast<std::uint64_t>(v.x)), std::bit_cast<std::uint64_t>(v.y)), std::bit_cast<std::uint64_t>(v.z));
-}
-
-std::uint64_t hash_of(const Quat& q) { return mix(hash_of(Vec3{q.w, q.x, q.y}), std::bit_cast<std::uint64_t>(q.z)); }
 
 /// Of what save_state() writes of a body, column by column.
 std::uint64_t hash_of_body(const Bodies& b, std::uint32_t i)

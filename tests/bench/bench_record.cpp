@@ -1,10 +1,10 @@
 // What a recording costs the step thread, and how large it is: A/B in one run, interleaved.
 //
-//   bench_record [--objects N] [--hz N] [--seconds S] [FOLDER]
+//   bench_record [--objects N] [--hz N] [--seconds S] [--pile] [FOLDER]
 //
-// N bodies that tumble freely under gravity, stepped at 1 kHz: once alone, once with a recorder that writes every step to
-// FOLDER (default: the present one). Processor time of the step thread: the median of pieces of
-// 100 steps, and of what a piece with the recorder took beyond the one beside it.
+// N bodies that tumble freely under gravity, or bricks in piles, stepped at 1 kHz: once alone, once with a recorder that writes every step
+// to FOLDER (default: the present one). Processor time of the step thread: the median of pieces of 100 steps, and of what a piece with the
+// recorder took beyond the one beside it.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -37,16 +37,40 @@ double median(std::vector<double> values)
     return values[values.size() / 2];
 }
 
-std::string scene_of(int objects, int hz)
+std::string begin_of(int hz)
 {
-    std::string text = "<plab version=\"1\"><scene dt=\"1/" + std::to_string(hz) +
-                       "\"/><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/><component id=\"s\" type=\"Shape/Box\" "
-                       "half_extents=\"0.1 0.2 0.3\"/>";
+    return "<plab version=\"1\"><scene dt=\"1/" + std::to_string(hz) + "\"/><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>";
+}
+
+/// Nothing is cheaper to step, so that a recording shows most.
+std::string free_bodies(int objects, int hz)
+{
+    std::string text = begin_of(hz) + "<component id=\"s\" type=\"Shape/Box\" half_extents=\"0.1 0.2 0.3\"/>";
     for (int i = 0; i < objects; ++i)
     {
         const std::string n = std::to_string(i);
         text += "<component id=\"b" + n + "\" type=\"State/RigidBody\" shape=\"s\" mass=\"1\" position=\"" + n +
                 " 0 0\" angular_velocity=\"0." + n + " 1 2\"/>";
+    }
+    return text + "</plab>";
+}
+
+/// Bricks that stand upon one another, ten by ten to a layer, and topple: each is turned a little against the one below.
+std::string pile(int objects, int hz)
+{
+    std::string text = begin_of(hz) +
+                       "<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
+                       "<component id=\"s\" type=\"Shape/Box\" half_extents=\"0.1 0.1 0.05\"/>"
+                       "<component id=\"m\" type=\"Manager/SequentialImpulse\"/>"
+                       "<component id=\"r\" type=\"Response/Rows\" friction=\"0.5\" restitution=\"0\" manager=\"m\"/>"
+                       "<component id=\"c\" type=\"CDetection/ODE\" between=\"*\" resolution=\"Resolution/None\" response=\"r\"/>";
+    for (int i = 0; i < objects; ++i)
+    {
+        const int layer = i / 100;
+        const double x = 0.21 * (i % 10) + 0.02 * layer, y = 0.21 * (i / 10 % 10), z = 0.05 + 0.1001 * layer;
+        text += "<component id=\"b" + std::to_string(i) + "\" type=\"State/RigidBody\" shape=\"s\" mass=\"1\" position=\"" +
+                std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\" orientation=\"axis 0 0 1 " +
+                std::to_string(3 * layer) + " deg\"/>";
     }
     return text + "</plab>";
 }
@@ -97,7 +121,14 @@ struct Run
     bool watched;
 };
 
-void compare(const std::string& label, int objects, int hz, double seconds, record::RecordOptions options)
+struct Plan
+{
+    std::string scene;
+    int objects = 1000, hz = 1000;
+    double seconds = 5;
+};
+
+void compare(const std::string& label, const Plan& plan, const record::RecordOptions& options)
 {
     std::filesystem::remove(options.file);
     auto recorder = record::Recorder::open(options);
@@ -106,10 +137,9 @@ void compare(const std::string& label, int objects, int hz, double seconds, reco
         std::fprintf(stderr, "%s\n", recorder.error().text().c_str());
         std::exit(1);
     }
-    const std::string scene = scene_of(objects, hz);
-    Run alone(scene, nullptr), recorded(scene, recorder->get());
+    Run alone(plan.scene, nullptr), recorded(plan.scene, recorder->get());
     std::vector<double> a, b, extra;
-    for (int i = 0; i < static_cast<int>(seconds * hz / 100); ++i)
+    for (int i = 0; i < static_cast<int>(plan.seconds * plan.hz / 100); ++i)
     {
         // In turn, each first as often as the other: what else the machine does meets both.
         const bool first = i % 2 == 0;
@@ -120,7 +150,7 @@ void compare(const std::string& label, int objects, int hz, double seconds, reco
     }
     (void)(*recorder)->close();
     const publish::RecordingStatus status = (*recorder)->progress();
-    const double bytes = static_cast<double>(status.bytes) / objects / seconds;
+    const double bytes = static_cast<double>(status.bytes) / plan.objects / plan.seconds;
     std::printf("%-28s %8.1f us/step alone %+8.1f recorded  %+6.2f %%   %8.0f bytes/object/s   %llu dropped\n", label.c_str(),
                 median(a) * 1e6, median(extra) * 1e6, 100 * median(extra) / median(a), bytes,
                 static_cast<unsigned long long>(status.dropped));
@@ -131,31 +161,36 @@ void compare(const std::string& label, int objects, int hz, double seconds, reco
 
 int main(int argc, char** argv)
 {
-    int objects = 1000, hz = 1000;
-    double seconds = 5;
+    Plan plan;
+    bool piled = false;
     std::string folder = ".";
     for (int i = 1; i < argc; ++i)
     {
         const std::string word = argv[i];
         if (word == "--objects" && i + 1 < argc)
-            objects = std::atoi(argv[++i]);
+            plan.objects = std::atoi(argv[++i]);
         else if (word == "--hz" && i + 1 < argc)
-            hz = std::atoi(argv[++i]);
+            plan.hz = std::atoi(argv[++i]);
         else if (word == "--seconds" && i + 1 < argc)
-            seconds = std::atof(argv[++i]);
+            plan.seconds = std::atof(argv[++i]);
+        else if (word == "--pile")
+            piled = true;
         else
             folder = word;
     }
+    plan.scene = piled ? pile(plan.objects, plan.hz) : free_bodies(plan.objects, plan.hz);
     record::RecordOptions options;
-    options.file = folder + "/bench_record.mcap", options.server = "bench", options.dt = 1.0 / hz;
+    options.file = folder + "/bench_record.mcap", options.server = "bench", options.dt = 1.0 / plan.hz;
     for (const char* compression : {"none", "lz4", "zstd"})
     {
         options.compression = compression;
-        compare(compression, objects, hz, seconds, options);
+        compare(compression, plan, options);
     }
     options.state_interval = 1.0 / 60;
-    compare("zstd, 60 frames/s", objects, hz, seconds, options);
-    options.topics = {"plab/states"};
-    compare("zstd, 60 frames/s, no hashes", objects, hz, seconds, options);
+    compare("zstd, 60 frames/s", plan, options);
+    options.moved_only = true;
+    compare("zstd, 60 frames/s, moved", plan, options);
+    options.moved_only = false, options.topics = {"plab/states"};
+    compare("zstd, 60 frames/s, no hashes", plan, options);
     return 0;
 }

@@ -12,6 +12,7 @@
 #include "simulation/contact_forces/contact_forces.h"
 #include "simulation/contact_forces/nudge.h"
 #include "simulation/step/stepper.h"
+#include "world/state_hash.h"
 
 namespace plab::simulation
 {

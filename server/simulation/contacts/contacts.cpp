@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "world/state_hash.h"
+
 namespace plab::simulation
 {
 namespace
@@ -95,55 +97,56 @@ void ContactCache::refresh(const world::World& world, const std::vector<Detector
     std::sort(pairs_.begin(), pairs_.end(), [&](const PairState& x, const PairState& y) { return key_of(world, x) < key_of(world, y); });
 }
 
-void ContactCache::save(const world::World& world, ByteWriter& out) const
+namespace
 {
-    for (const PairState& p : pairs_)
-    {
-        write(out, world.rank(p.a));
-        write(out, world.rank(p.b));
-        write(out, p.resting);
-        if (p.ahead) write(out, p.ahead);
-        write(out, p.overlapping);
-        write(out, p.normal);
-        for (std::uint32_t i = 0; i < p.count; ++i)
-        {
-            write(out, p.contacts[i].feature);
-            write(out, p.contacts[i].id);
-            write(out, p.contacts[i].impulse);
-            // Only where somebody remembers: contacts that do not keep the bytes that
-            // they always had.
-            const KnownContact& k = p.contacts[i];
-            if (k.stretch == Vec3{} && k.rest_depth == 0 && k.preload == 0) continue;
-            write(out, k.stretch);
-            write(out, k.rest_depth);
-            write(out, k.preload);
-        }
-        if (p.bounces == BounceHistory{}) continue;
-        write(out, p.bounces.time);
-        write(out, p.bounces.interval);
-        write(out, p.bounces.previous);
-    }
-    save_force_pairs(world, out);
+
+using world::hash_of, world::mix;
+
+std::uint64_t hash_of_contact(const KnownContact& k)
+{
+    const std::uint64_t h = mix(mix(hash_of(k.impulse), k.id), std::uint64_t{k.feature});
+    // Only where somebody remembers.
+    if (k.stretch == Vec3{} && k.rest_depth == 0 && k.preload == 0) return h;
+    return mix(mix(mix(h, hash_of(k.stretch)), k.rest_depth), k.preload);
 }
 
-void ContactCache::save_force_pairs(const world::World& world, ByteWriter& out) const
+std::uint64_t hash_of_pair(const world::World& world, const PairState& p)
 {
+    const std::uint64_t who = std::uint64_t{world.rank(p.a)} << 32 | world.rank(p.b);
+    const std::uint64_t how = (p.resting ? 1u : 0u) | (p.ahead ? 2u : 0u) | (p.overlapping ? 4u : 0u) | std::uint64_t{p.count} << 3;
+    std::uint64_t h = mix(mix(hash_of(p.normal), who), how);
+    for (std::uint32_t i = 0; i < p.count; ++i) h = mix(h, hash_of_contact(p.contacts[i]));
+    if (p.bounces == BounceHistory{}) return h;
+    return mix(mix(mix(h, p.bounces.time), p.bounces.interval), p.bounces.previous);
+}
+
+std::uint64_t hash_of_name(const std::string& id)
+{
+    return world::hash_bytes(0, {reinterpret_cast<const std::uint8_t*>(id.data()), id.size()});
+}
+
+std::uint64_t hash_of_contact(const ForceContact& c)
+{
+    std::uint64_t h = mix(mix(0, c.id), std::uint64_t{c.feature} << 2 | (c.told ? 1u : 0u) | (c.dormant ? 2u : 0u));
+    for (const Vec3& v : {c.stretch, c.impulse, c.force}) h = mix(h, hash_of(v));
+    for (const double x :
+         {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.lively, c.liveliest})
+        h = mix(h, x);
+    return h;
+}
+
+}  // namespace
+
+std::uint64_t ContactCache::state_hash(const world::World& world, std::uint64_t h) const
+{
+    for (const PairState& p : pairs_) h = mix(h, hash_of_pair(world, p));
     for (const ForcePair& p : force_pairs_)
     {
         // By name: who else there is in the scene is no part of their state.
-        write(out, world.id_of(p.a));
-        write(out, world.id_of(p.b));
-        for (const ForceContact& c : p.all())
-        {
-            write(out, c.feature);
-            write(out, c.id);
-            for (const Vec3& v : {c.stretch, c.impulse, c.force}) write(out, v);
-            for (const double x :
-                 {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.lively, c.liveliest})
-                write(out, x);
-            write(out, static_cast<std::uint8_t>((c.told ? 1 : 0) + (c.dormant ? 2 : 0)));
-        }
+        h = mix(mix(h, hash_of_name(world.id_of(p.a))), hash_of_name(world.id_of(p.b)));
+        for (const ForceContact& c : p.all()) h = mix(h, hash_of_contact(c));
     }
+    return h;
 }
 
 namespace

@@ -122,11 +122,10 @@ public:
     std::vector<ForcePair>& parked_force_pairs() { return parked_force_pairs_; }
     const std::vector<ForcePair>& parked_force_pairs() const { return parked_force_pairs_; }
     void forget_parked() { parked_pairs_.clear(), parked_force_pairs_.clear(); }
-    void save(const world::World& world, ByteWriter& out) const;
+    /// Of all that later steps depend on, added to `start`.
+    std::uint64_t state_hash(const world::World& world, std::uint64_t start) const;
 
 private:
-    void save_force_pairs(const world::World& world, ByteWriter& out) const;
-
     std::vector<PairState> pairs_, parked_pairs_;
     std::vector<ForcePair> force_pairs_, parked_force_pairs_;
     std::uint64_t next_id_ = 1;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "world/state_hash.h"
 #include "world/world.h"
 
 namespace plab::simulation

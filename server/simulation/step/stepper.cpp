@@ -131,12 +131,6 @@ void Stepper::finish()
     }
 }
 
-std::uint64_t Stepper::state_hash() const
-{
-    std::uint64_t h = world_.state_hash(0xcbf29ce484222325ull);
-    ByteWriter bytes;
-    cache_.save(world_, bytes);
-    return world::hash_bytes(h, bytes.bytes());
-}
+std::uint64_t Stepper::state_hash() const { return cache_.state_hash(world_, world_.state_hash(0xcbf29ce484222325ull)); }
 
 }  // namespace plab::simulation

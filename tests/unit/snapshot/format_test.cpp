@@ -9,6 +9,7 @@
 #include "mixed_scene.h"
 #include "simulation/snapshot/sections.h"
 #include "twin.h"
+#include "world/state_hash.h"
 
 using namespace plab;
 using namespace plab::test;
