@@ -176,7 +176,7 @@ std::string some_value(const Field& field)
 {
     for (const Rule& rule : field.rules)
         if (rule.kind == Rule::Kind::OneOf) return rule.options.front();
-    return field.type == FieldType::Vector ? "0 1 0" : "1";
+    return field.type == FieldType::Vector ? "1 2 3" : "1";
 }
 
 /// Who a role takes: bodies or shafts in turn.
@@ -200,12 +200,13 @@ std::string constraint_scene(const model::ComponentType* type)
     }
     if (type == nullptr) return scene(out);
     std::size_t next = 0;
-    out += "<component id=\"rung\" type=\"" + type->info.name + "\"";
+    out += "<component id=\"manager\" type=\"Manager/SequentialImpulse\"/><component id=\"rung\" type=\"" + type->info.name + "\"";
     for (const Role& role : type->schema.roles())
     {
         const bool objects =
             std::any_of(role.facets.begin(), role.facets.end(), [](Facet f) { return f == Facet::Body || f == Facet::Shaft; });
         if (objects) out += " " + role.name + "=\"" + some_participants(role, next) + "\"";
+        if (role.name == "manager") out += " manager=\"manager\"";
     }
     for (const Field& field : type->schema.fields())
         if (field.required && field.kind == FieldKind::Param) out += " " + field.name + "=\"" + some_value(field) + "\"";
