@@ -43,6 +43,18 @@ Json array(const std::vector<T>& items, Convert convert)
     return out;
 }
 
+Json kept(const link::ServerInfo::KeptSnapshot& s)
+{
+    return {{"name", s.name}, {"run", s.run}, {"step", s.step}, {"time", s.time}, {"bytes", s.bytes}};
+}
+
+/// Null where nothing is recorded.
+Json recording(const link::ServerInfo::Recording& r)
+{
+    if (r.file.empty()) return {};
+    return {{"file", r.file}, {"trouble", r.trouble}, {"bytes", r.bytes}, {"messages", r.messages}, {"dropped", r.dropped}};
+}
+
 }  // namespace
 
 Json json_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
@@ -75,7 +87,10 @@ Json json_of(const link::ServerInfo& s)
             {"requests_done", s.requests_done},
             {"requests_refused", s.requests_refused},
             {"dropped", dropped},
-            {"playback", s.playback}};
+            {"playback", s.playback},
+            {"rewind_from", s.rewind_from < 0 ? Json() : Json(s.rewind_from)},
+            {"snapshots", array(s.snapshots, kept)},
+            {"recording", recording(s.recording)}};
 }
 
 Json json_of(const std::vector<link::Parameter>& parameters)

@@ -40,6 +40,17 @@ std::string doing(const link::ServerInfo& s)
     return s.overload.empty() ? word : s.overload;
 }
 
+/// What somebody should know: a recording that is not whole, samples that rings gave up.
+std::string note_of(const link::ServerInfo& s)
+{
+    std::string out = s.recording.trouble.empty() ? "" : "recording stands still: " + s.recording.trouble;
+    const auto add = [&](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
+    if (s.recording.dropped > 0) add(std::to_string(s.recording.dropped) + " messages not recorded");
+    for (const auto& [topic, samples] : s.dropped)
+        if (samples > 0) add(std::to_string(samples) + " of " + topic + " dropped");
+    return out;
+}
+
 void print_servers(const Console& console, const std::vector<link::ServerInfo>& servers)
 {
     const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -50,14 +61,19 @@ void print_servers(const Console& console, const std::vector<link::ServerInfo>& 
                  {"pace", Align::Right, Shrink::Never, 4},
                  {"run", Align::Right, Shrink::Never, 5},
                  {"scene", Align::Left, Shrink::Middle, 3},
+                 {"note", Align::Left, Shrink::End},
                  {"up", Align::Right, Shrink::Never, 6},
                  {"process", Align::Right, Shrink::Never, 7},
                  {"host", Align::Left, Shrink::End},
                  {"version", Align::Left, Shrink::Never, 8}});
     for (const link::ServerInfo& s : servers)
         table.add({s.name, doing(s), std::to_string(s.step), fixed(s.time) + " s", number(s.rate_reached) + "x", std::to_string(s.run),
-                   s.scene_file, age_text(static_cast<double>(now - s.started_ns) * 1e-9), std::to_string(s.process), s.host, s.version},
-                  s.paused ? Style::Dim : (s.overload.empty() ? Style::Plain : Style::Yellow));
+                   s.scene_file, note_of(s), age_text(static_cast<double>(now - s.started_ns) * 1e-9), std::to_string(s.process), s.host,
+                   s.version},
+                  !s.recording.trouble.empty() || s.recording.dropped > 0 ? Style::Red
+                  : s.paused                                              ? Style::Dim
+                  : s.overload.empty()                                    ? Style::Plain
+                                                                          : Style::Yellow);
     table.print(console);
 }
 

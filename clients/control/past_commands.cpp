@@ -79,6 +79,8 @@ struct SnapshotOptions
 
 Exit run_snapshot(Context& c, const SnapshotOptions& o)
 {
+    if (!wire::is_server_name(o.name))
+        return c.fail(Exit::Usage, "'" + o.name + "' is no name of a snapshot: 1 to 64 letters, digits, '.', '_' or '-'");
     if (o.file.empty()) return send(c, {{"snapshot", o.name}}, o.timing);
     if (const Exit e = c.connect(); e != Exit::Done) return e;
     auto reader = c.session().reader<plab_v1_Snapshot>();
@@ -116,11 +118,8 @@ Exit run_snapshots(Context& c)
     const link::ServerInfo& server = *catalogue->now().server;
     if (c.settings.json)
     {
-        Json list = Json::array();
-        for (const auto& s : server.snapshots)
-            list.push_back({{"name", s.name}, {"run", s.run}, {"step", s.step}, {"time", s.time}, {"bytes", s.bytes}});
-        const Json rewind = server.rewind_from < 0 ? Json() : Json(server.rewind_from);
-        print(c.console, Json{{"server", server.name}, {"snapshots", list}, {"rewind_from", rewind}});
+        const Json all = json_of(server);
+        print(c.console, Json{{"server", server.name}, {"snapshots", all["snapshots"]}, {"rewind_from", all["rewind_from"]}});
         return Exit::Done;
     }
     Table table({{"NAME", Align::Left, Shrink::Middle},
@@ -139,6 +138,15 @@ Exit run_snapshots(Context& c)
 
 // ---- rewind ---------------------------------------------------------------------------------------------------------
 
+/// Units are the server's affair ("500 ms"); what can be no time or span at all is said here.
+std::string not_a_time(const std::string& text)
+{
+    const std::size_t first = text.find_first_not_of(" \t");
+    if (first == std::string::npos) return "a time is missing: s, 0 or more";
+    if (text[first] != '-') return {};
+    return "'" + text + "' is negative: --to wants a time of the run, --by how far back; both in s, 0 or more";
+}
+
 void add_rewind(CLI::App& app, Context& context)
 {
     struct Options
@@ -153,10 +161,10 @@ void add_rewind(CLI::App& app, Context& context)
                                     {
                                         if (o->to.empty() == o->by.empty())
                                             return c.fail(Exit::Usage, "rewind wants --to TIME or --by TIME");
-                                        return send(c, {{"rewind", "", o->to.empty() ? "-" + o->by : o->to}});
+                                        return send(c, {{"rewind", "", o->to.empty() ? "back " + o->by : o->to}});
                                     });
-    command.add_option("--to", o->to, "simulated time, s")->type_name("TIME");
-    command.add_option("--by", o->by, "how far back, s")->type_name("TIME");
+    command.add_option("--to", o->to, "simulated time, s")->check(&not_a_time, "")->type_name("TIME");
+    command.add_option("--by", o->by, "how far back, s")->check(&not_a_time, "")->type_name("TIME");
 }
 
 void add_named(CLI::App& app, Context& context, const CommandText& text)
@@ -190,7 +198,7 @@ Exit await_server(Context& c, int process, const BranchOptions& o)
     const auto end = link::moment_after(c.timeout(kStart));
     for (;;)
     {
-        for (const link::ServerInfo& s : c.session().servers(link::Seconds(0.2)))
+        for (const link::ServerInfo& s : c.session().all_servers(link::Seconds(0.2)))
             if (s.name == o.name && s.process == process)
             {
                 if (c.settings.json)

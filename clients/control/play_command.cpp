@@ -29,8 +29,8 @@ constexpr std::uint64_t kSecond = 1'000'000'000;
 
 std::string check_rate(const std::string& text)
 {
-    if (const std::string wrong = link::check_positive(text); !wrong.empty()) return wrong;
-    const double rate = std::stod(text);
+    const bool is_rate = link::check_positive(text).empty();
+    const double rate = is_rate ? std::stod(text) : 0;
     return rate >= playback::Pace::kSlowest && rate <= playback::Pace::kFastest ? "" : "must be from 0.001 to 1000, not '" + text + "'";
 }
 
@@ -119,6 +119,7 @@ Exit run_play(Context& c, playback::Options options)
 {
     if (!options.name.empty() && !wire::is_server_name(options.name))
         return c.fail(Exit::Usage, "'" + options.name + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
+    if (options.from && options.to && *options.to < *options.from) return c.fail(Exit::Usage, "--to is before --from");
     options.domain = c.settings.link.domain, options.version = PLAB_VERSION;
     auto player = playback::Player::open(options);
     if (!player) return c.fail(Exit::Failed, player.errors());

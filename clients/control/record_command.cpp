@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <ctime>
 #include <memory>
@@ -119,9 +120,21 @@ Exit tell_losses(const Context& c, const recorder::TapeProgress& p)
     return Exit::Lost;
 }
 
+/// Topics without which plabd --replay cannot make a run again, and which are not asked for.
+std::string missing_for_replay(const std::vector<std::string>& topics)
+{
+    std::string out;
+    if (topics.empty()) return out;
+    for (const char* topic : {"plab/snapshots", "plab/journal", "plab/hashes"})
+        if (std::find(topics.begin(), topics.end(), topic) == topics.end()) out += (out.empty() ? "" : ", ") + std::string(topic);
+    return out;
+}
+
 Exit run_record(Context& c, RecordOptions o)
 {
     if (auto topics = recorder::choose_topics(o.recorder.topics); !topics) return c.fail(Exit::Usage, topics.errors());
+    if (const std::string missing = missing_for_replay(o.recorder.topics); !missing.empty())
+        c.console.say("plabctl: the recording cannot be replayed: --topics is without " + missing);
     if (const Exit e = c.connect(); e != Exit::Done) return e;
     const std::vector<link::ServerInfo> servers = c.session().servers(c.timeout(), 1);
     if (servers.empty()) return c.fail(Exit::NoServer, "server '" + c.session().server() + "' has gone");

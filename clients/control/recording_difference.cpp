@@ -59,6 +59,11 @@ void print_first(const Console& console, const Difference& d)
         for (std::size_t i = 0; i < std::min<std::size_t>(ids.size(), 10); ++i) out += (i == 0 ? "" : " ") + ids[i];
         return out + (ids.size() > 10 ? " and " + std::to_string(ids.size() - 10) + " more" : "");
     };
+    std::vector<std::string> single;
+    for (const recordings::SingleRun& r : d.not_compared) single.push_back(std::to_string(r.run));
+    if (!single.empty())
+        lines.add("runs", std::to_string(d.runs_a) + " and " + std::to_string(d.runs_b) + ": not compared, as only " +
+                              (d.not_compared.front().is_in_a ? "A" : "B") + " has them: " + list(single));
     lines.add("only in A", list(d.only_in_a));
     lines.add("only in B", list(d.only_in_b));
     lines.print(console);
@@ -127,7 +132,10 @@ Json json_of(const Difference& d)
                  {"a", d.first_state->a},
                  {"b", d.first_state->b}};
     for (const Growth& g : d.objects) objects.push_back(growth_of(g));
+    Json single = Json::array();
+    for (const recordings::SingleRun& r : d.not_compared) single.push_back(r.run);
     return {{"same", d.is_none()},
+            {"runs", {{"a", d.runs_a}, {"b", d.runs_b}, {"not_compared", single}}},
             {"hashes", {{"a", d.hashes_a}, {"b", d.hashes_b}, {"compared", d.hashes_compared}, {"first_difference", hash}}},
             {"states", {{"a", d.frames_a}, {"b", d.frames_b}, {"compared", d.frames_compared}, {"first_difference", state}}},
             {"only_in_a", d.only_in_a},

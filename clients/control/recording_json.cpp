@@ -125,6 +125,7 @@ Json json_of(const recording::RecoveryReport& r, const std::string& out)
             {"from", r.from ? Json(seconds(*r.from)) : Json()},
             {"to", r.to ? Json(seconds(*r.to)) : Json()},
             {"lost", list(r.lost, lost_of)},
+            {"lost_after", r.knows_no_end() && r.to ? Json(seconds(*r.to)) : Json()},
             {"mended", r.mended},
             {"closed", r.was_closed}};
 }

@@ -88,6 +88,7 @@ Exit run_plot(Context& c, const PlotArguments& o)
 {
     if (!o.out.ends_with(".svg") && !o.out.ends_with(".png"))
         return c.fail(Exit::Usage, "-o " + o.out + ": a picture's name ends with .svg or .png");
+    if (o.span.from && o.span.to && *o.span.to < *o.span.from) return c.fail(Exit::Usage, "--to is before --from");
     auto log = Log::open(o.file);
     if (!log) return c.fail(Exit::Failed, log.errors());
     auto chart = chart_of(*log, o);
@@ -141,8 +142,10 @@ Exit run_log(const Context& c, LogArguments o)
     if (!filter.events && !filter.collisions) filter.events = filter.collisions = true;
     filter.severity = logger::severity_of(o.severity);
     if (o.file.empty()) return log_live(c, o);
+    if (o.lines.span.from && o.lines.span.to && *o.lines.span.to < *o.lines.span.from) return c.fail(Exit::Usage, "--to is before --from");
     auto log = Log::open(o.file);
     if (!log) return c.fail(Exit::Failed, log.errors());
+    if (auto known = recordings::check_names(*log, filter); !known) return c.fail(Exit::Failed, known.errors());
     o.lines.json = c.settings.json, o.lines.count = c.settings.count;
     auto out = recordings::TextOut::open("");
     if (!out) return c.fail(Exit::Failed, out.errors());
@@ -157,7 +160,8 @@ void add_diff(CLI::App& app, Context& context)
         add_command(app, context,
                     {"diff", "where two recordings differ first, and how the difference grows",
                      "  plabctl diff a.mcap b.mcap\n  plabctl diff a.mcap b.mcap --plot growth.svg\n"
-                     "Steps that both have are compared: state hashes, then states. Exit code 0: no difference, 1: there is one.\n"},
+                     "Steps that both have are compared: state hashes, then states. Exit code 0: no difference, 1: there is one, or one\n"
+                     "of them has more runs.\n"},
                     [o](Context& c) { return run_diff(c, *o); });
     command.add_option("a", o->a, "recording")->required()->type_name("FILE");
     command.add_option("b", o->b, "recording that it is compared with")->required()->type_name("FILE");

@@ -103,18 +103,15 @@ Result<void> Session::find_server(const Options& options, Seconds timeout, const
     const std::string where = " in domain " + std::to_string(options.domain.id);
     if (options.server.empty()) return reason("no server was found" + where);
     // Who else there is helps against a wrong name.
-    Options all = options;
-    all.server.clear();
-    auto others = join(all);
-    const std::vector<ServerInfo> names = others ? others->servers(Seconds(0.2)) : std::vector<ServerInfo>{};
+    const std::vector<ServerInfo> names = all_servers(Seconds(0.2));
     return reason("no server '" + options.server + "' was found" + where + (names.empty() ? "" : "; there are: " + names_of(names)));
 }
 
-std::vector<ServerInfo> Session::servers(Seconds timeout, std::size_t enough) const
+std::vector<ServerInfo> Session::servers_in(const std::string& partition, Seconds timeout, std::size_t enough) const
 {
     const auto end = moment_after(timeout);
     std::map<std::string, ServerInfo> seen;
-    auto subscriber = wire::make_subscriber(participant_, server_.empty() ? "*" : server_);
+    auto subscriber = wire::make_subscriber(participant_, partition);
     if (!subscriber) return {};
     auto reader = wire::Reader<plab_v1_Server>::make(participant_, *subscriber);
     if (!reader) return {};

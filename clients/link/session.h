@@ -74,8 +74,14 @@ public:
     /// The second half of find(), for a session that has joined.
     Result<void> find_server(const Options& options, Seconds timeout, const Stop& stop = {});
 
-    /// Servers that have shown themselves until `timeout`, by name; returns early once `enough` have.
-    std::vector<ServerInfo> servers(Seconds timeout, std::size_t enough = static_cast<std::size_t>(-1)) const;
+    /// Servers that have shown themselves until `timeout`, by name: this session's, or all while it belongs to none. Returns
+    /// early once `enough` have.
+    std::vector<ServerInfo> servers(Seconds timeout, std::size_t enough = static_cast<std::size_t>(-1)) const
+    {
+        return servers_in(server_.empty() ? "*" : server_, timeout, enough);
+    }
+    /// The domain's, whichever this session belongs to.
+    std::vector<ServerInfo> all_servers(Seconds timeout) const { return servers_in("*", timeout, static_cast<std::size_t>(-1)); }
 
     template <class T>
     Result<wire::Reader<T>> reader(dds_topic_filter_arg_fn filter = nullptr, void* argument = nullptr) const
@@ -99,6 +105,7 @@ public:
 private:
     bool wait_for(const wire::Entity& entity, std::uint32_t status, Seconds timeout) const;
     Result<void> enter(const std::string& server);
+    std::vector<ServerInfo> servers_in(const std::string& partition, Seconds timeout, std::size_t enough) const;
 
     std::string server_;
     wire::Entity participant_;

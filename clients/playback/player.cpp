@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "idl/recording/format.h"
+
 namespace plab::playback
 {
 namespace
@@ -53,7 +55,7 @@ Result<Span> choose_span(const recording::Reader& reader, const Options& options
 Result<std::string> choose_name(const recording::Reader& reader, const std::string& asked)
 {
     if (!asked.empty()) return asked;
-    const auto about = reader.metadata("plab");
+    const auto about = reader.metadata(recording::kAbout);
     if (about && about->values.contains("server")) return about->values.at("server");
     return reason(reader.name() + ": does not say which server it is of: give the playback a name (--name)");
 }
@@ -62,7 +64,7 @@ Result<std::string> choose_name(const recording::Reader& reader, const std::stri
 
 Result<std::unique_ptr<Player>> Player::open(const Options& options)
 {
-    auto reader = recording::Reader::open(options.file);
+    auto reader = recording::open_recording(options.file);
     if (!reader) return reader.errors();
     const auto span = choose_span(*reader, options);
     if (!span) return span.errors();
@@ -86,7 +88,7 @@ Player::Player(recording::Reader reader, Front front, const Pace& pace, const Op
       wanted_readers_(options.readers)
 {
     changes_.server = front_.name();
-    if (const auto about = reader_.metadata("plab"); about && about->values.contains("states"))
+    if (const auto about = reader_.metadata(recording::kAbout); about && about->values.contains("states"))
         moved_only_ = about->values.at("states") == "moved";
 }
 

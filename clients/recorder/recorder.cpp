@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "idl/recording/format.h"
+
 namespace plab::recorder
 {
 namespace
@@ -53,8 +55,8 @@ std::string joined(const std::vector<std::string>& words)
 
 recording::Metadata about(const link::ServerInfo& server, const Options& options)
 {
-    recording::Metadata out{"plab", {}};
-    out.values = {{"format", "1"},
+    recording::Metadata out{recording::kAbout, {}};
+    out.values = {{"format", std::to_string(recording::kFormat)},
                   {"recorder", "plabctl"},
                   {"server", server.name},
                   {"version", server.version},

@@ -17,6 +17,8 @@ constexpr std::size_t kOverhead = sizeof(Message);
 recording::WriterOptions writer_options(const TapeOptions& options)
 {
     recording::WriterOptions out;
+    // Of the 20 ms that a kill may cost the rest is for the way here, and for the write.
+    out.chunk_time = std::chrono::milliseconds(12);
     out.compression = options.compression;
     return out;
 }

@@ -44,6 +44,8 @@ public:
         return out;
     }
     std::uint64_t count() const { return count_; }
+    /// That the recording has, as far as the log and the hashes tell.
+    std::size_t runs() const { return runs_.all().size(); }
 
 private:
     Stream stream_;
@@ -73,6 +75,7 @@ void compare_hashes(const Log& log_a, const Log& log_b, Difference& out)
     while (in_a) in_a = a.next();
     while (in_b) in_b = b.next();
     out.hashes_a = a.count(), out.hashes_b = b.count();
+    out.runs_a = a.runs(), out.runs_b = b.runs();
 }
 
 double angle_between(const plab_v1_Rotation& p, const plab_v1_Rotation& q)
@@ -133,12 +136,20 @@ void note_first(const ComparedObject& object, const ComparedFrame& frame, Differ
     }
 }
 
+/// The n-th is compared with the n-th: of more runs in one recording the last have no partner.
+void note_single_runs(Difference& out)
+{
+    for (std::size_t run = std::min(out.runs_a, out.runs_b) + 1; run <= std::max(out.runs_a, out.runs_b); ++run)
+        out.not_compared.push_back({run, out.runs_a > out.runs_b});
+}
+
 }  // namespace
 
 Difference difference_of(const Log& a, const Log& b)
 {
     Difference out;
     compare_hashes(a, b, out);
+    note_single_runs(out);
     Comparison comparison(a, b);
     GrowthTable growth;
     while (comparison.next())

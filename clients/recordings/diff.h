@@ -46,8 +46,17 @@ struct Growth
     double angular_velocity = 0;  ///< rad/s
 };
 
+/// A run that has no partner in the other recording.
+struct SingleRun
+{
+    std::size_t run = 0;  ///< counts from 1
+    bool is_in_a = false;
+};
+
 struct Difference
 {
+    std::size_t runs_a = 0, runs_b = 0;
+    std::vector<SingleRun> not_compared;
     std::uint64_t hashes_a = 0, hashes_b = 0, hashes_compared = 0;
     std::optional<HashDifference> first_hash;
     std::uint64_t frames_a = 0, frames_b = 0, frames_compared = 0;
@@ -56,7 +65,7 @@ struct Difference
     std::vector<std::string> only_in_a, only_in_b;
     Troubles troubles_a, troubles_b;
 
-    bool is_none() const { return !first_hash && !first_state && only_in_a.empty() && only_in_b.empty(); }
+    bool is_none() const { return !first_hash && !first_state && only_in_a.empty() && only_in_b.empty() && not_compared.empty(); }
     /// Neither hashes nor states have a step in common: nothing is known.
     bool is_unknown() const { return hashes_compared == 0 && frames_compared == 0; }
 };

@@ -1,5 +1,9 @@
 #include "recordings/lines.h"
 
+#include <initializer_list>
+#include <set>
+
+#include "link/names.h"
 #include "link/sequence.h"
 #include "logger/lines.h"
 
@@ -63,7 +67,74 @@ private:
     std::uint64_t written_ = 0;
 };
 
+/// What a filter names and nobody has been found to have.
+class Unknown
+{
+public:
+    Unknown(const logger::Filter& filter, const Things& things) : objects_(filter.objects), kinds_(filter.kinds)
+    {
+        for (const auto& ids : {things.objects(), things.interactions()}) known_objects_.insert(ids.begin(), ids.end());
+        std::erase_if(objects_, [&](const std::string& id) { return known_objects_.contains(id); });
+        for (const char* kind : {"begin", "impact", "rest", "end"}) note_kind(std::string("collision.") + kind);
+    }
+    bool is_empty() const { return objects_.empty() && kinds_.empty(); }
+    void note(const Entry& entry)
+    {
+        const auto note_ids = [&](std::initializer_list<const char*> ids)
+        {
+            for (const char* id : ids) std::erase(objects_, id);
+        };
+        if (const auto* events = entry.as<plab_v1_Events>())
+            for (std::uint32_t i = 0; i < events->entries._length; ++i)
+            {
+                const plab_v1_EventInfo& e = events->entries._buffer[i];
+                note_kind(e.kind), note_ids({e.component, e.a, e.b});
+            }
+        if (const auto* collisions = entry.as<plab_v1_Collisions>())
+            for (std::uint32_t i = 0; i < collisions->entries._length; ++i)
+            {
+                const plab_v1_CollisionInfo& c = collisions->entries._buffer[i];
+                note_kind(std::string("collision.") + c.kind), note_ids({c.detector, c.a, c.b});
+            }
+    }
+    Errors errors(const std::string& file) const
+    {
+        Errors out;
+        for (const std::string& kind : kinds_)
+            out.push_back(
+                reason(file + " has no event or collision whose kind begins with '" + kind + "'" + suggestion(kind, known_kinds_)));
+        for (const std::string& id : objects_)
+            out.push_back(reason(file + " has no component '" + id + "'" + suggestion(id, known_objects_)));
+        return out;
+    }
+
+private:
+    void note_kind(const std::string& kind)
+    {
+        if (!known_kinds_.insert(kind).second) return;
+        std::erase_if(kinds_, [&](const std::string& beginning) { return kind.starts_with(beginning); });
+    }
+    static std::string suggestion(const std::string& name, const std::set<std::string>& known)
+    {
+        return link::did_you_mean(name, {known.begin(), known.end()});
+    }
+
+    std::vector<std::string> objects_, kinds_;
+    std::set<std::string> known_objects_, known_kinds_;
+};
+
 }  // namespace
+
+Result<void> check_names(const Log& log, const logger::Filter& filter)
+{
+    Unknown unknown(filter, log.things());
+    if (unknown.is_empty()) return {};
+    // Kinds of events are their authors', and the catalogue may not be in the file: only what happened tells.
+    Stream stream = log.stream({"plab/events", "plab/collisions"});
+    for (const Entry* entry = stream.next(); entry != nullptr && !unknown.is_empty(); entry = stream.next()) unknown.note(*entry);
+    if (unknown.is_empty()) return {};
+    return unknown.errors(log.path());
+}
 
 Result<Troubles> write_lines(const Log& log, const LineOptions& options, TextOut& out)
 {

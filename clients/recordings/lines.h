@@ -16,6 +16,9 @@ struct LineOptions
     Span span = {};
 };
 
+/// An error: a kind or an object that nothing in the whole recording has.
+Result<void> check_names(const Log& log, const logger::Filter& filter);
+
 /// In the order of time, with a line for each new run, and for entries that are missing.
 Result<Troubles> write_lines(const Log& log, const LineOptions& options, TextOut& out);
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "idl/recording/format.h"
+
 namespace plab::recordings
 {
 namespace
@@ -28,12 +30,12 @@ std::string full_topic(const std::string& name)
 
 Result<Log> Log::open(const std::string& path)
 {
-    auto reader = recording::Reader::open(path);
+    auto reader = recording::open_recording(path);
     if (!reader) return reader.errors();
     Log log(std::make_unique<recording::Reader>(reader.take()));
     for (const recording::MetadataIndex& place : log.reader_->index().metadata)
     {
-        if (place.name != "plab") continue;
+        if (place.name != recording::kAbout) continue;
         auto metadata = log.reader_->metadata(place);
         if (metadata)
             log.head_ = metadata->values;

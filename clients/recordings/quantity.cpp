@@ -31,6 +31,9 @@ constexpr std::array<Field, 7> kObjectFields{{
     {"speed", "m/s", "", ""},
     {"angle", "rad", "", ""},
 }};
+constexpr const char* kOfBody = "a body has position, orientation, linear_velocity, angular_velocity, speed";
+constexpr const char* kOfShaft = "a shaft has angle, speed";
+bool is_of_shaft(const Field& field) { return field.name == "angle" || field.name == "speed"; }
 constexpr std::array<Field, 3> kInteractionFields{{{"cost", "ns", "", ""}, {"error", "", "", ""}, {"work", "J", "", ""}}};
 constexpr std::array<Field, 13> kSceneFields{{
     {"energy.kinetic", "J", "", ""},
@@ -211,11 +214,16 @@ Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Thin
     if (!id.empty() && text.size() > id.size())
     {
         const Named what = named(kObjectFields, text.substr(id.size() + 1));
-        if (what.field == nullptr)
-            return reason("no quantity '" + text +
-                          "': a body has position, orientation, linear_velocity, angular_velocity, speed; "
-                          "a shaft angle, speed");
-        return spread(Source::Object, id, what, things.is_shaft(id));
+        // Who is not in the catalogue may be either.
+        const std::vector<std::string> all = things.objects();
+        const bool is_known = std::find(all.begin(), all.end(), id) != all.end(), is_shaft = things.is_shaft(id);
+        const bool has_field = what.field != nullptr && (!is_known || (is_shaft ? is_of_shaft(*what.field) : what.field->name != "angle"));
+        if (!has_field)
+            return reason("no quantity '" + text + "': " +
+                          (is_known && is_shaft ? kOfShaft
+                           : is_known           ? kOfBody
+                                                : kOfBody + std::string("; ") + kOfShaft));
+        return spread(Source::Object, id, what, is_shaft);
     }
     if (id = id_in(text, things.interactions()); !id.empty()) return of_interaction(id, text.substr(id.size() + 1));
     if (const Named what = named(kSceneFields, text); what.field != nullptr) return spread(Source::Scene, "", what, false);

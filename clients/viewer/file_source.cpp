@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "idl/recording/format.h"
 #include "link/catalogue_convert.h"
 #include "viewer/scene_model.h"
 
@@ -50,7 +51,7 @@ std::optional<link::Metrics> metrics_at(const recording::Reader& reader, std::ui
 
 Result<std::unique_ptr<Source>> FileSource::open(const std::string& file, std::optional<double> from)
 {
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::open_recording(file);
     if (!reader) return reader.errors();
     if (reader->channels_of({name_of<plab_v1_Object>()}).empty())
         return reason(file + ": has no " + name_of<plab_v1_Object>() + ": there is nothing to draw");

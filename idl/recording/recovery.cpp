@@ -193,6 +193,8 @@ int exit_code(Verdict verdict)
     return verdict == Verdict::Whole ? 0 : verdict == Verdict::SomethingLost ? kLost : kNothing;
 }
 
+bool RecoveryReport::knows_no_end() const { return !was_closed && verdict == Verdict::SomethingLost; }
+
 std::string RecoveryReport::text() const
 {
     constexpr std::array kWords{"whole", "something is lost", "nothing is usable"};
@@ -209,6 +211,8 @@ std::string RecoveryReport::text() const
     for (const auto& [topic, count] : missing)
         if (!kept.contains(topic)) out += "  " + topic + ": none, " + std::to_string(count) + " missing\n";
     for (const LostPart& part : lost) out += "lost: " + range_text(part) + ": " + part.reason + "\n";
+    if (knows_no_end() && to)
+        out += "lost: what was recorded after " + seconds(*to) + ", until the recorder ended; the file does not tell when\n";
     if (undeclared > 0) out += "lost: " + std::to_string(undeclared) + " messages whose channels are declared nowhere\n";
     for (const std::string& what : mended) out += "mended: " + what + "\n";
     if (unproved > 0) out += "unproved: " + std::to_string(unproved) + " records without CRC or seal\n";

@@ -45,6 +45,8 @@ struct RecoveryReport
     std::vector<std::string> mended;  ///< what was wrong and costs nothing: indexes, times in headers
     bool was_closed = false;
 
+    /// Something may be missing behind the last message, and nobody knows until when: the file was not closed.
+    bool knows_no_end() const;
     /// A few lines for people: what was kept, what is lost, from when to when.
     std::string text() const;
 };

@@ -11,7 +11,8 @@ PLAB_PLUGIN("resolution", registrar)
     registrar.component<NoneRows>("Resolution/None", "answers an impact at the end of the step in which it is seen")
         .command<accept_end>(Phase::Locate, "Resolution/Locate", "takes the end of the step")
         .cost("nothing")
-        .limits("bodies overlap by up to speed x step when they meet; times of impact are right to one step");
+        .limits("bodies overlap by up to speed x step when they meet, or pass through one another; times of impact are right to one step")
+        .source("time stepping without location of events; the lowest rung, to compare with");
     registrar
         .component<BisectionRows>("Resolution/Bisection", "finds the time of impact by halving; the whole world is rewound for each trial")
         .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket of the time of impact")

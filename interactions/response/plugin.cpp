@@ -9,7 +9,9 @@ PLAB_PLUGIN("response", registrar)
     using namespace plab::response;
     registrar.component<NoneRows>("Response/None", "a sensor: contacts are reported, bodies pass through one another")
         .host_command(Phase::Respond, "Response/Respond", "nothing: the host reports the contacts")
-        .cost("nothing");
+        .cost("nothing")
+        .limits("holds nothing: contact.begin and contact.end are told, no momentum changes")
+        .source("none: it states no law");
     registrar
         .component<ImpulseRows>("Response/Impulse", "impulses with Coulomb friction and restitution; contacts that no longer bounce rest")
         .command<respond>(Phase::Respond, "Response/Respond", "applies the impulses of an impact, or of resting contacts over a step")

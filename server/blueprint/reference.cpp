@@ -90,7 +90,9 @@ std::string facts_of(const TypeInfo& info)
         if (!value.empty()) out += "- " + std::string(name) + ": " + value + "\n";
     };
     fact("exchangeable within", "`" + info.family + "`");
-    fact("order of convergence", info.order > 0 ? std::to_string(info.order) : "");
+    // A resolution's is not that of the motion: how its trials come nearer to the time of impact.
+    const bool searches = info.name.starts_with("Resolution/");
+    fact(searches ? "order of its search for the time of impact" : "order of convergence", info.order > 0 ? std::to_string(info.order) : "");
     fact("cost", info.cost);
     fact("limits", info.limits);
     fact("source", info.source);

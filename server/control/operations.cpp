@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <set>
 
 #include "blueprint/reader.h"
@@ -34,6 +35,15 @@ std::vector<simulation::NamedValue> named_values(const OperationText& op)
     std::vector<simulation::NamedValue> out;
     for (const auto& [name, text] : op.values) out.push_back({name, text});
     return out;
+}
+
+/// As names of servers (idl/topics.h), which this code must not know: both stand in file names and command lines.
+bool is_snapshot_name(const std::string& name)
+{
+    constexpr std::size_t kLongest = 64;
+    const auto allowed = [](char c)
+    { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-'; };
+    return name.size() <= kLongest && std::all_of(name.begin(), name.end(), allowed);
 }
 
 Result<Vec3> parse_vector(const std::string& text, Unit unit)
@@ -114,19 +124,27 @@ Result<Operation> make_dt(const OperationText& op, model::TypeSource&)
     if (!dt) return dt.errors();
     return Operation{simulation::StepLengthOperation{*dt}};
 }
-Result<Operation> make_snapshot(const OperationText& op, model::TypeSource&) { return Operation{simulation::SnapshotOperation{op.target}}; }
+Result<Operation> make_snapshot(const OperationText& op, model::TypeSource&)
+{
+    if (!is_snapshot_name(op.target))
+        return reason("'" + op.target.substr(0, 64) + "' is no name of a snapshot: 1 to 64 letters, digits, '.', '_' or '-'");
+    return Operation{simulation::SnapshotOperation{op.target}};
+}
 Result<Operation> make_restore(const OperationText& op, model::TypeSource&) { return Operation{simulation::RestoreOperation{op.target}}; }
 Result<Operation> make_forget(const OperationText& op, model::TypeSource&) { return Operation{simulation::ForgetOperation{op.target}}; }
-/// "2.5 s" is a time of the run, "-2.5 s" counts back from now.
+/// "2.5 s" is a time of the run, "back 2.5 s" counts back from now.
 Result<Operation> make_rewind(const OperationText& op, model::TypeSource&)
 {
+    constexpr std::string_view kBack = "back ";
+    const bool back = op.argument.starts_with(kBack);
     Field field;
     field.type = FieldType::Real, field.unit = unit::second;
-    auto value = model::parse_value(op.argument, field);
+    auto value = model::parse_value(op.argument.substr(back ? kBack.size() : 0), field);
     if (!value) return value.errors();
     const double time = std::get<double>(*value);
-    const bool back = op.argument.front() == '-';
-    return Operation{simulation::RewindOperation{back ? -time : time, back}};
+    if (std::signbit(time))
+        return reason("'" + op.argument + "' is negative: a rewind wants a time of the run, as '2.5 s', or how far back, as 'back 0.5 s'");
+    return Operation{simulation::RewindOperation{time, back}};
 }
 /// Only a place in the table: set makes one operation of each value, shutdown none.
 Result<Operation> make_nothing(const OperationText&, model::TypeSource&) { return reason("is no operation"); }
@@ -147,7 +165,7 @@ constexpr std::array<Verb, 17> kVerbs{{
     {"snapshot", "the snapshot's name", "", false, false, false, &make_snapshot},
     {"restore", "the snapshot's name", "", false, false, false, &make_restore},
     {"forget", "the snapshot's name", "", false, false, false, &make_forget},
-    {"rewind", "", "a time of the run, or how far back with a minus", false, false, false, &make_rewind},
+    {"rewind", "", "a time of the run, or back and how far", false, false, false, &make_rewind},
     {"shutdown", "", "", false, false, false, &make_nothing},
 }};
 
@@ -247,7 +265,7 @@ Description description_of(const simulation::Operation& operation)
         Description operator()(const ForgetOperation& op) const { return {"forget", op.name, ""}; }
         Description operator()(const RewindOperation& op) const
         {
-            return {"rewind", "", (op.back ? "-" : "") + model::format_real(op.time)};
+            return {"rewind", "", (op.back ? "back " : "") + model::format_real(op.time)};
         }
         Description operator()(const StepLengthOperation& op) const { return {"dt", "", model::format_real(op.dt.seconds)}; }
     };

@@ -54,6 +54,8 @@ int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLib
             spdlog::info("server '{}' in domain {}, {}; ready after {:.1f} ms", options.name, options.domain,
                          options.network_interface.empty() ? "this host only" : "interface " + options.network_interface, took.count());
         }
+        if (const std::string missing = plab::daemon::missing_for_replay(options.record); !missing.empty())
+            spdlog::warn("{} cannot be replayed: --record-topics is without {}", options.record.file, missing);
         if (!options.record.file.empty())
             if (auto opened = service.open_recording(options); !opened) return fail(opened.errors());
         if (auto taken = service.take_over(waiting); !taken) return fail(taken.errors());
@@ -71,6 +73,12 @@ int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::Options& op
     plab::simulation::Simulation simulation(library, options.threads);
     simulation.history().configure(plab::daemon::history_of(options));
     if (auto restored = simulation.restore(snapshot->snapshot); !restored) return fail(restored.errors());
+    if (options.until >= 0 && options.until < simulation.time() - 0.5 * simulation.dt())
+    {
+        std::fprintf(stderr, "plabd: --until %.9g is before the snapshot, which is at %.9g s: --until counts from the run's beginning\n",
+                     options.until, simulation.time());
+        return 2;
+    }
     return run_scene(simulation, library, options, start, snapshot->waiting);
 }
 

@@ -110,10 +110,35 @@ void add_past_options(CLI::App& app, Options& o)
     app.add_flag("--json", o.shadow.json, "with --shadow: print JSON")->group(group);
 }
 
+/// The first of these options that the command line has; "" if it has none.
+std::string first_given(const CLI::App& app, std::initializer_list<const char*> names)
+{
+    for (const char* name : names)
+        if (app.count(name) > 0) return name;
+    return {};
+}
+
+/// Why the options cannot go together: what a replay or a shadow has no use for is not ignored.
+std::string why_not_together(const CLI::App& app, bool replay, bool shadow)
+{
+    if (const std::string given = first_given(app, {"--for", "--json"}); !shadow && !given.empty())
+        return given + " goes with --shadow ID=TYPE";
+    if (!replay && !shadow) return {};
+    const std::string what = replay ? "--replay" : "--shadow";
+    const std::string given = first_given(
+        app, {"--swap", "--set", "--table", "--history", "--record", "--paused", "--check", "--expand", "--explain", "--reference"});
+    if (given.empty()) return {};
+    if (given == "--swap" || given == "--set")
+        return given + " does not go with " + what + (replay ? ": what is asked stands in the recording" : ": name the swap as ID=TYPE");
+    return given + " goes with a scene or --load, not with " + what;
+}
+
 /// The reason if something about them does not hold.
-std::string take_past_options(const std::string& states, Options& o)
+std::string take_past_options(const CLI::App& app, const std::string& states, Options& o)
 {
     const bool replay = !o.replay.file.empty(), shadow = !o.shadow.id.empty();
+    if (const std::string why = why_not_together(app, replay, shadow); !why.empty()) return why;
+    if (o.replay.from && *o.replay.from < 0) return "--from is a step, 0 or later, not " + std::to_string(*o.replay.from);
     if (!replay && (o.replay.verify || o.replay.from || o.replay.run)) return "--verify, --from and --run go with --replay FILE";
     if (int(replay) + int(!o.load.empty()) + int(!o.scene.empty()) > 1) return "a scene, --load and --replay exclude one another";
     if (shadow && o.load.empty()) return "--shadow goes with --load FILE";
@@ -126,9 +151,11 @@ std::string take_past_options(const std::string& states, Options& o)
         o.task = Task::Shadow, o.bus = false;
     }
     if (replay) o.task = Task::Replay, o.bus = false;
-    if (o.record.file.empty() && (o.record.overwrite || o.record.moved_only || !o.record.topics.empty() || !states.empty()))
-        return "--overwrite and --record-... go with --record FILE";
-    if ((replay || shadow) && !o.record.file.empty()) return "--record goes with a scene or --load";
+    if (o.record.file.empty())
+        if (const std::string given = first_given(
+                app, {"--overwrite", "--record-topics", "--record-states", "--record-moved", "--record-snapshots", "--record-compression"});
+            !given.empty())
+            return given + " goes with --record FILE";
     if (states.empty() || states == "all") return {};
     double rate = 0;
     const char* const end = states.data() + states.size();
@@ -226,7 +253,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
         options.rate = *factor;
     }
     if (const std::string why = take_bus_options(states, no_bus, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
-    if (const std::string why = take_past_options(recorded_states, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
+    if (const std::string why = take_past_options(app, recorded_states, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
     if (options.paused && !options.bus) return ParseEnd{2, "plabd: --paused needs the bus: nobody could say go on\n"};
     for (const auto& [texts, parse] : {std::pair(&swaps, &parse_swap), std::pair(&sets, &parse_set)})
         for (const std::string& text : *texts)

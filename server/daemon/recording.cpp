@@ -1,12 +1,13 @@
 #include "daemon/recording.h"
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 
 #include "blueprint/writer.h"
+#include "simulation/snapshot/build.h"
 #include "simulation/snapshot/format.h"
 
 namespace plab::daemon
@@ -47,10 +48,20 @@ record::RecordOptions record_options(const Options& options, const simulation::S
     const RecordChoice& r = options.record;
     out.file = r.file, out.overwrite = r.overwrite, out.compression = r.compression, out.topics = r.topics;
     out.state_interval = r.state_interval, out.moved_only = r.moved_only, out.snapshot_interval = r.snapshot_interval;
-    out.server = options.name, out.version = PLAB_VERSION;
+    out.server = options.name, out.version = PLAB_VERSION, out.build = simulation::build_name();
     out.scene_file = options.scene.empty() ? options.load : options.scene;
     out.dt = simulation.dt(), out.threads = static_cast<std::uint32_t>(options.threads);
     out.blueprint = blueprint::write_long_form(simulation.world().scene(), types);
+    return out;
+}
+
+std::string missing_for_replay(const RecordChoice& choice)
+{
+    std::string out;
+    if (choice.topics.empty()) return out;
+    for (const char* topic : {"plab/snapshots", "plab/journal", "plab/hashes"})
+        if (std::find(choice.topics.begin(), choice.topics.end(), topic) == choice.topics.end())
+            out += (out.empty() ? "" : ", ") + std::string(topic);
     return out;
 }
 
@@ -60,31 +71,6 @@ simulation::HistoryOptions history_of(const Options& options)
     // A server's clients may want to go back; a computation has none.
     out.interval = options.history >= 0 ? options.history : options.bus ? 1 : 0;
     return out;
-}
-
-void SnapshotDesk::begin(const simulation::Snapshot& snapshot, std::vector<std::string> waiting, std::string name, const char* cause)
-{
-    // Types are asked here, on the step thread: a plugin may have to be loaded for them.
-    if (scene_ != snapshot->world.scene) scene_ = snapshot->world.scene, blueprint_ = blueprint::write_long_form(*scene_, *types_);
-    publish::SnapshotRecord out;
-    out.run = snapshot->run, out.revision = snapshot->revision, out.step = snapshot->clock.tick, out.time = snapshot->clock.time();
-    out.name = std::move(name), out.cause = cause, out.state_hash = snapshot->state_hash;
-    out.blueprint = blueprint_;
-    const auto make = [snapshot, waiting = std::move(waiting), out = std::move(out)]() mutable -> Result<publish::SnapshotRecord>
-    {
-        auto bytes = simulation::encode(snapshot, waiting);
-        if (!bytes) return bytes.errors();
-        out.data = bytes.take();
-        return std::move(out);
-    };
-    work_ = std::async(std::launch::async, make);
-}
-
-std::optional<Result<publish::SnapshotRecord>> SnapshotDesk::take(bool wait)
-{
-    if (!work_.valid()) return {};
-    if (!wait && work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
-    return work_.get();
 }
 
 Result<void> write_snapshot(const simulation::Snapshot& snapshot, std::span<const std::string> waiting, const std::string& file)

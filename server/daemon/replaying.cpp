@@ -7,7 +7,9 @@
 
 #include "daemon/output.h"
 #include "daemon/recording.h"
+#include "model/values.h"
 #include "replay/replay.h"
+#include "simulation/snapshot/build.h"
 
 namespace plab::daemon
 {
@@ -20,6 +22,51 @@ int fail(const Errors& errors)
     return 1;
 }
 
+/// Which build recorded: what the file says, or the first snapshot of one that was recorded from the bus. "": nobody tells.
+std::string build_of(record::RunLog& log, model::TypeSource& types)
+{
+    if (std::string build = log.origin("build"); !build.empty()) return build;
+    if (log.snapshots().empty()) return {};
+    const auto first = log.read(log.snapshots().front());
+    if (!first) return {};  // the replay tells why, if it needs this one
+    const auto decoded = simulation::decode(first->data, types);
+    return decoded ? decoded->build : std::string();
+}
+
+void warn_of_another_build(record::RunLog& log, model::TypeSource& types)
+{
+    const std::string theirs = build_of(log, types), ours = simulation::build_name();
+    if (!theirs.empty() && theirs != ours)
+        spdlog::warn("recorded by another build: digits may differ\n  recorded: {}\n  this one: {}", theirs, ours);
+}
+
+/// --from names a step that no run has. "" if one has.
+std::string beyond_the_end(const replay::ReplayReport& report, const Options& options)
+{
+    if (!options.replay.from || report.mismatch) return {};
+    std::string ends;
+    for (const replay::ReplayedRun& r : report.made)
+    {
+        if (r.last >= *options.replay.from) return {};
+        ends += (ends.empty() ? "" : ", ") + std::string("of run ") + std::to_string(r.run) + " it is " + std::to_string(r.last);
+    }
+    return "--from " + std::to_string(*options.replay.from) + " is beyond the " +
+           (options.until >= 0 ? "last step until --until" : "last step") + ": " + ends;
+}
+
+/// Why no hash was compared.
+std::string why_nothing(const record::RunLog& log, const replay::ReplayReport& report, const Options& options)
+{
+    if (report.steps > 0) return "the recording has no hashes of these steps";
+    if (const std::string topics = log.origin("topics"); !topics.empty() && topics.find("plab/hashes") == std::string::npos)
+        return "the recording was made without plab/hashes, which tell how far the run went";
+    if (report.made.empty()) return "no run was begun";
+    const replay::ReplayedRun& last = report.made.back();
+    if (options.until >= 0 && last.time >= options.until)
+        return "--until " + model::format_real(options.until) + " ends where the recording begins";
+    return "the recording ends at step " + std::to_string(last.last) + ", where it begins";
+}
+
 void print_report(const replay::ReplayReport& report, const Options& options)
 {
     std::printf("%s: %" PRIu64 " run%s, %" PRId64 " steps made again, %" PRIu64 " requests\n", options.replay.file.c_str(), report.runs,
@@ -27,7 +74,7 @@ void print_report(const replay::ReplayReport& report, const Options& options)
     if (!options.replay.verify) return;
     if (report.mismatch)
         std::printf("DIFFERENT after %" PRId64 " steps that are the same\n%s", report.verified, report.mismatch->text().c_str());
-    else
+    else if (report.verified > 0)
         std::printf("verified: %" PRId64 " state hashes are the same\n", report.verified);
 }
 
@@ -40,8 +87,7 @@ int replay_recording(plugins::PluginLibrary& library, const Options& options, co
     auto log = module->read(options.replay.file);
     if (!log) return fail(log.errors());
     if (const std::string damage = (*log)->damage(); !damage.empty()) spdlog::warn("{}", damage);
-    if (const std::string version = (*log)->origin("version"); !version.empty() && version != PLAB_VERSION)
-        spdlog::warn("recorded by plabd {}, replayed by {}: digits may differ", version, PLAB_VERSION);
+    warn_of_another_build(**log, library);
 
     simulation::Simulation simulation(library, options.threads);
     std::unique_ptr<Trace> trace;
@@ -67,12 +113,17 @@ int replay_recording(plugins::PluginLibrary& library, const Options& options, co
     if (!report) return fail(report.errors());
     if (trace) trace->sample(simulation, true);
     print_report(*report, options);
-    const bool nothing = options.replay.verify && report->verified == 0 && !report->mismatch;
-    if (nothing) std::fputs("nothing was verified: the recording holds no hashes there\n", stderr);
+    for (const std::string& doubt : report->doubts) std::printf("%s: %s\n", report->mismatch ? "the cause may be" : "note", doubt.c_str());
+    const std::string beyond = beyond_the_end(*report, options);
+    const bool nothing = options.replay.verify && report->verified == 0 && !report->mismatch && !stop;
+    if (!beyond.empty())
+        (void)std::fprintf(stderr, "%s\n", beyond.c_str());
+    else if (nothing)
+        (void)std::fprintf(stderr, "nothing was verified: %s\n", why_nothing(**log, *report, options).c_str());
     if (!options.save.empty())
         if (auto saved = write_snapshot(simulation.capture(), {}, options.save); !saved) return fail(saved.errors());
     if (!options.out.empty() && !write_end_state(simulation, options.out)) return 1;
-    return report->mismatch || nothing ? 1 : 0;
+    return report->mismatch || nothing || !beyond.empty() ? 1 : 0;
 }
 
 }  // namespace plab::daemon

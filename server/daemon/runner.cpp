@@ -106,7 +106,11 @@ void Run::begin()
     simulation::Request clock;
     // Without an end it is a server, and its clients live in real time; with one, it is a computation.
     clock.operations.push_back(simulation::RateOperation{options_.rate >= 0 ? options_.rate : options_.until >= 0 ? 0.0 : 1.0});
-    if (options_.paused) clock.operations.push_back(simulation::PauseOperation{});
+    // A snapshot of a run that stood still goes on all the same: without a bus nobody could say so.
+    if (options_.paused)
+        clock.operations.push_back(simulation::PauseOperation{});
+    else
+        clock.operations.push_back(simulation::ResumeOperation{});
     (void)s_.carry_out_now(clock);
     for (const ScheduledOperation& op : options_.operations)
     {

@@ -47,11 +47,15 @@ publish::CollectorOptions collector_options(const Options& options)
 Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const Options& options)
     : simulation_(&simulation),
       library_(&library),
-      scene_file_(options.scene),
+      scene_file_(options.scene.empty() ? simulation.world().scene().file : options.scene),
       threads_(static_cast<std::uint32_t>(options.threads)),
       collector_(collector_options(options),
                  options.bus || !options.record.file.empty() ? library.summaries() : std::vector<model::TypeSummary>{}),
-      snapshots_(library)
+      snapshots_(library,
+                 [this]
+                 {
+                     if (wake_) wake_->wake();
+                 })
 {
 }
 
@@ -67,7 +71,7 @@ Result<void> Service::open_bus(const Options& options, const Wake& wake)
     Error error;
     auto opened = reinterpret_cast<bus::Open>(module->entry)(bus, error);
     if (!opened) return error;
-    module_ = module.take(), bus_ = std::move(opened);
+    module_ = module.take(), bus_ = std::move(opened), wake_ = &wake;
     collector_.attach(*bus_);
     simulation_->draw_for(this);
     return {};
@@ -236,23 +240,16 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
 void Service::publish(bool stepped)
 {
     collector_.collect(*simulation_, simulation_->take_changes(), stepped);
-    send_snapshot(false);
-    const auto cause = collector_.wants_snapshot(*simulation_);
-    if (!cause) return;
-    make_snapshot(simulation_->capture(), "", *cause);
-    // Where a run begins it is needed before anything else: nothing of the run can be made again without it.
-    if (std::string_view(*cause) == "begin") send_snapshot(true);
+    send_snapshots();
+    if (const auto cause = collector_.wants_snapshot(*simulation_)) make_snapshot(simulation_->capture(), "", *cause);
 }
 
 void Service::idle()
 {
     collector_.idle(*simulation_);
-    send_snapshot(false);
+    send_snapshots();
     if (const auto cause = collector_.wants_snapshot(*simulation_); cause && std::string_view(*cause) == "begin")
-    {
         make_snapshot(simulation_->capture(), "", *cause);
-        send_snapshot(true);
-    }
 }
 
 void Service::publish_status(double rate_reached, double slipped, bool slipping)
@@ -267,7 +264,7 @@ void Service::publish_status(double rate_reached, double slipped, bool slipping)
     const simulation::History& history = simulation_->history();
     s.rewind_from = history.can_rewind() ? history.earliest() : -1;
     s.snapshots = kept_snapshots();
-    if (recording_) s.recording = recording_->progress();
+    if (recording_) s.recording = recording_->progress(), s.recording.dropped += snapshots_.left_out();
     collector_.status(s);
 }
 

@@ -8,6 +8,7 @@
 #include "control/operations.h"
 #include "daemon/options.h"
 #include "daemon/recording.h"
+#include "daemon/snapshot_desk.h"
 #include "daemon/wake.h"
 #include "plugins/library.h"
 #include "publish/collector.h"
@@ -79,7 +80,7 @@ private:
     std::vector<std::string> words_of(const simulation::Snapshot& snapshot) const;
     void write_journal(const Origin& origin, const simulation::Reply& reply);
     void make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause);
-    void send_snapshot(bool wait);
+    void send_snapshots();
     void send_named_snapshots(const Origin& origin);
     std::vector<publish::KeptSnapshot> kept_snapshots() const;
 
@@ -92,7 +93,8 @@ private:
     std::optional<RecordModule> record_module_;  // goes after recording_
     std::unique_ptr<record::Recording> recording_;
     publish::Collector collector_;
-    SnapshotDesk snapshots_;
+    const Wake* wake_ = nullptr;
+    SnapshotDesk snapshots_;  // wakes the loop; what it uses stands above
     std::map<std::uint64_t, Origin> waiting_;
     /// Requests that name a step, also after they took effect: a snapshot may make them wait again.
     std::map<std::uint64_t, Origin> timed_;

@@ -30,7 +30,8 @@ bool Service::wanted() const
 bool Service::close_recording()
 {
     if (!recording_) return true;
-    send_snapshot(true);
+    snapshots_.finish();
+    send_snapshots();
     const auto closed = recording_->close();
     const publish::RecordingStatus status = recording_->progress();
     if (!closed) spdlog::error("{}", closed.error().reason);
@@ -62,6 +63,8 @@ std::vector<std::string> Service::words_of(const simulation::Snapshot& snapshot)
         publish::RequestText text;
         if (const auto said = timed_.find(request->id); said != timed_.end())
             text.operations = said->second.texts;
+        else if (const auto asked = waiting_.find(request->id); asked != waiting_.end())
+            text.operations = asked->second.texts;  // names no step: it came with the one that asks for the snapshot
         else
             spdlog::warn("a request that waits for step {} is too old: the snapshot goes without it", request->at.value_or(-1));
         if (request->at) text.at = *request->at;
@@ -101,19 +104,20 @@ void Service::send_named_snapshots(const Origin& origin)
 
 void Service::make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause)
 {
-    send_snapshot(true);
-    snapshots_.begin(snapshot, words_of(snapshot), name, cause);
+    if (snapshots_.begin(snapshot, words_of(snapshot), name, cause)) return;
+    // Said at the first, the second, the fourth ...: the log does not fill up with it.
+    if (const std::uint64_t n = snapshots_.left_out(); (n & (n - 1)) == 0)
+        spdlog::warn("{} snapshots were left out so far: they are wanted faster than they can be written down", n);
 }
 
-/// Hands over the snapshot that has been made, if there is one.
-void Service::send_snapshot(bool wait)
+/// Hands over those that have been made; none waits for another, nor the loop for any.
+void Service::send_snapshots()
 {
-    auto made = snapshots_.take(wait);
-    if (!made) return;
-    if (*made)
-        collector_.snapshot(**made);
-    else
-        spdlog::error("no snapshot was recorded: {}", made->error().text());
+    while (auto made = snapshots_.take())
+        if (*made)
+            collector_.snapshot(**made);
+        else
+            spdlog::error("no snapshot was written down: {}", made->error().text());
 }
 
 std::vector<publish::KeptSnapshot> Service::kept_snapshots() const

@@ -132,16 +132,14 @@ void Collector::tell_states(const simulation::Simulation& s, Nanoseconds now, Wh
     }
     if (!wanted) return;
     const bool servers_turn = when == When::InTurn && states_.due(now);
-    bool counted = false;
     for (Watcher& w : watchers_)
     {
         const bool due = for_all || (when == When::InTurn && in_turn(*w.observer, Stream::States, s.time(), w.next_frame, servers_turn));
         if (!w.states.wanted || !due) continue;
-        frames_ += counted ? 0 : 1;
-        counted = true;
         Frame& frame = w.observer->begin_frame();
         fill_frame(s, catalogue_.roster(), frame);
-        frame.number = frames_;
+        // Its own: who gets every tenth has not missed nine.
+        frame.number = ++w.frames;
         w.observer->end_frame();
         // Out of turn: the next one is due an interval from here.
         if (const auto interval = w.observer->interval(Stream::States); for_all && interval) w.next_frame = s.time() + *interval;

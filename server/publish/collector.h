@@ -67,6 +67,7 @@ private:
         Wish states, metrics, snapshots;
         double next_frame = 0, next_metrics = 0, next_snapshot = 0;  ///< s, simulated: of those with intervals of their own
         std::uint64_t snapshot_run = 0;
+        std::uint64_t frames = 0;  ///< handed over
     };
     enum class When
     {
@@ -93,7 +94,6 @@ private:
     std::uint64_t run_ = 0;
     Nanoseconds sampled_ = 0;     ///< when metrics went out last
     bool metrics_asked_ = false;  ///< out of turn
-    std::uint64_t frames_ = 0;
     std::uint64_t next_event_ = 1, next_collision_ = 1, next_journal_ = 1;
     Status told_;
     Nanoseconds told_at_ = 0;

@@ -1,4 +1,5 @@
-/// State hashes of consecutive steps, gathered so that a thousand steps a second are no thousand samples.
+/// State hashes of consecutive steps, gathered so that a thousand steps a second are no thousand samples. None waits here
+/// for longer than 3 ms, as long as steps come as fast as they came.
 #pragma once
 
 #include <optional>
@@ -21,7 +22,9 @@ public:
         if (!record_.hashes.empty() && (record_.run != run || next != step)) out = flush();
         if (record_.hashes.empty()) record_.run = run, record_.step = step, record_.first = next_, since_ = now;
         record_.hashes.push_back(hash), ++next_;
-        if (!out && (record_.hashes.size() >= kMost || now - since_ >= kLongest)) out = flush();
+        // The next hash is a step away: the first of these would have to wait for it.
+        const Nanoseconds step_time = now - std::exchange(last_, now);
+        if (!out && (record_.hashes.size() >= kMost || now - since_ + step_time > kLongest)) out = flush();
         return out;
     }
     /// Whatever has been gathered and waits for long, or in any case.
@@ -34,10 +37,11 @@ public:
 
 private:
     static constexpr std::size_t kMost = 64;
-    static constexpr Nanoseconds kLongest = 10'000'000;
+    static constexpr Nanoseconds kLongest = 3'000'000;
     HashRecord record_;
     std::uint64_t next_ = 1;
-    Nanoseconds since_ = 0;
+    Nanoseconds since_ = 0;  ///< the first of them
+    Nanoseconds last_ = 0;
 };
 
 }  // namespace plab::publish

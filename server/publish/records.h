@@ -35,7 +35,7 @@ struct ShaftState
 struct Frame
 {
     std::uint64_t run = 0, revision = 0;
-    std::uint64_t number = 0;  ///< counts frames taken
+    std::uint64_t number = 0;  ///< counts frames handed to this observer
     Tick step = 0;
     double time = 0;
     std::int64_t stamp_ns = 0;

@@ -66,7 +66,7 @@ void merge(const plab_v1_Frame& f, publish::Frame& out)
 
 Result<std::unique_ptr<FileLog>> FileLog::open(const std::string& file)
 {
-    auto reader = recording::Reader::open(file);
+    auto reader = recording::open_recording(file);
     if (!reader) return reader.errors();
     std::unique_ptr<FileLog> log(new FileLog(reader.take()));
     if (auto listed = log->list_snapshots(); !listed) return listed.errors();
@@ -177,10 +177,11 @@ Result<std::optional<publish::Frame>> FileLog::frame(std::uint64_t run, Tick ste
                                     [&](const plab_v1_Frame& f, std::uint64_t)
                                     {
                                         if (f.run != run) return true;
-                                        if (f.step > step) return false;
+                                        // Of several after one step the last counts: a request may have changed states.
+                                        if (there && f.step > merged.step) return false;
                                         merge(f, merged);
-                                        there = f.step == step;
-                                        return true;
+                                        there = f.step >= step;
+                                        return f.step <= step;
                                     });
     if (!done) return done.errors();
     return there ? std::optional(std::move(merged)) : std::nullopt;
@@ -201,7 +202,7 @@ Result<std::vector<std::pair<std::uint32_t, std::string>>> FileLog::objects(std:
 
 std::string FileLog::origin(const std::string& key) const
 {
-    const auto about = reader_.metadata("plab");
+    const auto about = reader_.metadata(recording::kAbout);
     if (!about) return {};
     const auto found = about->values.find(key);
     return found == about->values.end() ? std::string() : found->second;

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "idl/recording/cdr.h"
-#include "idl/recording/reader.h"
+#include "idl/recording/format.h"
 #include "record/run_log.h"
 
 namespace plab::record

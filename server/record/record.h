@@ -26,6 +26,7 @@ struct RecordOptions
 
     // What the file says of its origin.
     std::string server, version, scene_file;
+    std::string build;      ///< another one may give other digits
     std::string blueprint;  ///< long form of the scene that is loaded
     double dt = 0;          ///< s
     std::uint32_t threads = 1;

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "idl/identity.h"
+#include "idl/recording/format.h"
 
 namespace plab::record
 {
@@ -32,14 +33,22 @@ std::string number(double value)
     return text.data();
 }
 
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+    return out;
+}
+
 /// What the file says of itself before anything else.
 Result<void> introduce(recording::Writer& writer, const RecordOptions& o, const wire::Identity& self)
 {
-    recording::Metadata about{"plab", {}};
-    about.values = {{"format", "1"},
+    recording::Metadata about{recording::kAbout, {}};
+    about.values = {{"format", std::to_string(recording::kFormat)},
                     {"recorder", "plabd"},
                     {"server", o.server},
                     {"version", o.version},
+                    {"build", o.build},
                     {"host", self.host},
                     {"started_ns", std::to_string(self.started_ns)},
                     {"scene_file", o.scene_file},
@@ -47,6 +56,7 @@ Result<void> introduce(recording::Writer& writer, const RecordOptions& o, const 
                     {"threads", std::to_string(o.threads)},
                     {"state_interval", number(o.state_interval)},
                     {"states", o.moved_only ? "moved" : "all"}};
+    if (!o.topics.empty()) about.values["topics"] = joined(o.topics);
     if (auto done = writer.add_metadata(std::move(about)); !done) return done;
     const auto* text = reinterpret_cast<const std::uint8_t*>(o.blueprint.data());
     return writer.attach(
@@ -76,8 +86,8 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecordOptions& options)
     if (!compression) return compression.errors();
     recording::WriterOptions file;
     file.compression = *compression;
-    // A kill loses what is younger than a chunk; a quarter of the 20 ms that are promised is left for the way here.
-    file.chunk_time = std::chrono::milliseconds(15);
+    // Of the 20 ms that a kill may cost a chunk takes 12; 3 go to hashes that are gathered, 2 to the writer's nap.
+    file.chunk_time = std::chrono::milliseconds(12);
     auto writer = recording::Writer::create(options.file, file, options.overwrite ? recording::Overwrite::Yes : recording::Overwrite::No);
     if (!writer) return writer.errors();
     if (auto done = introduce(*writer, options, wire::identify(options.server, options.version)); !done) return done.errors();

@@ -26,7 +26,7 @@ void Recorder::run()
         std::chrono::nanoseconds idle = kIdle;
         if (due) idle = std::min<std::chrono::nanoseconds>(idle, std::max<std::chrono::nanoseconds>(*due - recording::Clock::now(), {}));
         if (busy && any)
-            std::this_thread::sleep_for(kGather);
+            std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(kGather, idle));
         else if (queue_.size() == 0)
             wake_up_.sleep(idle);
         busy = any;
@@ -55,7 +55,9 @@ bool Recorder::pass()
 
 void Recorder::write(Entry& entry)
 {
-    const std::uint64_t log_time = timeline_.at(entry.run, entry.time);
+    // Snapshots are written down beside the run and come late: they stand where they were taken, a run's first one before it.
+    const auto* snapshot = std::get_if<publish::SnapshotRecord>(&entry.body);
+    const std::uint64_t log_time = snapshot ? timeline_.at(snapshot->run, snapshot->time) : timeline_.at(entry.run, entry.time);
     if (entry.lost.messages > 0)
     {
         entry.lost.first_log_time = entry.lost.last_log_time = log_time;

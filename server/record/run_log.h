@@ -36,7 +36,7 @@ public:
     /// The next hashes of the run that was asked for last; nothing at its end.
     virtual Result<void> begin_hashes(std::uint64_t run) = 0;
     virtual Result<std::optional<publish::HashRecord>> next_hashes() = 0;
-    /// The frame that was recorded after this step of the run; nothing if none was.
+    /// The frame that was recorded after this step of the run, or the first one after a later step; nothing if none was.
     virtual Result<std::optional<publish::Frame>> frame(std::uint64_t run, Tick step) = 0;
     /// Ids by handle, as the catalogue named them in that run.
     virtual Result<std::vector<std::pair<std::uint32_t, std::string>>> objects(std::uint64_t run) = 0;

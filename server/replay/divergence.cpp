@@ -37,11 +37,29 @@ void compare_body(const std::string& id, const publish::BodyState& was, const pu
     compare("angular_velocity", was.angular_velocity, is.angular_velocity);
 }
 
-Result<void> compare_with_frame(record::RunLog& log, const simulation::Simulation& s, Mismatch& mismatch)
+/// Steps on to `step` with what was asked on the way.
+Result<void> go_to(Tick step, simulation::Simulation& s, const std::function<Result<void>()>& ask)
 {
-    auto frame = log.frame(mismatch.run, mismatch.step);
-    if (!frame) return frame.errors();
-    if (!*frame) return {};
+    while (s.tick() < step)
+    {
+        if (auto asked = ask(); !asked) return asked;
+        s.step_once();
+    }
+    return {};
+}
+
+/// The first one at that step or later; null if there is none.
+const record::RecordedSnapshot* snapshot_after(const record::RunLog& log, const Mismatch& mismatch)
+{
+    const record::RecordedSnapshot* next = nullptr;
+    for (const record::RecordedSnapshot& s : log.snapshots())
+        if (s.run == mismatch.run && s.step >= mismatch.step && (!next || s.step < next->step)) next = &s;
+    return next;
+}
+
+Result<void> compare_with_frame(record::RunLog& log, const publish::Frame& frame, const simulation::Simulation& s, Mismatch& mismatch)
+{
+    mismatch.frame_step = frame.step, mismatch.recorded_revision = frame.revision;
     auto objects = log.objects(mismatch.run);
     if (!objects) return objects.errors();
     const world::HostTables& host = s.world().host();
@@ -50,10 +68,10 @@ Result<void> compare_with_frame(record::RunLog& log, const simulation::Simulatio
         const std::uint32_t i = s.world().find(id);
         if (i == kNoIndex) continue;
         const world::Component& c = s.world().component(i);
-        for (const publish::BodyState& b : (*frame)->bodies)
+        for (const publish::BodyState& b : frame.bodies)
             if (b.handle == handle && c.facet == Facet::Body)
                 compare_body(id, b, publish::state_of(host.bodies, c.host_index, handle), mismatch.in_frame);
-        for (const publish::ShaftState& shaft : (*frame)->shafts)
+        for (const publish::ShaftState& shaft : frame.shafts)
         {
             if (shaft.handle != handle || c.facet != Facet::Shaft) continue;
             const auto compare = [&, &id = id](const char* field, double recorded, double replayed)
@@ -68,25 +86,16 @@ Result<void> compare_with_frame(record::RunLog& log, const simulation::Simulatio
     return {};
 }
 
-Result<void> compare_with_snapshot(record::RunLog& log, simulation::Simulation& s, model::TypeSource& types, Mismatch& mismatch,
-                                   const std::function<Result<void>()>& ask)
+Result<void> compare_with_snapshot(record::RunLog& log, const record::RecordedSnapshot& next, const simulation::Simulation& s,
+                                   model::TypeSource& types, Mismatch& mismatch)
 {
-    const record::RecordedSnapshot* next = nullptr;
-    for (const record::RecordedSnapshot& candidate : log.snapshots())
-        if (candidate.run == mismatch.run && candidate.step >= s.tick() && (!next || candidate.step < next->step)) next = &candidate;
-    if (!next) return {};
-    while (s.tick() < next->step)
-    {
-        if (auto asked = ask(); !asked) return asked;
-        s.step_once();
-    }
-    auto recorded = log.read(*next);
+    auto recorded = log.read(next);
     if (!recorded) return recorded.errors();
     auto decoded = simulation::decode(recorded->data, types);
     if (!decoded) return decoded.errors();
     simulation::Comparison how;
     how.most = kMost;
-    mismatch.snapshot_step = next->step;
+    mismatch.snapshot_step = next.step;
     mismatch.in_snapshot = simulation::differences(*decoded->snapshot, *s.capture(), how);
     return {};
 }
@@ -101,8 +110,19 @@ void add(std::string& text, const simulation::Difference& d)
 Result<void> find_differences(record::RunLog& log, simulation::Simulation& simulation, model::TypeSource& types, Mismatch& mismatch,
                               const std::function<Result<void>()>& ask)
 {
-    if (auto done = compare_with_frame(log, simulation, mismatch); !done) return done;
-    return compare_with_snapshot(log, simulation, types, mismatch, ask);
+    const record::RecordedSnapshot* const next = snapshot_after(log, mismatch);
+    auto frame = log.frame(mismatch.run, mismatch.step);
+    if (!frame) return frame.errors();
+    if (*frame && (!next || (*frame)->step <= next->step))
+    {
+        const std::uint64_t revision = simulation.revision();
+        if (auto gone = go_to((*frame)->step, simulation, ask); !gone) return gone;
+        mismatch.replayed_revision += simulation.revision() - revision;
+        if (auto done = compare_with_frame(log, **frame, simulation, mismatch); !done) return done;
+    }
+    if (!next) return {};
+    if (auto gone = go_to(next->step, simulation, ask); !gone) return gone;
+    return compare_with_snapshot(log, *next, simulation, types, mismatch);
 }
 
 std::string Mismatch::text() const
@@ -112,14 +132,26 @@ std::string Mismatch::text() const
                         "run %" PRIu64 ", step %" PRId64 ": recorded hash %016" PRIx64 ", replayed %016" PRIx64 "\n", run, step, recorded,
                         replayed);
     std::string out = head.data();
-    if (!in_frame.empty()) out += "in the recorded frame of that step:\n";
+    if (recorded_revision > replayed_revision)
+        out += "until then " + std::to_string(recorded_revision - replayed_revision) +
+               " more changes of the scene took effect than the journal tells of: requests are missing in it\n";
+    const std::string where =
+        frame_step == step ? "the recorded frame of that step" : "the recorded frame of step " + std::to_string(frame_step);
+    if (frame_step >= 0 && in_frame.empty())
+        out += where +
+               " is the same: what differs is not in frames (contacts, a script's or a coupling's state), or the hash in the file "
+               "is wrong\n";
+    else if (frame_step >= 0)
+        out += "in " + where + ":\n";
     for (const simulation::Difference& d : in_frame) add(out, d);
     if (snapshot_step >= 0)
         out += in_snapshot.empty() ? "the snapshot of step " + std::to_string(snapshot_step) + " is the same again\n"
                                    : "in the snapshot of step " + std::to_string(snapshot_step) + ":\n";
     for (const simulation::Difference& d : in_snapshot) add(out, d);
-    if (in_frame.empty() && snapshot_step < 0)
-        out += "the recording has neither a frame of that step nor a later snapshot: it cannot be told what differs\n";
+    if (frame_step < 0 && snapshot_step < 0)
+        out +=
+            "the recording has neither a frame nor a snapshot of that step or later: it cannot be told what differs; record each step "
+            "(without --record-states) and snapshots more often (--record-snapshots), or compare the columns of --trace\n";
     return out;
 }
 

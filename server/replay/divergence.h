@@ -8,8 +8,8 @@
 namespace plab::replay
 {
 
-/// Fills in what differs: against the recorded frame of this very step, and against the next recorded snapshot of the run,
-/// to which the simulation is stepped on. `ask` carries out what is due before a step.
+/// Fills in what differs: against the recorded frame of this step (or the next one that there is), and against the next
+/// recorded snapshot of the run, to which the simulation is stepped on. `ask` carries out what is due before a step.
 Result<void> find_differences(record::RunLog& log, simulation::Simulation& simulation, model::TypeSource& types, Mismatch& mismatch,
                               const std::function<Result<void>()>& ask);
 

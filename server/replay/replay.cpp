@@ -4,7 +4,7 @@
 #include <array>
 #include <cinttypes>
 #include <cstdio>
-#include <map>
+#include <string_view>
 
 #include "replay/divergence.h"
 #include "simulation/snapshot/format.h"
@@ -52,6 +52,32 @@ private:
     bool over_ = false;
 };
 
+/// Where an entry of the journal stands.
+struct JournalPlace
+{
+    std::uint64_t number = 0, run = 0;
+    Tick step = 0;
+    std::string text() const { return "step " + std::to_string(step) + " of run " + std::to_string(run); }
+};
+
+/// "" if all between the two is there. Numbers count the requests of a server that took effect.
+std::string gap_between(const JournalPlace& before, const JournalPlace& after)
+{
+    if (after.number <= before.number + 1) return {};
+    const std::uint64_t first = before.number + 1, last = after.number - 1;
+    return "the journal has a gap: " +
+           (first == last ? "entry " + std::to_string(first) + " is"
+                          : "entries " + std::to_string(first) + " to " + std::to_string(last) + " are") +
+           " missing, " + (before.number == 0 ? "before " : "after " + before.text() + ", not after ") + after.text();
+}
+
+/// Whether the recording says that it was made without this topic.
+bool is_without(const record::RunLog& log, std::string_view topic)
+{
+    const std::string topics = " " + log.origin("topics") + " ";
+    return topics.size() > 2 && topics.find(" " + std::string(topic) + " ") == std::string::npos;
+}
+
 class Replay
 {
 public:
@@ -66,6 +92,8 @@ private:
     const record::RecordedSnapshot* beginning_of(std::uint64_t run) const;
     Result<void> begin(const record::RecordedSnapshot& snapshot);
     Result<void> run(std::uint64_t run);
+    Result<void> read_journal(std::uint64_t run);
+    void look_for_gaps(std::uint64_t run);
     Result<void> ask_what_is_due();
     Result<void> verify(std::uint64_t run);
     bool over() const { return (options_->stop && options_->stop()) || report_.mismatch; }
@@ -77,6 +105,9 @@ private:
     Hashes hashes_;
     std::vector<publish::JournalRecord> journal_;
     std::size_t next_ = 0;
+    /// The journal's last entry of the runs before; none: it is not known which number comes first.
+    std::optional<JournalPlace> before_;
+    std::uint64_t revisions_ahead_ = 0;  ///< of the recorded run over this one, when it began
     ReplayReport report_;
 };
 
@@ -94,7 +125,31 @@ Result<void> Replay::begin(const record::RecordedSnapshot& snapshot)
     if (!recorded) return recorded.errors();
     auto decoded = simulation::decode(recorded->data, *types_);
     if (!decoded) return decoded.errors();
-    return s_->restore(decoded->snapshot);
+    if (auto restored = s_->restore(decoded->snapshot); !restored) return restored;
+    revisions_ahead_ = recorded->revision - s_->revision();
+    return {};
+}
+
+Result<void> Replay::read_journal(std::uint64_t run)
+{
+    auto journal = log_->journal(run);
+    if (!journal) return journal.errors();
+    journal_ = journal.take(), next_ = 0;
+    look_for_gaps(run);
+    // A request that begins a run is what the run's first snapshot shows already.
+    std::erase_if(journal_, [](const publish::JournalRecord& j) { return control::begins_a_run(j.operations); });
+    return {};
+}
+
+void Replay::look_for_gaps(std::uint64_t run)
+{
+    for (const publish::JournalRecord& entry : journal_)
+    {
+        const JournalPlace here{entry.number, run, entry.step};
+        if (before_)
+            if (std::string gap = gap_between(*before_, here); !gap.empty()) report_.doubts.push_back(std::move(gap));
+        before_ = here;
+    }
 }
 
 /// Requests that took effect before the step that comes next.
@@ -130,7 +185,9 @@ Result<void> Replay::verify(std::uint64_t run)
         ++report_.verified;
         return {};
     }
-    Mismatch mismatch{run, s_->tick(), **recorded, now, {}, {}, -1};
+    Mismatch mismatch;
+    mismatch.run = run, mismatch.step = s_->tick(), mismatch.recorded = **recorded, mismatch.replayed = now;
+    mismatch.replayed_revision = s_->revision() + revisions_ahead_;
     if (auto found = find_differences(*log_, *s_, *types_, mismatch, [&] { return ask_what_is_due(); }); !found) return found;
     report_.mismatch = std::move(mismatch);
     return {};
@@ -141,13 +198,10 @@ Result<void> Replay::run(std::uint64_t run)
     const record::RecordedSnapshot* const from = beginning_of(run);
     if (!from) return reason("the recording has no snapshot of run " + std::to_string(run) + ": nothing to begin from");
     if (auto begun = begin(*from); !begun) return begun;
-    auto journal = log_->journal(run);
-    if (!journal) return journal.errors();
-    // A request that begins a run is what the run's first snapshot shows already.
-    journal_ = journal.take(), next_ = 0;
-    std::erase_if(journal_, [](const publish::JournalRecord& j) { return control::begins_a_run(j.operations); });
+    if (auto read = read_journal(run); !read) return read;
     if (auto begun = hashes_.begin(run); !begun) return begun;
     ++report_.runs;
+    report_.made.push_back({run, s_->tick(), s_->tick(), s_->time()});
     if (options_->begun) options_->begun(s_->time());
     while (!over())
     {
@@ -157,7 +211,7 @@ Result<void> Replay::run(std::uint64_t run)
         if (!*more) break;
         if (auto asked = ask_what_is_due(); !asked) return asked;
         s_->step_once();
-        ++report_.steps;
+        ++report_.steps, report_.made.back().last = s_->tick();
         if (options_->verify)
             if (auto verified = verify(run); !verified) return verified;
         if (options_->stepped) options_->stepped();
@@ -171,7 +225,14 @@ Result<ReplayReport> Replay::go()
     for (const record::RecordedSnapshot& s : log_->snapshots())
         if (std::find(runs.begin(), runs.end(), s.run) == runs.end()) runs.push_back(s.run);
     if (options_->run) runs = {*options_->run};
-    if (runs.empty()) return reason("the recording has no snapshot to begin from");
+    if (runs.empty())
+        return reason(std::string("the recording has no snapshot to begin from") +
+                      (is_without(*log_, "plab/snapshots") ? ": it was made without plab/snapshots" : ""));
+    if (is_without(*log_, "plab/journal"))
+        report_.doubts.emplace_back("the recording was made without plab/journal: what was asked of the run is not known");
+    // plabd's own recordings have all of a server's life, and its journal from its first entry on.
+    else if (!options_->run && log_->origin("recorder") == "plabd")
+        before_ = JournalPlace{};
     for (const std::uint64_t r : runs)
     {
         if (over()) break;

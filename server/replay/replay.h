@@ -31,11 +31,23 @@ struct Mismatch
     std::uint64_t run = 0;
     Tick step = 0;
     std::uint64_t recorded = 0, replayed = 0;  ///< hashes
-    /// What differs: from the recorded frame of that step, and from the next snapshot, as far as there are such.
+    /// What differs: from the recorded frame of that step or the next one that there is, and from the next snapshot, as far as there are
+    /// such.
     std::vector<simulation::Difference> in_frame, in_snapshot;
     Tick snapshot_step = -1;
+    Tick frame_step = -1;  ///< of the recorded frame; < 0: none comes before the snapshot
+    /// Components added, removed or exchanged until then: what that frame says, and what was made again.
+    std::uint64_t recorded_revision = 0, replayed_revision = 0;
 
     std::string text() const;
+};
+
+/// What was made again of a run.
+struct ReplayedRun
+{
+    std::uint64_t run = 0;
+    Tick first = 0, last = 0;  ///< steps: of the snapshot that it began from, and of the end
+    double time = 0;           ///< s, where it began
 };
 
 struct ReplayReport
@@ -45,6 +57,9 @@ struct ReplayReport
     std::int64_t verified = 0;  ///< of them with a recorded hash
     std::optional<Mismatch> mismatch;
     std::uint64_t last_hash = 0;
+    std::vector<ReplayedRun> made;
+    /// Why the replay may differ, though nothing is wrong with it: requests that the recording does not tell of.
+    std::vector<std::string> doubts;
 };
 
 /// Runs in `simulation`, whose types must be those of the recording. An error: the recording has no snapshot to begin

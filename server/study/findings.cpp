@@ -110,14 +110,20 @@ void tell_orders(const StudyResult& r, std::vector<std::string>& out)
 void tell_failures(const StudyResult& r, std::vector<std::string>& out)
 {
     std::map<std::string, std::vector<std::string>> by_outcome;
+    std::map<std::string, std::string> why;  // of the first
     for (const Point& p : r.points)
-        if (!p.record.ok()) by_outcome[std::string(name_of(p.record.outcome))].push_back(p.combination.label());
+    {
+        if (p.record.ok()) continue;
+        by_outcome[std::string(name_of(p.record.outcome))].push_back(p.combination.label());
+        why.emplace(name_of(p.record.outcome), p.record.why);
+    }
     for (const auto& [outcome, labels] : by_outcome)
     {
         std::string line = labels.size() == 1 ? "One run gave no result (" + outcome + "): "
                                               : std::to_string(labels.size()) + " runs gave no result (" + outcome + "): ";
         for (std::size_t i = 0; i < std::min<std::size_t>(labels.size(), 4); ++i) line += (i == 0 ? "" : ", ") + labels[i];
-        out.push_back(line + (labels.size() > 4 ? ", ..." : "") + ".");
+        line += labels.size() > 4 ? ", ..." : "";
+        out.push_back(line + (labels.size() > 1 ? ". The first: " : ": ") + why[outcome] + ".");
     }
     int missed = 0;
     std::string who;
@@ -134,16 +140,21 @@ void tell_failures(const StudyResult& r, std::vector<std::string>& out)
 void tell_energy(const StudyResult& r, std::vector<std::string>& out)
 {
     const Point *best = nullptr, *worst = nullptr;
+    int count = 0;
     for (const Point& p : r.points)
     {
         if (!p.record.ok() || !std::isfinite(p.energy_drift) || p.record.energy.scale <= 0) continue;
+        ++count;
         if (!best || p.energy_drift < best->energy_drift) best = &p;
         if (!worst || p.energy_drift > worst->energy_drift) worst = &p;
     }
     if (!best) return;
-    if (worst->energy_drift <= plot::kRoundOff) return out.push_back("Energy is kept to round-off by all.");
-    out.push_back("Energy that nobody put in, beside the largest there was: from " + short_number(best->energy_drift) + " (" +
-                  best->combination.label() + ") to " + short_number(worst->energy_drift) + " (" + worst->combination.label() + ").");
+    const std::string all = count > 1 ? " by all" : "";
+    if (worst->energy_drift <= plot::kRoundOff) return out.push_back("Energy is kept to round-off" + all + ".");
+    const auto told = [](const Point* p) { return short_number(p->energy_drift) + " (" + p->combination.label() + ")"; };
+    std::string range = count == 1 ? told(best) : "from " + told(best) + " to " + told(worst);
+    if (count > 1 && best->energy_drift == worst->energy_drift) range = short_number(best->energy_drift) + all;
+    out.push_back("Energy that nobody put in, beside the largest there was: " + range + ".");
 }
 
 void tell_limits(const StudyResult& r, std::vector<std::string>& out)
@@ -159,7 +170,8 @@ void tell_limits(const StudyResult& r, std::vector<std::string>& out)
     if (hidden > 0)
         out.push_back(std::to_string(hidden) + (hidden == 1 ? " run is" : " runs are") +
                       " as near to the reference as the reference is known: their errors are upper bounds.");
-    if (!noisy.empty()) out.push_back("Steps that allocated memory after the first tenth of the run: " + noisy + ".");
+    if (!noisy.empty()) out.push_back("Allocations of memory in warm steps: " + noisy + ".");
+    if (r.reference.kind == "auto" && !r.reference.converges) out.push_back("The reference is uncertain: " + r.reference.words + ".");
 }
 
 }  // namespace

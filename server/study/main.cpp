@@ -17,10 +17,10 @@ namespace
 
 using namespace plab;
 
-int fail(const Errors& errors)
+int fail(const Errors& errors, int code = 1)
 {
     for (const Error& e : errors) std::fprintf(stderr, "plab-study: %s\n", e.text().c_str());
-    return 1;
+    return code;
 }
 
 /// One line that is written over on a terminal, a line each elsewhere.
@@ -63,7 +63,7 @@ study::Plan plan_of(const study::Options& options, model::SceneSpec scene)
     study::Plan plan;
     plan.scene = std::move(scene), plan.command = options.command, plan.combinations = study::combine(options.rungs, options.varied);
     plan.reference = options.reference, plan.repeat = options.repeat, plan.scales = options.scales;
-    plan.run.until = options.until, plan.run.quantities = options.quantities, plan.run.swaps = options.swaps;
+    plan.run.until = options.until, plan.run.quantities = options.quantities, plan.swaps = options.swaps;
     plan.run.floor = options.floor, plan.run.budget = options.budget, plan.run.allocations = &study::allocations;
     if (!options.quiet) plan.progress = &show_progress;
     return plan;
@@ -101,6 +101,7 @@ int carry_out(const study::Options& options)
     if (!scene) return fail(scene.errors());
     const study::Plan plan = plan_of(options, scene.take());
     if (options.list) return list(plan, library);
+    if (auto fine = study::check_swaps(library, plan); !fine) return fail(fine.errors(), 2);
     auto result = study::run_study(library, plan);
     end_progress();
     if (!result) return fail(result.errors());

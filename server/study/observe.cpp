@@ -173,7 +173,8 @@ void Observation::finish()
             if (f.kind != FieldKind::Output) continue;
             const Value v = s_->world().get(i, f.name);
             if (const auto x = number_of(v)) part.outputs[f.name] = *x;
-            if (const auto* text = std::get_if<std::string>(&v); text && f.name == "resolved" && part.resolved.empty()) part.resolved = *text;
+            if (const auto* text = std::get_if<std::string>(&v); text && f.name == "resolved" && part.resolved.empty())
+                part.resolved = *text;
         }
     }
 }

@@ -1,7 +1,6 @@
 #include "study/options.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 
 #include "model/numbers.h"
 
@@ -18,7 +17,7 @@ constexpr const char* kExamples = R"(Examples:
   plab-study scenes/fan_and_balloons.xml --vary gears=Assign,Impulse,Graph --vary dt=1/120,1/240 --until 5 -o out
   plab-study SCENE --rung "penalty: contact.response=Penalty contact.resolution=None" --rung "impulse: contact.response=Impulse"
              --vary dt=1/60,1/240 --until 5 -o out
-  plab-study SCENE --swap 120:contact.response=Response/None --vary dt=1/60 --until 5 -o out
+  plab-study SCENE --swap 2s:contact.response=None --vary dt=1/60,1/120 --until 5 -o out
   plab-study --suite scenes/studies/suite.json -o out
 
 DIR then holds report.html (open it in a browser), results.csv, results.json, reference.csv and the pictures.
@@ -38,18 +37,6 @@ Result<double> positive(const std::string& name, const std::string& text)
     return v;
 }
 
-Result<SwapAt> parse_swap(const std::string& text)
-{
-    const std::size_t colon = text.find(':'), equal = text.rfind('=');
-    SwapAt out;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + std::min(colon, text.size()), out.at);
-    const bool number = colon != std::string::npos && error == std::errc() && end == text.data() + colon && out.at >= 0;
-    if (!number || equal == std::string::npos || equal <= colon + 1 || equal + 1 == text.size())
-        return reason("--swap wants STEP:ID=TYPE, such as 120:contact.response=Response/None, not '" + text + "'");
-    out.id = text.substr(colon + 1, equal - colon - 1), out.type = text.substr(equal + 1);
-    return out;
-}
-
 Result<void> understand(const Texts& texts, Options& out)
 {
     for (const std::string& text : texts.vary)
@@ -64,6 +51,7 @@ Result<void> understand(const Texts& texts, Options& out)
         if (!v) return v.errors();
         out.rungs.push_back(v.take());
     }
+    if (auto fine = check_settings(out.rungs, out.varied); !fine) return fine;
     for (const std::string& text : texts.swaps)
     {
         auto v = parse_swap(text);
@@ -140,7 +128,9 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     app.add_option("--repeat", options.repeat, "timed runs of each combination, interleaved")->check(CLI::Range(1, 1000));
     app.add_option("--budget", texts.budget, "CPU seconds for one run; one that needs more is cut: a result, too slow")->type_name("S");
     app.add_option("--floor", texts.floor, "height z in m; a body whose centre gets below it fell through")->type_name("Z");
-    many("--swap", texts.swaps, "STEP:ID=TYPE: exchange a component before that step of every run (may be repeated)");
+    many("--swap", texts.swaps,
+         "STEP:ID=TYPE or TIME:ID=TYPE, such as 0.5s:..: exchange a component in every run, before that step or at that time (may be "
+         "repeated)");
     app.add_option("-o,--out", options.out, "folder for report.html, results.csv, results.json and the pictures")->type_name("DIR");
     app.add_option("--suite", suite, "a catalogue of studies (JSON) instead of a scene")->type_name("FILE");
     app.add_option("--tolerance", texts.tolerance, "suite: an error up to here counts as solved; default: 1e-6");

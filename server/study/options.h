@@ -23,7 +23,7 @@ struct Options
     ReferencePlan reference;
     std::vector<std::string> quantities;
     std::map<std::string, double> scales;
-    std::vector<SwapAt> swaps;
+    std::vector<PlannedSwap> swaps;
     std::optional<double> floor;
     double until = -1;
     double budget = std::numeric_limits<double>::infinity();

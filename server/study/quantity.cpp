@@ -73,22 +73,47 @@ std::uint32_t find_owner(const world::World& world, const std::string& text, std
     return kNoIndex;
 }
 
-Error unknown_owner(const world::World& world, const std::string& text)
+std::vector<std::string> numbers_of(const world::World& world, std::uint32_t owner)
+{
+    std::vector<std::string> names;
+    if (const model::ComponentType* type = world.type_of(owner))
+        for (const Field& f : type->schema.fields())
+            if (width_of(world.get(owner, f.name)) > 0) names.push_back(f.name);
+    return names;
+}
+
+std::vector<std::string> ids_of(const world::World& world)
 {
     std::vector<std::string> ids;
     for (const std::uint32_t i : world.in_id_order()) ids.push_back(world.id_of(i));
-    return reason("quantity '" + text + "': no component has such an id" + model::did_you_mean(text.substr(0, text.find('.')), ids) +
-                  "; write ID.field, such as ball.position");
+    return ids;
 }
 
-Error unknown_field(const world::World& world, std::uint32_t owner, const std::string& text)
+Error unknown_field(const world::World& world, std::uint32_t owner, const std::string& text, const std::string& field)
 {
-    std::string names;
-    if (const model::ComponentType* type = world.type_of(owner))
-        for (const Field& f : type->schema.fields())
-            if (width_of(world.get(owner, f.name)) > 0) names += (names.empty() ? "" : ", ") + f.name;
-    return reason("quantity '" + text + "': " + world.id_of(owner) +
-                  (names.empty() ? " has no field that is a number" : " has no such number; it has " + names));
+    const std::vector<std::string> names = numbers_of(world, owner);
+    const std::string id = world.id_of(owner), at = "quantity '" + text + "': ";
+    if (names.empty()) return reason(at + id + " has no field that is a number");
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+    if (field.empty())
+        return reason(at + "names no field of " + id + ": write ID.field, such as " + id + "." + names.front() + "; it has " + all);
+    std::string near = model::did_you_mean(field, names);
+    // Perhaps the name of a part of it was meant: contact.respnse.sweeps.
+    if (near.empty() && field.find('.') != std::string::npos) near = model::did_you_mean(text.substr(0, text.rfind('.')), ids_of(world));
+    return reason(at + id + " has no number '" + field + "'" + near + "; it has " + all);
+}
+
+Error unknown_owner(const world::World& world, const std::string& text)
+{
+    if (const std::uint32_t whole = world.find(text); whole != kNoIndex) return unknown_field(world, whole, text, "");
+    const std::vector<std::string> ids = ids_of(world);
+    // An id may have dots: the longest beginning that resembles one tells most.
+    std::string near;
+    for (std::size_t dot = text.rfind('.'); near.empty() && dot != std::string::npos && dot > 0; dot = text.rfind('.', dot - 1))
+        near = model::did_you_mean(text.substr(0, dot), ids);
+    if (text.find('.') == std::string::npos) near = model::did_you_mean(text, ids);
+    return reason("quantity '" + text + "': no component has such an id" + near + "; write ID.field, such as ball.position");
 }
 
 bool finite(std::span<const double> v)
@@ -111,7 +136,7 @@ Result<Quantity> resolve_quantity(const world::World& world, const std::string& 
         const std::size_t dot = q.field.rfind('.');
         const Value whole = dot == std::string::npos ? Value() : world.get(owner, q.field.substr(0, dot));
         q.part = dot == std::string::npos ? std::nullopt : part_of(q.field.substr(dot + 1), whole);
-        if (!q.part) return unknown_field(world, owner, text);
+        if (!q.part) return unknown_field(world, owner, text, q.field);
         q.field.resize(dot), value = whole;
     }
     q.width = q.part ? 1 : width_of(value);

@@ -16,6 +16,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Differences of runs below this are round-off: no order can be read from them.
 constexpr double kRoundOff = 2e-14;
 
+/// Orders below are no method's: what is seen then is an event or a jump, and may be anything with the next halving.
+constexpr double kLeastOrder = 0.9;
+/// Slower than this, differences do not tell how far it still is.
+constexpr double kSlowestTold = 0.2;
+
 /// y4 + share (y4 - y2); attitudes along the geodesic.
 void extrapolate(const Quantity& q, std::span<const double> y2, std::span<const double> y4, double share, std::vector<double>& out)
 {
@@ -32,7 +37,7 @@ void extrapolate(const Quantity& q, std::span<const double> y2, std::span<const 
 /// The order to extrapolate with; 0: none.
 double usable_order(double seen)
 {
-    if (!(seen > 0.6) || seen > 14) return 0;
+    if (!(seen >= kLeastOrder) || seen > 14) return 0;
     const double whole = std::round(seen);
     return std::fabs(seen - whole) < 0.25 ? whole : seen;
 }
@@ -48,6 +53,15 @@ Distance larger(const Distance& a, const Distance& b)
             std::max(a.last_absolute, b.last_absolute)};
 }
 
+/// How far y4 may be from the truth where it is taken as it is.
+Distance doubt(const Distance& far, const Distance& near, double seen)
+{
+    const Distance most = larger(far, near);
+    if (!(seen < kLeastOrder)) return most;
+    const double share = 1 / (std::pow(2.0, std::max(seen, kSlowestTold)) - 1);
+    return larger(most, times(seen > kSlowestTold ? near : most, share));
+}
+
 void add_quantity(Reference& out, const Quantity& q, const Course& y1, const Course& y2, const Course& y4)
 {
     const double scale = scale_of(y4);
@@ -57,11 +71,25 @@ void add_quantity(Reference& out, const Quantity& q, const Course& y1, const Cou
     Course course{q.width, {}};
     const double share = p > 0 ? 1 / (std::pow(2.0, p) - 1) : 0;
     for (std::size_t i = 0; i < y4.samples(); ++i) extrapolate(q, y2.at(i), y4.at(i), share, course.values);
-    out.converges = out.converges && (round_off || p > 0);
+    out.converged.push_back(round_off || p > 0), out.converges = out.converges && out.converged.back();
     out.order.push_back(seen);
     out.scale.push_back(scale_of(course));
-    out.uncertainty.push_back(p > 0 ? times(near, share) : larger(far, near));
+    out.uncertainty.push_back(p > 0 ? times(near, share) : doubt(far, near, seen));
     out.courses.push_back(std::move(course));
+}
+
+/// "; not converged, taken from the finest run as it is: ball.position (observed order 0.62)"
+std::string unsure(const Reference& r, const std::vector<Quantity>& quantities)
+{
+    std::string out;
+    for (std::size_t k = 0; k < quantities.size(); ++k)
+        if (!r.converged[k])
+        {
+            char order[40];
+            std::snprintf(order, sizeof order, " (observed order %.2f)", r.order[k]);
+            out += (out.empty() ? "" : ", ") + quantities[k].name + (std::isfinite(r.order[k]) ? order : "");
+        }
+    return "; not converged, taken from the finest run as it is: " + out;
 }
 
 std::vector<std::string> split(const std::string& line)
@@ -205,8 +233,8 @@ Reference auto_reference(const std::vector<RunRecord>& runs, const std::string& 
     out.kind = "auto", out.times = y4.times;
     for (std::size_t k = 0; k < y4.quantities.size(); ++k) add_quantity(out, y4.quantities[k], y1.courses[k], y2.courses[k], y4.courses[k]);
     out.knows_contacts = true, out.contacts = y4.contacts;
-    out.words = rung + " with dt = " + dt + " s, halved twice" +
-                (out.converges ? ", extrapolated by Richardson" : "; the three runs do not converge, the finest is taken as it is");
+    out.words =
+        rung + " with dt = " + dt + " s, halved twice" + (out.converges ? ", extrapolated by Richardson" : unsure(out, y4.quantities));
     return out;
 }
 

@@ -16,7 +16,8 @@ struct Reference
     std::vector<double> scale;          ///< a of the mixed error, by quantity
     std::vector<Distance> uncertainty;  ///< by quantity; NaN: not known
     std::vector<double> order;          ///< observed order of convergence by quantity; NaN: none to be seen
-    bool converges = true;              ///< auto: the three runs come closer to one another
+    std::vector<bool> converged;        ///< auto, by quantity: extrapolated, or the same to round-off
+    bool converges = true;              ///< all of them
     bool knows_contacts = false;
     std::vector<Touch> contacts;
     std::string trouble;  ///< why there is none
@@ -33,8 +34,13 @@ Result<Reference> file_reference(const std::vector<Quantity>& quantities, const 
 
 /// Three runs of one rung with dt, dt/2 and dt/4, extrapolated by Richardson:
 ///   p = log2(|y1 - y2| / |y2 - y4|),   y = y4 + (y4 - y2)/(2^p - 1)
-/// with p the nearest whole number where it is near to one. The uncertainty is the size of that correction; where the three
-/// do not converge, or agree to round-off, it is their largest difference and nothing is extrapolated.
+/// with p the nearest whole number where it is near to one. The uncertainty is the size of that correction. Where the three
+/// agree to round-off nothing is extrapolated, and it is their largest difference.
+///
+/// An order below 0.9 is that of no method: something is located a step late, or jumps, or is chaos. That counts as not
+/// converged: y4 is taken as it is, and the uncertainty is what the series would have left if it went on at that order,
+/// |y2 - y4|/(2^p - 1), or the largest difference if that is more. Below p = 0.2 nothing says that it goes on: then it is as
+/// large as for 0.2, of the largest difference.
 Reference auto_reference(const std::vector<RunRecord>& coarse_to_fine, const std::string& rung, const std::string& dt);
 
 }  // namespace plab::study

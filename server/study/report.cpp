@@ -67,7 +67,8 @@ void add_table(Page& page, const StudyResult& r)
              {"impact t", "largest error of an impact's time, s"},
              {"evaluations", "of forces"},
              {"trials", "trial advances made to locate events"},
-             {"allocations", "calls of the allocator by steps after the first tenth of the run"}})
+             {"allocations",
+              "calls of the allocator in warm steps: after a tenth of the run and at least 20 steps, from its start and from each swap"}})
         head.push_back({name, "", hint});
     std::vector<std::vector<PageCell>> rows;
     for (const Point& p : r.points)

@@ -17,6 +17,9 @@ constexpr int kSamples = 200;
 /// The budget is looked at this often: a look costs less than a thousandth of the cheapest step.
 constexpr Tick kStepsPerLook = 16;
 
+/// Steps are warm after a tenth of the run and at least this many, from the start and from each swap: buffers have grown then.
+constexpr Tick kFewestToWarm = 20;
+
 /// The step boundary at t, to within a thousandth of a step.
 Tick tick_at(double t, double dt) { return static_cast<Tick>(std::floor(t / dt + 1e-3)); }
 
@@ -65,7 +68,7 @@ public:
         out_.dt = s_.dt();
         post_swaps(s_, options_.swaps);
         const std::vector<Tick> samples = sample_ticks(options_, s_.dt());
-        warm_ = samples.back() / 10;
+        warming_ = std::max(kFewestToWarm, samples.back() / 10), warm_from_ = warming_;
         const double begin = thread_cpu_seconds();
         for (const Tick next : samples)
         {
@@ -75,6 +78,8 @@ public:
             if (!std::isfinite(out_.energy.energy.back()))
                 fail(Outcome::NotFinite, "the energy of the scene was no number any more at t = " + model::format_real(s_.time()) + " s");
         }
+        if (out_.ok() && out_.swaps.size() < options_.swaps.size())
+            fail(Outcome::SwapRefused, "the run ended after " + std::to_string(s_.tick()) + " steps, before the step of a swap");
         out_.steps = s_.tick(), out_.reached = s_.time(), out_.hash = s_.state_hash();
         observe_.finish();
     }
@@ -84,13 +89,32 @@ private:
     {
         const std::uint64_t before = options_.allocations ? options_.allocations() : 0;
         const bool stepped = s_.step();
-        if (options_.allocations && s_.tick() > warm_) out_.allocations = out_.allocations.value_or(0) + options_.allocations() - before;
+        const std::uint64_t made = options_.allocations ? options_.allocations() - before : 0;
         if (!stepped) return fail(Outcome::Frozen, "the scene was paused and did not step");
         observe_.step();
-        for (simulation::Reply& reply : s_.take_replies()) out_.swaps.push_back(std::move(reply));
+        if (take_replies() > 0) warm_from_ = s_.tick() + warming_;
+        if (options_.allocations && s_.tick() > warm_from_) out_.allocations = out_.allocations.value_or(0) + made;
+        if (!out_.ok()) return;
         check();
         if (s_.tick() % kStepsPerLook == 0 && thread_cpu_seconds() - begin > options_.budget)
             fail(Outcome::TooSlow, "cut after " + std::to_string(options_.budget) + " s of CPU time");
+    }
+    /// How many swaps were answered before this step.
+    std::size_t take_replies()
+    {
+        const std::size_t before = out_.swaps.size();
+        for (simulation::Reply& reply : s_.take_replies())
+        {
+            if (!reply.done && out_.ok())
+            {
+                char when[80];
+                const long long step = s_.tick() - 1;
+                std::snprintf(when, sizeof when, "the swap before step %lld, at t = %.9g s: ", step, static_cast<double>(step) * s_.dt());
+                fail(Outcome::SwapRefused, when + join(reply.errors));
+            }
+            out_.swaps.push_back(std::move(reply));
+        }
+        return out_.swaps.size() - before;
     }
     void check()
     {
@@ -120,7 +144,7 @@ private:
     const RunOptions& options_;
     RunRecord& out_;
     Observation observe_;
-    Tick warm_ = 0;
+    Tick warming_ = 0, warm_from_ = 0;
 };
 
 }  // namespace
@@ -134,8 +158,8 @@ double thread_cpu_seconds()
 
 std::string_view name_of(Outcome outcome)
 {
-    constexpr std::string_view names[] = {"completed",        "refused",      "not finite", "blew up",
-                                          "component failed", "fell through", "too slow",   "frozen"};
+    constexpr std::string_view names[] = {"completed",    "refused",  "not finite", "blew up",     "component failed",
+                                          "fell through", "too slow", "frozen",     "swap refused"};
     return names[static_cast<int>(outcome)];
 }
 

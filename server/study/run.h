@@ -47,6 +47,7 @@ enum class Outcome : std::uint8_t
     FellThrough,  ///< a body got below the floor
     TooSlow,      ///< cut when the budget was used up
     Frozen,       ///< steps did nothing: the run was paused
+    SwapRefused,  ///< a swap was refused, or its step never came
 };
 std::string_view name_of(Outcome outcome);
 
@@ -106,7 +107,7 @@ struct RunRecord
     std::string first_warning;            ///< in words
     std::uint64_t trials = 0, rewinds = 0;
     std::uint64_t evaluations = 0;             ///< of forces, trials included
-    std::optional<std::uint64_t> allocations;  ///< in steps after the first tenth
+    std::optional<std::uint64_t> allocations;  ///< in warm steps; none: there was no such step
     std::vector<PartFigures> parts;            ///< solvers, managers, responses, resolutions, constraints
     std::vector<simulation::Reply> swaps;
 

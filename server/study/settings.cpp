@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "model/text.h"
 #include "model/values.h"
@@ -61,11 +62,25 @@ void fill_roles(model::SceneSpec& scene, model::ComponentSpec& c, const Schema& 
     for (model::ComponentSpec& part : parts) scene.components.push_back(std::move(part));
 }
 
+/// The type, or why there is none; what is suggested is of the kind that is there.
+Result<const model::ComponentType*> require_like(model::TypeSource& types, const std::string& present, const std::string& written)
+{
+    const std::string name = full_type_name(present, written);
+    const std::vector<std::string> all = types.names();
+    if (std::find(all.begin(), all.end(), name) != all.end()) return types.require(name);
+    const std::string kind = present.substr(0, present.rfind('/') + 1);
+    std::vector<std::string> like;
+    for (const std::string& other : all)
+        if (other.starts_with(kind)) like.push_back(other);
+    const std::string near = model::did_you_mean(name, like);
+    return reason("unknown type '" + name + "'" + (near.empty() ? "; it can be " + model::quoted_list(like, "or") : near));
+}
+
 /// What the old type had and the new one knows as well stays; the rest takes the new type's defaults.
 Result<void> exchange(model::SceneSpec& scene, model::ComponentSpec& c, model::TypeSource& types, const Setting& s)
 {
     auto old = types.require(c.type);
-    auto fresh = types.require(full_type_name(c.type, s.value));
+    auto fresh = require_like(types, c.type, s.value);
     if (!old || !fresh) return wrong(s, (old ? fresh : old).error().reason);
     if (const std::string why = (*fresh)->why_not_exchangeable(**old); !why.empty())
         return wrong(s, c.type + " cannot be exchanged for " + (*fresh)->info.name + ": " + why);
@@ -141,6 +156,14 @@ std::string words_for(const Setting& s)
     return slash == std::string::npos ? s.value : s.value.substr(slash + 1);
 }
 
+/// Of one target.
+bool same_value(const Setting& a, const Setting& b)
+{
+    if (a.value == b.value || !a.is_dt()) return a.value == b.value;
+    const auto one = model::parse_step_length(a.value), other = model::parse_step_length(b.value);
+    return one && other && one->seconds == other->seconds;
+}
+
 void add_setting(Combination& c, const Setting& s)
 {
     c.settings.push_back(s);
@@ -188,6 +211,35 @@ Result<Rung> parse_rung(const std::string& text)
     }
     if (out.settings.empty() && out.name.empty()) return reason("--rung is empty: it wants [NAME:] ID=Type ID.param=value ...");
     return out;
+}
+
+Result<void> check_settings(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied)
+{
+    std::set<std::string> targets;
+    for (const std::vector<Setting>& v : varied)
+    {
+        if (!targets.insert(v.front().target).second)
+            return reason("--vary " + v.front().target + " is given twice: write all values in one, as --vary dt=1/60,1/120");
+        for (std::size_t i = 0; i < v.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                if (same_value(v[i], v[k]))
+                    return reason("--vary " + v[i].target + ": '" + v[k].value + "' and '" + v[i].value + "' are one value given twice");
+    }
+    for (const Rung& rung : rungs)
+    {
+        std::set<std::string> own;
+        for (const Setting& s : rung.settings)
+        {
+            if (!own.insert(s.target).second) return reason("--rung sets " + s.target + " twice, to '" + s.value + "' as well");
+            if (targets.contains(s.target)) return reason(s.target + " is set by a --rung and varied by --vary: leave it to one of them");
+        }
+    }
+    std::set<std::string> names;
+    for (const Combination& c : combine(rungs, varied))
+        if (!names.insert(c.label()).second)
+            return reason("two runs would have the name '" + c.label() +
+                          "': give rungs names of their own, as in --rung \"NAME: ID=Type\"");
+    return {};
 }
 
 std::vector<Combination> combine(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied)

@@ -41,6 +41,10 @@ struct Rung
 };
 Result<Rung> parse_rung(const std::string& text);
 
+/// Whether each run gets a name of its own and no setting is overridden by another: a target varied twice, a value given
+/// twice, a rung that sets what is varied as well are refused.
+Result<void> check_settings(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied);
+
 /// Each rung (or none) with each choice of every vary; dt varies fastest, so that a rung's points stand together.
 std::vector<Combination> combine(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied);
 

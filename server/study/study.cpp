@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "model/text.h"
 #include "model/values.h"
 
 namespace plab::study
@@ -15,14 +16,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMostSamples = 1000;
 /// Mixed errors beyond this are no errors: the run blew up.
 constexpr double kBlownUp = 1e3;
-
-/// The largest; NaN if one is.
-double worst(const std::vector<Distance>& errors, double Distance::*which)
-{
-    double out = errors.empty() ? kNaN : 0;
-    for (const Distance& e : errors) out = e.*which > out || std::isnan(e.*which) ? e.*which : out;
-    return out;
-}
 
 /// How far up its ladder a type stands: order first, then what it promises.
 int height_of(model::TypeSource& types, const std::string& name)
@@ -36,26 +29,41 @@ int height_of(model::TypeSource& types, const std::string& name)
 class Run
 {
 public:
-    Run(model::TypeSource& types, const Plan& plan) : types_(types), plan_(plan), options_(plan.run) {}
+    Run(model::TypeSource& types, const Plan& plan) : types_(types), plan_(plan), options_(plan.run), planned_(plan.swaps) {}
     Result<StudyResult> go();
+    Result<void> check_swaps();
 
 private:
+    /// The rung of the reference `auto`; its scene has the longest of the three step lengths.
+    struct AutoRung
+    {
+        std::string name;
+        model::SceneSpec scene;
+    };
+
+    void apply_settings();
     Result<void> prepare();
     Result<void> choose_samples();
+    Result<void> choose_swaps();
     Result<void> choose_quantities();
+    Result<void> check_scales() const;
     Result<void> make_reference();
+    Result<AutoRung> auto_rung() const;
     Result<void> make_auto();
     const Combination& finest() const;
     void record_all();
     void time_all();
-    RunOptions timed_part(const RunRecord& record) const;
+    RunOptions options_of(std::size_t run) const;
+    RunOptions timed_part(std::size_t run) const;
     void judge(Point& point);
     void tell(const std::string& what, double share);
 
     model::TypeSource& types_;
     const Plan& plan_;
     RunOptions options_;
+    std::vector<PlannedSwap> planned_;
     std::vector<Result<model::SceneSpec>> scenes_;
+    std::vector<std::vector<SwapAt>> swaps_;  // of each run
     StudyResult out_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
@@ -69,13 +77,57 @@ void Run::tell(const std::string& what, double share)
     plan_.progress(what + text);
 }
 
+void Run::apply_settings()
+{
+    for (const Combination& c : plan_.combinations) scenes_.push_back(apply(plan_.scene, types_, c.settings));
+    swaps_.resize(scenes_.size());
+}
+
 Result<void> Run::prepare()
 {
     if (plan_.combinations.empty()) return reason("there is no combination to study");
     if (!(plan_.run.until > 0)) return reason("--until must be positive");
-    for (const Combination& c : plan_.combinations) scenes_.push_back(apply(plan_.scene, types_, c.settings));
+    apply_settings();
     if (auto chosen = choose_samples(); !chosen) return chosen;
+    if (auto chosen = choose_swaps(); !chosen) return chosen;
     return choose_quantities();
+}
+
+/// Swaps that hold in no run are an error; one in which they do not is refused, as with a setting.
+Result<void> Run::choose_swaps()
+{
+    if (planned_.empty()) return {};
+    std::vector<model::StepLength> lengths;
+    for (const auto& scene : scenes_)
+        if (scene) lengths.push_back(scene->settings.dt);
+    if (auto settled = settle_times(planned_, lengths, options_.until); !settled) return settled;
+    bool any = false;
+    Errors why;
+    for (std::size_t i = 0; i < scenes_.size(); ++i)
+    {
+        if (!scenes_[i]) continue;
+        auto swaps = swaps_of(planned_, *scenes_[i], types_);
+        any = any || swaps;
+        if (swaps)
+            swaps_[i] = swaps.take();
+        else
+            why = swaps.errors(), scenes_[i] = why;
+    }
+    return any ? Result<void>() : why;
+}
+
+/// What is wrong with the rest of the plan is for go() to say.
+Result<void> Run::check_swaps()
+{
+    if (planned_.empty() || plan_.combinations.empty() || !(plan_.run.until > 0)) return {};
+    apply_settings();
+    if (!choose_samples()) return {};
+    if (auto chosen = choose_swaps(); !chosen) return chosen;
+    if (plan_.reference.kind != ReferencePlan::Kind::Auto) return {};
+    const auto rung = auto_rung();
+    if (!rung) return {};
+    const auto swaps = swaps_of(planned_, rung->scene, types_);
+    return swaps ? Result<void>() : reason("in the reference: " + swaps.error().reason);
 }
 
 /// Instants that all step lengths share, at most kMostSamples of them, from the start to the last one.
@@ -114,9 +166,18 @@ Result<void> Run::choose_quantities()
             if (!q) return q.errors();
             out_.quantities.push_back(q.take());
         }
-        return {};
+        return check_scales();
     }
     // No scene loads: each combination says why.
+    return {};
+}
+
+Result<void> Run::check_scales() const
+{
+    for (const auto& [name, scale] : plan_.scales)
+        if (std::find(options_.quantities.begin(), options_.quantities.end(), name) == options_.quantities.end())
+            return reason("--scale " + name + ": no quantity of that name is compared" + model::did_you_mean(name, options_.quantities) +
+                          "; compared are " + model::quoted_list(options_.quantities));
     return {};
 }
 
@@ -137,7 +198,7 @@ const Combination& Run::finest() const
     return *best;
 }
 
-Result<void> Run::make_auto()
+Result<Run::AutoRung> Run::auto_rung() const
 {
     Combination chosen = finest();
     double shortest = std::numeric_limits<double>::infinity();
@@ -147,19 +208,29 @@ Result<void> Run::make_auto()
     if (plan_.reference.rung) chosen = combine({*plan_.reference.rung}, {}).front();
     auto scene = apply(plan_.scene, types_, chosen.settings);
     if (!scene) return scene.errors();
-    if (plan_.reference.rung && !chosen.dt.empty()) dt = scene->settings.dt;
+    if (!plan_.reference.rung || chosen.dt.empty()) scene->settings.dt = dt;
+    return AutoRung{chosen.rung, scene.take()};
+}
+
+Result<void> Run::make_auto()
+{
+    auto rung = auto_rung();
+    if (!rung) return rung.errors();
+    const model::StepLength dt = rung->scene.settings.dt;
     RunOptions options = options_;
     options.budget = 20 * options_.budget;
     std::vector<RunRecord> runs;
     for (int i = 0; i < 3; ++i)
     {
-        scene->settings.dt = dt;
-        scene->settings.dt.denominator = dt.denominator << i;
-        scene->settings.dt.seconds = dt.seconds / (1 << i);
-        tell("reference " + std::to_string(i + 1) + " of 3: " + chosen.rung, 0);
-        runs.push_back(record_run(types_, *scene, options));
+        model::StepLength& part = rung->scene.settings.dt;
+        part = dt, part.denominator = dt.denominator << i, part.seconds = dt.seconds / (1 << i);
+        auto swaps = swaps_of(planned_, rung->scene, types_);
+        if (!swaps) return reason("in the reference: " + swaps.error().reason);
+        options.swaps = swaps.take();
+        tell("reference " + std::to_string(i + 1) + " of 3: " + rung->name, 0);
+        runs.push_back(record_run(types_, rung->scene, options));
     }
-    out_.reference = auto_reference(runs, chosen.rung, model::format_real(dt.seconds));
+    out_.reference = auto_reference(runs, rung->name, model::format_real(dt.seconds));
     return {};
 }
 
@@ -206,17 +277,25 @@ void Run::record_all()
         tell("recording " + std::to_string(i + 1) + " of " + std::to_string(scenes_.size()) + ": " + point.combination.label(),
              static_cast<double>(i) / runs);
         if (scenes_[i])
-            point.record = record_run(types_, *scenes_[i], options_);
+            point.record = record_run(types_, *scenes_[i], options_of(i));
         else
             point.record.outcome = Outcome::Refused, point.record.why = scenes_[i].error().text();
         out_.points.push_back(std::move(point));
     }
 }
 
-/// What went wrong is timed up to there.
-RunOptions Run::timed_part(const RunRecord& record) const
+RunOptions Run::options_of(std::size_t run) const
 {
     RunOptions out = options_;
+    out.swaps = swaps_[run];
+    return out;
+}
+
+/// What went wrong is timed up to there.
+RunOptions Run::timed_part(std::size_t run) const
+{
+    RunOptions out = options_of(run);
+    const RunRecord& record = out_.points[run].record;
     if (!record.ok()) out.sample_times = {std::max(record.reached, record.dt)};
     return out;
 }
@@ -235,7 +314,7 @@ void Run::time_all()
             tell("timing, round " + std::to_string(r + 1) + " of " + std::to_string(plan_.repeat) + ": " + point.combination.label(),
                  static_cast<double>(n + static_cast<std::size_t>(r) * n + k) /
                      static_cast<double>(n * (static_cast<std::size_t>(plan_.repeat) + 1)));
-            const Timing t = time_run(types_, *scenes_[i], timed_part(point.record));
+            const Timing t = time_run(types_, *scenes_[i], timed_part(i));
             if (t.outcome == Outcome::Completed || t.outcome == point.record.outcome) seconds[i].push_back(t.cpu);
         }
     for (std::size_t i = 0; i < n; ++i)
@@ -286,30 +365,13 @@ Result<StudyResult> Run::go()
     out_.title = plan_.title.empty() ? (plan_.scene.settings.title.empty() ? plan_.scene.file : plan_.scene.settings.title) : plan_.title;
     out_.scene_file = plan_.scene.file, out_.command = plan_.command, out_.repeat = plan_.repeat;
     out_.machine = describe_machine();
-    out_.swaps = !plan_.run.swaps.empty();
+    out_.swaps = !planned_.empty();
     return std::move(out_);
 }
 
 }  // namespace
 
-ReferencePlan parse_reference(const std::string& text)
-{
-    ReferencePlan out;
-    if (text == "auto") return out;
-    if (text == "none") return out.kind = ReferencePlan::Kind::None, out;
-    out.kind = text.starts_with("exact:") ? ReferencePlan::Kind::Exact : ReferencePlan::Kind::File;
-    out.text = text.starts_with("exact:") ? text.substr(6) : text;
-    return out;
-}
-
-double Point::error() const { return worst(errors, &Distance::series); }
-double Point::final_error() const { return worst(errors, &Distance::last); }
-bool Point::is_resolved() const
-{
-    return std::any_of(resolved.begin(), resolved.end(), [](bool b) { return b; });
-}
-
-double digits(double error) { return std::isnan(error) ? kNaN : std::clamp(-std::log10(error), 0.0, 16.0); }
+Result<void> check_swaps(model::TypeSource& types, const Plan& plan) { return Run(types, plan).check_swaps(); }
 
 Result<StudyResult> run_study(model::TypeSource& types, const Plan& plan) { return Run(types, plan).go(); }
 

@@ -5,6 +5,7 @@
 
 #include "study/reference.h"
 #include "study/settings.h"
+#include "study/swaps.h"
 
 namespace plab::study
 {
@@ -32,7 +33,8 @@ struct Plan
     std::string command;  ///< how to do it again
     std::vector<Combination> combinations;
     ReferencePlan reference;
-    RunOptions run;                        ///< without sample times: those follow from the step lengths
+    RunOptions run;                        ///< without sample times and swaps: those follow from the step lengths
+    std::vector<PlannedSwap> swaps;        ///< in every run, and in those of the reference `auto`
     int repeat = 3;                        ///< timed runs of each combination
     std::map<std::string, double> scales;  ///< a of the mixed error, by quantity, where it is given
     std::function<void(const std::string&)> progress;
@@ -86,7 +88,11 @@ struct StudyResult
     bool swaps = false;
 };
 
-/// Runs it all. Fails only where nothing could be studied: no combination, no common instants, unknown quantity or closed form.
+/// Whether the swaps hold: their steps or times in all runs; id and type in at least one. Nothing is run.
+Result<void> check_swaps(model::TypeSource& types, const Plan& plan);
+
+/// Runs it all. Fails only where nothing could be studied: no combination, no common instants, unknown quantity or closed form,
+/// swaps that do not hold.
 Result<StudyResult> run_study(model::TypeSource& types, const Plan& plan);
 
 /// Matches contacts of the same pair by the alignment in time that costs least.

@@ -59,6 +59,7 @@ Result<SuiteEntry> read_entry(const Json& entry, const std::string& path)
         if (!v) return wrong(path, out.name, v.error().reason);
         out.rungs.push_back(v.take());
     }
+    if (auto fine = check_settings(out.rungs, out.varied); !fine) return wrong(path, out.name, fine.error().reason);
     out.reference = parse_reference(entry.value("reference", std::string("auto")));
     if (entry.contains("reference_rung"))
     {

@@ -141,11 +141,13 @@ Json reference_of(const StudyResult& r)
 {
     Json out{{"kind", r.reference.kind}, {"words", r.reference.words}, {"converges", r.reference.converges}, {"quantities", Json::array()}};
     for (std::size_t k = 0; k < r.quantities.size(); ++k)
-        out["quantities"].push_back({{"name", r.quantities[k].name},
-                                     {"unit", r.quantities[k].unit},
-                                     {"scale", number(r.reference.scale[k])},
-                                     {"uncertainty", json_of(r.reference.uncertainty[k])},
-                                     {"observed_order", number(r.reference.order[k])}});
+        out["quantities"].push_back(
+            {{"name", r.quantities[k].name},
+             {"unit", r.quantities[k].unit},
+             {"scale", number(r.reference.scale[k])},
+             {"uncertainty", json_of(r.reference.uncertainty[k])},
+             {"observed_order", number(r.reference.order[k])},
+             {"converged", k < r.reference.converged.size() ? Json(bool{r.reference.converged[k]}) : Json(nullptr)}});
     return out;
 }
 

@@ -26,7 +26,7 @@ inline const std::vector<Layer>& layers()
         {"server/world", {"server/sdk", "server/model"}, {}},
         {"server/blueprint", {"server/sdk", "server/model"}, {"expat.h"}, false},
         {"server/plugins", {"server/sdk", "server/model"}, {"dlfcn.h"}, false},
-        {"server/simulation", {"server/sdk", "server/model", "server/world"}, {}},
+        {"server/simulation", {"server/sdk", "server/model", "server/world"}, {"gnu/libc-version.h"}},
         {"server/publish", {"server/sdk", "server/model", "server/world", "server/simulation"}, {"semaphore.h"}},
         {"server/control",
          {"server/sdk", "server/model", "server/world", "server/simulation", "server/blueprint", "server/publish"},

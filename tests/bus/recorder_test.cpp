@@ -130,12 +130,16 @@ void limit_files(const Process& process, rlim_t bytes)
 
 }  // namespace
 
-TEST_CASE("a recorder that is killed at any moment loses no more than the last 20 ms, and leaves a file that is whole up to there")
+TEST_CASE(
+    "a recorder that is killed at any moment loses the last 20 ms at most, unless it is held up, and leaves a file that is whole up to "
+    "there")
 {
     constexpr int kKills = 10;
-    // A chunk is 20 ms old at the most; before that a frame goes through two threads of the recorder. That takes a millisecond,
-    // but who else runs on the machine may hold them up. What the bus itself takes, the test's own reader tells.
-    constexpr std::int64_t kChunkNs = 20'000'000, kDeliveryNs = 20'000'000;
+    // A chunk is 12 ms old at the most; before that a frame goes through two threads of the recorder. That takes a millisecond,
+    // but who else runs on the machine may hold them up: by 20 ms at the most, and not in half of the kills. What the bus
+    // itself takes, the test's own reader tells.
+    constexpr std::int64_t kPromisedNs = 20'000'000, kHeldUpNs = 20'000'000;
+    int within = 0;
     const Server server(kScene, {"--rate", "real", "--states", "all"});
     std::mt19937 random(11);
     std::vector<double> ages;
@@ -161,8 +165,9 @@ TEST_CASE("a recorder that is killed at any moment loses no more than the last 2
 
         const Content left = read_whole(file);
         CHECK(!left.is_closed);
-        REQUIRE(witness.before(killed_ns - kChunkNs - kDeliveryNs) > 0);
-        CHECK(left.newest_ns >= witness.before(killed_ns - kChunkNs - kDeliveryNs));
+        REQUIRE(witness.before(killed_ns - kPromisedNs - kHeldUpNs) > 0);
+        CHECK(left.newest_ns >= witness.before(killed_ns - kPromisedNs - kHeldUpNs));
+        within += left.newest_ns >= witness.before(killed_ns - kPromisedNs);
         ages.push_back(static_cast<double>(killed_ns - left.newest_ns) * 1e-6);
         const Outcome recovered = run({program("plabctl"), "--json", "recover", file, "-o", saved});
         CHECK_MESSAGE((recovered.code == 0 || recovered.code == 5), recovered.errors);
@@ -176,7 +181,19 @@ TEST_CASE("a recorder that is killed at any moment loses no more than the last 2
     }
     std::sort(ages.begin(), ages.end());
     MESSAGE("age of the last frame in the file: median ", ages[kKills / 2], " ms, oldest ", ages.back(), " ms");
+    CHECK(within > kKills / 2);
     CHECK(ages.front() > 0);
+}
+
+TEST_CASE("who leaves topics out that a replay needs is told")
+{
+    const Server server(kScene, {"--rate", "real"});
+    const Outcome few = control(server, {"record", "-o", fresh("few.mcap"), "-d", "0.1", "--topics", "plab/states", "plab/hashes"});
+    CHECK_MESSAGE(few.code == 0, few.errors);
+    CHECK_MESSAGE(has(few.errors, "the recording cannot be replayed: --topics is without plab/snapshots, plab/journal\n"), few.errors);
+    const Outcome all = control(server, {"record", "-o", fresh("all.mcap"), "-d", "0.1"});
+    CHECK_MESSAGE(all.code == 0, all.errors);
+    CHECK_MESSAGE(!has(all.errors, "replayed"), all.errors);
 }
 
 TEST_CASE("a disk that is full: the recorder says so, ends when it is told to, and what came before can be read")

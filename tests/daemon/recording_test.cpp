@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -58,6 +59,59 @@ void read_last(const std::string& file, recording::Sample<T>& sample)
     REQUIRE(*last);
     recording::Decoder decoder;
     REQUIRE(decoder.decode((*last)->data, sample));
+}
+
+std::int64_t wall_ns()
+{
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// Whether the run has begun, and is in the file.
+bool has_hashes(const std::string& file)
+{
+    if (!std::filesystem::exists(file)) return false;
+    const auto reader = recording::Reader::open(file);
+    return reader && !reader->channels_of({wire::topic_of<plab_v1_Hashes>().name}).empty();
+}
+
+/// The scene at 1 kHz.
+std::string faster_scene()
+{
+    std::ostringstream text;
+    text << std::ifstream(kScene).rdbuf();
+    std::string scene = text.str();
+    const std::string step = "dt=\"1/240\"";
+    REQUIRE(scene.find(step) != std::string::npos);
+    scene.replace(scene.find(step), step.size(), "dt=\"1/1000\"");
+    const std::string file = scratch_file("fast.xml");
+    std::ofstream(file) << scene;
+    return file;
+}
+
+/// When the last step was made of which the file has the frame, and the hash: ns since 1970.
+struct Newest
+{
+    std::int64_t frame_ns = 0, hash_ns = 0;
+};
+
+Newest newest_in(const std::string& file)
+{
+    auto reader = recording::Reader::open(file);
+    REQUIRE(reader);
+    recording::Sample<plab_v1_Hashes> hashes;
+    read_last(file, hashes);
+    const std::int64_t hashed = hashes->step + hashes->values._length - 1;
+    Newest out;
+    recording::Decoder decoder;
+    recording::Sample<plab_v1_Frame> frame;
+    recording::Cursor frames = reader->messages({{wire::topic_of<plab_v1_Frame>().name}});
+    for (auto next = frames.next(); next && *next; next = frames.next())
+    {
+        REQUIRE(decoder.decode((*next)->message.data, frame));
+        out.frame_ns = frame->stamp_ns;
+        if (frame->step <= hashed) out.hash_ns = frame->stamp_ns;
+    }
+    return out;
 }
 
 }  // namespace
@@ -159,24 +213,40 @@ TEST_CASE("a request that waits for its step goes with the snapshot, and takes e
 TEST_CASE("killed at any moment: what is older than 20 ms is in the file, and is the same run again")
 {
     constexpr int kKills = 10;
+    // At 240 and at 1000 steps a second: each step's hash for itself, and hashes that are gathered.
+    const std::string fast = faster_scene();
+    // What a step is late by itself, and what else runs on the machine: one kill may be hit by that, half of them not.
+    constexpr double kStep = 1000.0 / 240, kHeldUp = 40;
+    std::vector<double> frames, hashes;  // ms: age of the last one in the file
     for (int i = 0; i < kKills; ++i)
     {
         const std::string file = fresh("killed.mcap"), saved = fresh("recovered.mcap");
-        Process server({program("plabd"), kScene, "--no-bus", "--rate", "real", "--record", file});
+        Process server({program("plabd"), i % 2 == 0 ? kScene : fast, "--no-bus", "--rate", "real", "--record", file});
         const auto begin = std::chrono::steady_clock::now();
-        while (!std::filesystem::exists(file) && std::chrono::steady_clock::now() - begin < kLong)
-            std::this_thread::sleep_for(Milliseconds(1));
-        std::this_thread::sleep_for(Milliseconds(150 + 17 * i));
+        while (!has_hashes(file) && std::chrono::steady_clock::now() - begin < kLong) std::this_thread::sleep_for(Milliseconds(2));
+        std::this_thread::sleep_for(Milliseconds(60 + 17 * i));
+        // Before the signal: what is older than 20 ms by then is older still when the process dies.
+        const std::int64_t killed = wall_ns();
         server.signal(SIGKILL);
         REQUIRE(server.wait(kLong) == 128 + SIGKILL);
         const auto report = recording::recover(file, saved);
         REQUIRE_MESSAGE(report, report.error().text());
         CHECK(report->verdict != recording::Verdict::NothingUsable);
+        const Newest newest = newest_in(saved);
+        frames.push_back(static_cast<double>(killed - newest.frame_ns) * 1e-6);
+        hashes.push_back(static_cast<double>(killed - newest.hash_ns) * 1e-6);
+        CHECK(frames.back() < 20 + kStep + kHeldUp);
+        CHECK(hashes.back() < 20 + kStep + kHeldUp);
         const Outcome again = plabd({"--replay", saved, "--verify"});
         CHECK_MESSAGE(again.code == 0, again.output, again.errors);
         CHECK(has(again.output, "state hashes are the same"));
         std::filesystem::remove(file), std::filesystem::remove(saved);
     }
+    std::sort(frames.begin(), frames.end()), std::sort(hashes.begin(), hashes.end());
+    MESSAGE("ms lost, median and most: frames ", frames[kKills / 2], " ", frames.back(), ", hashes ", hashes[kKills / 2], " ",
+            hashes.back());
+    CHECK(frames[kKills / 2] < 20 + kStep);
+    CHECK(hashes[kKills / 2] < 20 + kStep);
 }
 
 TEST_CASE("options that make no sense together are refused")

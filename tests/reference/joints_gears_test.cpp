@@ -82,6 +82,80 @@ TEST_CASE("F8: a pendulum geared to a flywheel swings with the inertia of both, 
     CHECK(std::log2(coarse / fine) > 3.7);
 }
 
+TEST_CASE("F9: forces between helical teeth: 1000 N m at a pitch radius of 2 m, 20 deg of pressure, 10 deg of helix")
+{
+    // P_t = T / r, P_r = P_t tan 20 deg / cos 10 deg, P_a = P_t tan 10 deg, to 16 digits.
+    constexpr double tangential = 500, radial = 184.79253090409537, axial = 88.1634903542325;
+    for (const double sign : {1., -1.})
+    {
+        CAPTURE(sign);
+        const std::string turn = text(-2000 * sign), hold = text(-1000 * sign);
+        const auto script = [](const std::string& on, const std::string& value)
+        {
+            return "<component id='on_" + on + "' type='Script/Lua' driven='" + on +
+                   "'><param name='code'>function force(t, state) driven:add_torque(" + value + ") end</param></component>";
+        };
+        const std::string mesh = " driven_radius='2' pressure_angle='20 deg' helix_angle='10 deg'";
+        // Wheels of 4 and 2 m, at rest: on shafts against a locked one, and on bodies whose loads are in balance.
+        Scene s(solver_is("RungeKutta4") + shaft("a", 1) + shaft("b", 1, 0, true) + script("a", turn) +
+                    component("on_shafts", "Constraint/Gear", "driver='a' driven='b' velocity_factor='-2'" + mesh) +
+                    wheel("c", 1, {0, 0, 0}) + wheel("d", 1, {6, 0, 0}) + script("c", "vec(0, 0, " + turn + ")") +
+                    script("d", "vec(0, 0, " + hold + ")") +
+                    component("on_bodies", "Constraint/Gear", "driver='c' driven='d' velocity_factor='-2'" + mesh) +
+                    component("no_radius", "Constraint/Gear", "driver='e' driven='f' velocity_factor='-2'") + shaft("e", 1) +
+                    shaft("f", 1, 0, true) + script("e", turn),
+                dt(100));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.run(1);
+        for (const char* gear : {"on_shafts", "on_bodies"})
+        {
+            CAPTURE(gear);
+            CHECK(near(s.real(gear, "torque"), sign * 1000, 1e-12));
+            CHECK(near(s.real(gear, "tangential_force"), sign * tangential, 1e-12));
+            CHECK(near(s.real(gear, "radial_force"), radial, 1e-12));
+            CHECK(near(s.real(gear, "axial_force"), sign * axial, 1e-12));
+        }
+        // A pure couple: the bearings of the wheels feel nothing.
+        CHECK(length(s.vec("bearing_d", "force")) < 1e-9);
+        CHECK(near(s.real("no_radius", "torque"), sign * 1000, 1e-12));
+        for (const char* output : {"tangential_force", "radial_force", "axial_force"}) CHECK(s.real("no_radius", output) == 0);
+    }
+}
+
+TEST_CASE("the torque of a gear in motion is what its driven's inertia takes, and angles of teeth beyond 90 deg are refused")
+{
+    // A torque of 6 N m on J = 10, ratio -0.1, J = 100: F1.
+    const std::string pair = shaft("a", 10) + shaft("b", 100) + torque("t", "a", 6);
+    const std::string gear = "driver='a' driven='b' velocity_factor='-0.1' driven_radius='0.5'";
+    Scene s(pair + component("gear", "Constraint/Gear", gear), dt(100));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.run(1);
+    CHECK(near(s.real("gear", "torque"), -100 * 0.6 / 11, 1e-13));
+    CHECK(near(s.real("gear", "tangential_force"), -200 * 0.6 / 11, 1e-13));
+    CHECK(near(s.real("gear", "radial_force"), 200 * 0.6 / 11 * std::tan(std::numbers::pi / 9), 1e-13));
+    CHECK(s.real("gear", "axial_force") == 0);
+    CHECK(Scene(pair + component("gear", "Constraint/Gear", gear + " pressure_angle='90 deg'")).error().find("pressure_angle") !=
+          std::string::npos);
+    CHECK(Scene(pair + component("gear", "Constraint/Gear", gear + " helix_angle='-90 deg'")).error().find("helix_angle") !=
+          std::string::npos);
+}
+
+TEST_CASE("a gear between prescribed wheels that turn otherwise says so once; one that they obey says nothing")
+{
+    for (const double factor : {2., 3.})
+    {
+        Scene s(shaft("a", 1, 10, true) + shaft("b", 1, 20, true) +
+                    component("gear", "Constraint/Gear", "driver='a' driven='b' velocity_factor='" + text(factor) + "'"),
+                dt(60));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = s.keep_events = true;
+        s.run(1);
+        CHECK(s.count("constraint.contradiction") == (factor == 2 ? 0 : 1));
+        CHECK(s.spin("b") == 20);
+        CHECK(std::fabs(s.real("gear", "phase_error") - (20 - factor * 10)) < 1e-10);
+    }
+}
+
 TEST_CASE("gears between bodies count their turns, fast and for long")
 {
     // 1000 rad/s at 1/60: more than two turns a step.

@@ -1,4 +1,6 @@
 // Gears: reduced coordinates, pairwise impulses, one-way copies. F1.. as in the catalogue of reference problems.
+#include <algorithm>
+
 #include "support/scene.h"
 
 using namespace plab;
@@ -114,6 +116,101 @@ TEST_CASE("F5: a contradictory loop is refused with its edges and product")
     CHECK(error.find("g2") != std::string::npos);
     CHECK(error.find("g3") != std::string::npos);
     CHECK(error.find("0.99998") != std::string::npos);
+}
+
+namespace
+{
+
+/// The only event of a kind, which must be there once however long the scene runs.
+Event only(const Scene& s, const std::string& kind)
+{
+    REQUIRE(s.count(kind) == 1);
+    return *std::find_if(s.events.begin(), s.events.end(), [&](const Event& e) { return e.kind == kind; });
+}
+std::string prescribed(const std::string& id, double speed)
+{
+    return "<component id=\"" + id + "\" type=\"State/Shaft\" inertia=\"1\" prescribed=\"true\" angular_velocity=\"" +
+           std::to_string(speed) + "\"/>";
+}
+
+}  // namespace
+
+TEST_CASE("F5 with Impulse: a contradictory loop says so once, whether it brakes to a stop or can hardly move")
+{
+    struct Loop
+    {
+        std::string parts, closes, product;
+        double left;  // of the speed of 1 at the end
+    };
+    const std::string three = shaft("a", 1, 1) + shaft("b", 2, 2) + shaft("c", 3, 6) + gear("g1", "Impulse", "a", "b", "2") +
+                              gear("g2", "Impulse", "b", "c", "3");
+    const Loop loops[] = {
+        {three + gear("g3", "Impulse", "c", "a", "0.16666388893518441"), "g3", "0.99998", 2},
+        {three + gear("g0", "Graph", "c", "a", "0.2"), "g2", "1.2", 1e-9},
+        {shaft("a", 1, 1) + shaft("b", 2, 2) + gear("g1", "Impulse", "a", "b", "2") + gear("g2", "Impulse", "a", "b", "-3"), "g2", "1.5",
+         1e-9}};
+    for (const Loop& loop : loops)
+    {
+        CAPTURE(loop.parts);
+        Scene s(loop.parts);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = s.keep_events = true;
+        s.run(1);
+        CHECK(s.count("coupling.not_converged") == 0);
+        const Event e = only(s, "constraint.contradiction");
+        CHECK(e.component == s.simulation().world().find(loop.closes));
+        CHECK(e.message.find("contradiction: the loop g") != std::string::npos);
+        CHECK(e.message.find("change a factor or remove one of them") != std::string::npos);
+        CHECK(e.values.size() == 2);
+        CHECK(std::fabs(s.spin("a")) < loop.left);
+    }
+}
+
+TEST_CASE("an Impulse between prescribed shafts that disagree says so, and says so again when that comes back")
+{
+    Scene s(prescribed("a", 10) + prescribed("b", 20) + gear("g", "Impulse", "a", "b", "3"));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = s.keep_events = true;
+    s.run(1);
+    const Event e = only(s, "constraint.contradiction");
+    CHECK(e.component == s.simulation().world().find("g"));
+    CHECK(e.message.find("10 rad/s are left") != std::string::npos);
+    CHECK(s.spin("b") == 20);
+    const auto set = [&](double factor)
+    {
+        const auto reply = s.ask(simulation::SetOperation{"g", "velocity_factor", factor});
+        REQUIRE_MESSAGE(reply.done, test::first_error(reply.errors));
+        s.run(s.simulation().time() + 0.1);
+    };
+    set(2);
+    CHECK(s.count("constraint.contradiction") == 1);
+    set(3);
+    CHECK(s.count("constraint.contradiction") == 2);
+}
+
+TEST_CASE("a train too long for the sweeps of Impulse says so once and names the better type; what converges says nothing")
+{
+    const auto train = [](int n)
+    {
+        std::string parts;
+        for (int i = 0; i < n; ++i) parts += shaft("s" + std::to_string(100 + i), 1, i == 0 ? 100 : 0);
+        for (int i = 0; i + 1 < n; ++i)
+            parts += gear("g" + std::to_string(100 + i), "Impulse", "s" + std::to_string(100 + i), "s" + std::to_string(101 + i), "-1");
+        return parts;
+    };
+    Scene s(train(60));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = s.keep_events = true;
+    s.run(0.2);
+    const Event e = only(s, "coupling.not_converged");
+    CHECK(e.message.find("after 1000 sweeps") != std::string::npos);
+    CHECK(e.message.find("Constraint/AngularVelocity/Graph") != std::string::npos);
+    REQUIRE(e.values.size() == 2);
+    CHECK(e.values[1] > 1e-9);
+    Scene fine(train(10));
+    REQUIRE_MESSAGE(fine.loaded(), fine.error());
+    fine.run(0.2);
+    CHECK(fine.count("coupling.not_converged") == 0);
 }
 
 TEST_CASE("F7: a line of 1000 gears has no drift at all")

@@ -1,4 +1,6 @@
 // Gears of extreme ratio, and joints and gears that contradict one another.
+#include <limits>
+
 #include "case.h"
 #include "pieces.h"
 #include "trial.h"
@@ -82,42 +84,63 @@ Case ratios()
     return c;
 }
 
+struct Mesh
+{
+    const char *driver, *driven;
+    double factor;
+};
+/// Three in a loop, a loop just missed, two on a pair, one between prescribed speeds.
+std::vector<Mesh> bad_meshes(std::size_t v)
+{
+    if (v < 2) return {{"a", "b", 2}, {"b", "c", 3}, {"a", "c", v == 0 ? 5 : 5.9999}};
+    if (v == 2) return {{"a", "b", 3}, {"a", "b", -2}};
+    return {{"a", "b", 3}};
+}
+
+Outcome run_bad_gears(const Coupling& rung, std::size_t v)
+{
+    const bool prescribed = v == 3;
+    std::string parts;
+    for (const char* id : {"a", "b", "c"})
+        parts +=
+            rung.bodies ? wheel(id, 3 * (id[0] - 'a'), 10) : shaft(id, 10, prescribed ? attribute("prescribed", std::string("true")) : "");
+    const std::vector<Mesh> meshes = bad_meshes(v);
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        parts += coupling("g" + std::to_string(i + 1), rung.type, meshes[i].driver, meshes[i].driven, meshes[i].factor);
+    if (prescribed && rung.bodies)
+        for (const char* id : {"a", "b"})
+            parts += component(std::string("motor.") + id, "Constraint/Motor",
+                               attribute("b", std::string(id)) + attribute("axis", Vec3{0, 0, 1}) + attribute("speed", 10));
+    Trial t(parts, dt(1.0 / 60));
+    t.run(1);
+    if (!t.loaded()) return t.judge(0, {});
+    const auto speed = [&](const char* id) { return rung.bodies ? t.vec(id, "angular_velocity").z : t.real(id, "angular_velocity"); };
+    double worst = 0;
+    if (v >= 2) worst = std::fabs(speed("c") / 10 - 1);
+    for (const Mesh& m : meshes)
+        worst = std::fmax(worst, prescribed ? std::fmax(std::fabs(speed("a") / 10 - 1), std::fabs(speed("b") / 10 - 1))
+                                            : std::fabs(speed(m.driven) - m.factor * speed(m.driver)) / 10);
+    constexpr Bounds kBounds{1e-9, 10};
+    const bool silent = (prescribed || worst > kBounds.stable) && !t.warned();
+    return t.judge(silent ? std::numeric_limits<double>::infinity() : worst, kBounds);
+}
+
 Case bad_gears()
 {
     Case c{"gear_contradiction",
            "Gears that contradict one another",
-           "Wheels of 1 kg m^2 that turn with 10 rad/s at first: three in a loop whose factors multiply to 1.2, two joined by two factors, "
-           "and two whose "
-           "speeds are both prescribed, otherwise than their gear asks. 1 s at 1/60 s. Error: largest speed at the end, relative to 10 "
-           "rad/s. Stable to 1 (at rest is the "
-           "only answer of a loop), bounded to 10.",
+           "Three wheels of 1 kg m^2 that turn with 10 rad/s at first: in a loop whose factors multiply to 1.2, or to 1.00002; two of them "
+           "joined by two factors; two whose speeds are both prescribed, otherwise than their gear asks. 1 s at 1/60 s. Error: the largest "
+           "of what each gear misses and of how far a wheel that is free, or prescribed, got away from 10 rad/s, relative to that (where "
+           "both speeds are prescribed, no gear can hold). Stable to 1e-9 (a loop that is locked rests), bounded to 10; beyond the "
+           "first, an event must say so.",
            "coupling",
            "contradiction",
            coupling_names(),
-           {"loop of three", "two on a pair", "both prescribed"},
+           {"loop of three", "loop just missed", "two on a pair", "both prescribed"},
            {},
            {}};
-    c.run = [](std::size_t r, std::size_t v)
-    {
-        const Coupling& rung = couplings()[r];
-        const auto wheel_of = [&](const char* id, double x)
-        { return rung.bodies ? wheel(id, x, 10) : shaft(id, 10, v == 2 ? attribute("prescribed", std::string("true")) : ""); };
-        std::string parts =
-            wheel_of("a", 0) + wheel_of("b", 3) + wheel_of("c", 6) + coupling("g1", rung.type, "a", "b", v == 0 ? 2.0 : 3.0);
-        if (v == 0) parts += coupling("g2", rung.type, "b", "c", 3) + coupling("g3", rung.type, "a", "c", 5);
-        if (v == 1) parts += coupling("g2", rung.type, "a", "b", -2);
-        if (v == 2 && rung.bodies)
-            for (const char* id : {"a", "b"})
-                parts += component(std::string("motor.") + id, "Constraint/Motor",
-                                   attribute("b", std::string(id)) + attribute("axis", Vec3{0, 0, 1}) + attribute("speed", 10));
-        Trial t(parts, dt(1.0 / 60));
-        t.run(1);
-        if (!t.loaded()) return t.judge(0, {});
-        double worst = 0;
-        for (const char* id : {"a", "b", "c"})
-            worst = std::fmax(worst, std::fabs(rung.bodies ? t.vec(id, "angular_velocity").z : t.real(id, "angular_velocity")) / 10);
-        return t.judge(worst, {1, 10});
-    };
+    c.run = [](std::size_t r, std::size_t v) { return run_bad_gears(couplings()[r], v); };
     c.quick = [](std::size_t, std::size_t) { return true; };
     return c;
 }

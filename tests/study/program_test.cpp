@@ -113,8 +113,8 @@ TEST_CASE("a swap inside the runs, and plabd's trace as reference")
     std::filesystem::create_directories(kFolder);
     REQUIRE(run({program("plabd"), scene_file("studies/projectile.xml"), "--until", "2", "--trace", trace, "--no-bus"}).code == 0);
     const Outcome done =
-        study({scene_file("studies/projectile.xml"), "--vary", "dt=1/60,1/120", "--swap", "30:solver=Solver/SemiImplicitEuler",
-               "--reference", trace, "--quantity", "ball.position", "--until", "2", "--quiet", "--repeat", "1", "-o", where});
+        study({scene_file("studies/projectile.xml"), "--vary", "dt=1/60,1/120", "--swap", "0.5s:solver=SemiImplicitEuler", "--reference",
+               trace, "--quantity", "ball.position", "--until", "2", "--quiet", "--repeat", "1", "-o", where});
     REQUIRE_MESSAGE(done.code == 0, done.errors);
     const auto json = results(where);
     const auto& swap = json["points"][0]["swaps"][0];
@@ -123,6 +123,8 @@ TEST_CASE("a swap inside the runs, and plabd's trace as reference")
     CHECK(swap["swaps"][0]["to"] == "Solver/SemiImplicitEuler");
     // From t = 0.5 on late by g dt/2 a second.
     CHECK(json["points"][0]["errors"]["ball.position"]["final_absolute"] == doctest::Approx(1.5 * 9.81 / 120).epsilon(1e-6));
+    CHECK(json["points"][1]["swaps"][0]["step"] == 60);
+    CHECK(json["points"][1]["errors"]["ball.position"]["final_absolute"] == doctest::Approx(1.5 * 9.81 / 240).epsilon(1e-6));
     CHECK(json["reference"]["kind"] == "file");
 }
 
@@ -252,6 +254,14 @@ TEST_CASE("wrong use ends with code 2, nothing to study with code 1, and both sa
              {{scene, "--until", "nan", "-o", "x"}, 2, "positive number"},
              {{scene, "--until", "1", "-o", "x", "--vary", "dt"}, 2, "--vary wants"},
              {{scene, "--until", "1", "-o", "x", "--swap", "solver=x"}, 2, "STEP:ID=TYPE"},
+             {{scene, "--until", "1", "-o", "x", "--swap", "0:solver=Nope"}, 2, "unknown type 'Solver/Nope'"},
+             {{scene, "--until", "1", "-o", "x", "--swap", "0:slover=Exact"}, 2, "did you mean 'solver'"},
+             {{scene, "--until", "1", "-o", "x", "--swap", "120:solver=Exact"}, 2, "the runs end at 1 s, before step 120"},
+             {{scene, "--until", "1", "-o", "x", "--swap", "30:solver=Exact", "--vary", "dt=1/60,1/120"}, 2, "give a time"},
+             {{scene, "--until", "1", "-o", "x", "--swap", "0.51s:solver=Exact", "--vary", "dt=1/60,1/120"}, 2, "no step of dt = "},
+             {{scene, "--until", "1", "-o", "x", "--vary", "dt=1/60", "--vary", "dt=1/120"}, 2, "--vary dt is given twice"},
+             {{scene, "--until", "1", "-o", "x", "--vary", "dt=1/60,1/60"}, 2, "one value given twice"},
+             {{scene, "--until", "1", "-o", "x", "--scale", "nosuch.position=1"}, 1, "no quantity of that name is compared"},
              {{scene, "--until", "1", "-o", "x", "--reference", "none", "--reference-rung", "dt=1/60"}, 2, "--reference auto only"},
              {{scene, "--until", "1", "-o", "x", "--suite", "y"}, 2, "leave SCENE out"},
              {{"nowhere.xml", "--until", "1", "-o", "x"}, 1, "nowhere.xml"},

@@ -1,7 +1,23 @@
 #include "joints/gear.h"
 
+#include <cmath>
+#include <numbers>
+
 namespace plab::constraints
 {
+namespace
+{
+
+constexpr double kRightAngle = std::numbers::pi / 2;
+constexpr double kUsualPressureAngle = std::numbers::pi / 9;  // 20 degrees
+
+}  // namespace
+
+ToothForces tooth_forces(double torque, double radius, double pressure_angle, double helix_angle)
+{
+    const double tangential = torque / radius;
+    return {tangential, std::fabs(tangential) * std::tan(pressure_angle) / std::cos(helix_angle), tangential * std::tan(helix_angle)};
+}
 
 void GearOutputs::describe_gear(Schema& s, const std::string& last)
 {
@@ -26,9 +42,22 @@ void GearRows::describe(Schema& s)
     s.param(mesh, "mesh", unit::one, "of teeth: external reverses, internal and belt keep the sense of rotation")
         .or_else("external")
         .one_of({"external", "internal", "belt"});
+    s.param(driven_radius, "driven_radius", unit::metre, "of the driven's pitch circle, for the forces between the teeth; 0: not given")
+        .or_else(0)
+        .not_negative();
+    s.param(pressure_angle, "pressure_angle", unit::radian, "of the teeth, normal to them; below 90 deg; 20 deg is usual")
+        .or_else(kUsualPressureAngle)
+        .not_negative();
+    s.param(helix_angle, "helix_angle", unit::radian, "of the teeth against the axle, at the pitch circle; within 90 deg, 0: spur gears")
+        .or_else(0);
     driver_spin.describe_spin(s, "driver_", "the driver");
     driven_spin.describe_spin(s, "driven_", "the driven");
     describe_gear(s, "driven");
+    s.output(tangential_force, "tangential_force", unit::newton,
+             "P_t = torque / driven_radius, of the teeth on driven; 0 without driven_radius. A pure couple turns the wheels: bearings "
+             "feel none of these forces");
+    s.output(radial_force, "radial_force", unit::newton, "P_r = |P_t| tan(pressure_angle) / cos(helix_angle), that drives the axles apart");
+    s.output(axial_force, "axial_force", unit::newton, "P_a = P_t tan(helix_angle), along driven's axle");
     s.scratch(ratio, "ratio", "the factor as a rational");
 }
 
@@ -95,6 +124,14 @@ double torque_about(const Spin& spin, const RowReport& report)
     return spin.who.facet == Facet::Shaft ? report.torque.x : dot(spin.n, report.torque);
 }
 
+void put_out_teeth(GearRows& rows, Row row)
+{
+    ToothForces teeth;
+    if (const double radius = rows.driven_radius[row]; radius > 0)
+        teeth = tooth_forces(rows.torque[row], radius, rows.pressure_angle[row], rows.helix_angle[row]);
+    rows.tangential_force[row] = teeth.tangential, rows.radial_force[row] = teeth.radial, rows.axial_force[row] = teeth.axial;
+}
+
 void put_out(GearOutputs& out, Row row, double phase, double speed, double torque, std::uint32_t redundant)
 {
     out.phase_error[row] = phase - out.phase_offset[row];
@@ -110,6 +147,8 @@ Result<void> prepare_gear(Row row, GearRows& rows, const Bodies& bodies)
     const auto ratio = ratio_of({rows.velocity_factor[row], rows.driver_teeth[row], rows.driven_teeth[row], rows.mesh[row]});
     if (!ratio) return ratio.errors();
     rows.ratio[row] = *ratio;
+    if (!(rows.pressure_angle[row] < kRightAngle)) return reason("pressure_angle must be below 90 deg");
+    if (!(std::fabs(rows.helix_angle[row]) < kRightAngle)) return reason("helix_angle must be within 90 deg to either side");
     if (auto placed = rows.driver_spin.place(row, rows.driver[row], base_of(rows, row, rows.driver[row]), bodies); !placed) return placed;
     return rows.driven_spin.place(row, rows.driven[row], base_of(rows, row, rows.driven[row]), bodies);
 }
@@ -146,6 +185,7 @@ void finish_gear(const StepContext& step, Rows which, GearRows& rows, const Bodi
         rows.driver_spin.keep_spin(row, g.driver, step.time), rows.driven_spin.keep_spin(row, g.driven, step.time);
         const RowReport report = reports.of(step.component_of_row[row]);
         put_out(rows, row, g.phase, g.speed, torque_about(g.driven, report), report.redundant);
+        put_out_teeth(rows, row);
     }
 }
 

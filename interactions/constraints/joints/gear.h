@@ -6,6 +6,12 @@
 ///
 /// Angles count whole turns, so C holds over any number of them. For shafts alone, Constraint/AngularVelocity/Graph is
 /// cheaper and has no drift at all.
+///
+/// Forces between the teeth of a Gear, at the driven's pitch circle of radius r, with normal pressure angle a and helix angle b
+/// (ISO 21771; J. Shigley, Mechanical engineering design, chapter 13), T: torque on driven about its axle:
+///   P_t = T / r        P_r = |P_t| tan a / cos b        P_a = P_t tan b
+/// They are put out, and no more: the row is a pure couple. It turns both wheels as P_t would, but neither their bearings nor
+/// whatever holds those feels P_t, P_r or P_a; where they should, add them to the bodies as forces.
 #pragma once
 
 #include "angular_velocity/ratio.h"
@@ -29,12 +35,22 @@ struct GearOutputs
     }
 };
 
+/// What the teeth of a pair press with, N.
+struct ToothForces
+{
+    double tangential = 0, radial = 0, axial = 0;
+};
+/// `torque` on a gear (N m), `radius` of its pitch circle (m, positive), angles below a right one (rad).
+ToothForces tooth_forces(double torque, double radius, double pressure_angle, double helix_angle);
+
 struct GearRows : GearOutputs
 {
     Column<Ref> driver, driven, carrier;
     Column<double> velocity_factor;
     Column<std::int64_t> driver_teeth, driven_teeth;
     Column<std::string> mesh;
+    Column<double> driven_radius, pressure_angle, helix_angle;   // m, rad
+    Column<double> tangential_force, radial_force, axial_force;  // N
     SpinColumns driver_spin, driven_spin;
     Column<Ratio> ratio;
 

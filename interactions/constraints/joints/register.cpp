@@ -125,7 +125,9 @@ void register_gears(Registrar& registrar)
         .command<&constrain_gear>(Phase::Constrain, kRows, "one row: the phase")
         .command<&finish_gear>(Phase::Finish, kFinish, "phase, torque and errors of the step")
         .cost("1 row")
-        .limits("bodies need bearings of their own; a body must not gain or lose half a turn against its mean speed within a step")
+        .limits(
+            "bodies need bearings of their own, which do not feel the forces between the teeth: the row is a pure couple; a body must not "
+            "gain or lose half a turn against its mean speed within a step")
         .source(kSource);
     registrar.component<PlanetaryRows>("Constraint/Planetary", "sun, ring and carrier of a planetary train, as bodies or shafts")
         .family("Constraint/Planetary")

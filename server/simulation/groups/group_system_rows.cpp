@@ -34,7 +34,7 @@ void GroupSystem::project()
 {
     if (!rows_) return;
     context_.time = frame_.start_time + (from_ + context_.dt);
-    ProjectionReport report = rows_->project(context_);
+    ProjectionReport report = rows_->project(context_, row_book());
     const auto by_id = [this](std::uint32_t x, std::uint32_t y) { return frame_.world->rank(x) < frame_.world->rank(y); };
     std::sort(report.contradictory.begin(), report.contradictory.end(), by_id);
     announce_contradictions(report);

@@ -149,10 +149,13 @@ private:
                          [&](std::uint32_t component, std::uint32_t block, Row row)
                          {
                              const Participation p = participation(world_, component);
+                             // Rows belong to who can follow them; if nobody can, somebody has to tell that they do not hold.
+                             const bool somebody_moves =
+                                 std::any_of(p.acts_on.begin(), p.acts_on.end(), [&](Ref r) { return is_dynamic(world_.host(), r); });
                              for (const Ref ref : p.acts_on)
                              {
                                  if (groups_.of(ref) == kNoIndex) continue;
-                                 if (phase == Phase::Constrain && !is_dynamic(world_.host(), ref)) continue;
+                                 if (phase == Phase::Constrain && somebody_moves && !is_dynamic(world_.host(), ref)) continue;
                                  Group& group = groups_.all[groups_.of(ref)];
                                  auto& rows = phase == Phase::Force ? group.forces : phase == Phase::Couple ? group.couplings : group.rows;
                                  rows.push_back({block, world_.rank(component), row});

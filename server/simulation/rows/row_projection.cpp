@@ -256,16 +256,31 @@ void RowSystem::name_contradictory(std::span<const double> errors, ProjectionRep
     }
 }
 
-ProjectionReport RowSystem::project(const StepContext& context)
+ProjectionReport RowSystem::project(const StepContext& context, const RowBook& book)
 {
     ProjectionReport report;
     keep_reactions();
     factored_ = false;
     relax_positions(context, report);
-    const double left = measure_positions();
+    // Rows that nobody can follow, as all who take part are prescribed: nothing to correct, but to tell.
+    const auto nobody_moves = [this](const ConstraintRow& row)
+    {
+        const auto mobile = [this](const RowBlock& b) { return is_mobile(b.who); };
+        return !row.may_yield() && std::none_of(row.blocks.begin(), row.blocks.begin() + row.count, mobile);
+    };
+    double left = measure_positions();
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (rows_[i].kind == RowKind::Equality && rows_[i].error != 0 && nobody_moves(rows_[i]))
+            position_error_[i] = rows_[i].error, left = std::fmax(left, std::fabs(rows_[i].error) / position_scale(rows_[i]));
     report.converged = left < kContradiction;
     if (!report.converged) name_contradictory(position_error_, report);
-    match_speeds(context, report, {});
+    match_speeds(context, report, book);
+    double stuck = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (nobody_moves(rows_[i]) && speed_of(rows_[i]) != rows_[i].rate)
+            speed_error_[i] = speed_of(rows_[i]) - rows_[i].rate,
+            stuck = std::fmax(stuck, std::fabs(speed_error_[i]) / speed_scale(rows_[i], context.dt));
+    if (stuck >= kSpeedContradiction) report.converged = false, name_contradictory(speed_error_, report);
     count_redundant(report);
     for (const double e : position_error_) report.position_error = std::fmax(report.position_error, std::fabs(e));
     for (const double e : speed_error_) report.speed_error = std::fmax(report.speed_error, std::fabs(e));

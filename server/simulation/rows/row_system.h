@@ -92,8 +92,9 @@ public:
     /// does work: rates, and kinematic participants.
     void account(const RowBook& book, double share) const;
 
-    /// Puts the members onto their rows: poses first (error = 0), then speeds (J v = rate). At the end of an advance.
-    ProjectionReport project(const StepContext& context);
+    /// Puts the members onto their rows: poses first (error = 0), then speeds (J v = rate). At the end of an advance. The change
+    /// of kinetic energy is booked to the components: of rows that contradict one another it is not small.
+    ProjectionReport project(const StepContext& context, const RowBook& book = {});
     /// Speeds only. The change of kinetic energy is booked to the components.
     ProjectionReport project_speeds(const StepContext& context, const RowBook& book = {});
     /// At the start of an advance: the same where speeds do not fit the rows (a joint came, a request or an impact changed

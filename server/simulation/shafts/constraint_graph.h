@@ -82,6 +82,8 @@ public:
     {
         return shaft < tree_of_.size() && tree_of_[shaft] != kNoIndex ? &trees_[tree_of_[shaft]] : nullptr;
     }
+    /// As they were added.
+    std::span<const RatioEdge> edges() const { return edges_; }
     /// Components whose coupling closes a loop and agrees with it, in id order.
     std::span<const std::uint32_t> redundant() const { return redundant_; }
     /// Sums over both sides of each node of a tree; `own` by node.

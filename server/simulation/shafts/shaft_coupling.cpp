@@ -100,6 +100,12 @@ double ShaftCoupling::rate(Ref shaft) const
     return level_ == Level::Speed ? shafts_->speed[shaft.index] : 0.0;
 }
 
+double ShaftCoupling::scale(Ref shaft) const
+{
+    const std::uint32_t root = root_of(shaft);
+    return entered(root) ? std::fabs(shafts_->ratio[shaft.index]) * roots_[root].scale : 0.0;
+}
+
 double ShaftCoupling::mobility(Ref shaft) const
 {
     const std::uint32_t root = root_of(shaft);

@@ -4,7 +4,9 @@
 /// sweep (Gauss-Seidel) serves accelerations in the solver's stages and speeds at step starts and after impulses.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,6 +21,10 @@ namespace plab::simulation
 /// Sweeps end when no rate changes by more than this share of the largest value that it had: some rounding errors.
 inline constexpr double kCouplingTolerance = 4e-15;
 inline constexpr int kMaxCouplingSweeps = 1000;
+/// They end, too, when the largest change has not come down to this share of itself over as many sweeps as a change takes
+/// through the longest train, twice: what contradicts itself moves to and fro for ever.
+inline constexpr double kCouplingStagnation = 0.995;
+inline constexpr std::size_t kLeastSweepsCompared = 32;
 /// Two drives of one root agree if their rates differ by no more than this, relative.
 inline constexpr double kDriveTolerance = 1e-12;
 
@@ -34,7 +40,7 @@ struct CouplingReport
 {
     int sweeps = 0;
     double residual = 0;    ///< largest change of the last sweep, relative
-    bool converged = true;  ///< false: residual above the tolerance after the last allowed sweep
+    bool converged = true;  ///< false: residual above the tolerance after the last allowed sweep, or no longer falling
     std::optional<DriveConflict> conflict;
 };
 
@@ -49,15 +55,19 @@ public:
     /// Speeds as they are; those of joined shafts must be consistent (ConstraintGraph::engage).
     void begin_speeds(const ConstraintGraph& graph, const Shafts& shafts, std::span<const std::uint32_t> members,
                       std::span<const std::uint32_t> prescribed);
-    /// Runs `couple_all` (all Phase::Couple rows, in order) until nothing changes.
+    /// Runs `couple_all` (all Phase::Couple rows, in order) until nothing changes, or what changes no longer falls.
     template <class CoupleAll>
     CouplingReport solve(CoupleAll&& couple_all, int max_sweeps = kMaxCouplingSweeps, double tolerance = kCouplingTolerance)
     {
         CouplingReport report;
+        double before = std::numeric_limits<double>::infinity();
         do {
             start_sweep();
             couple_all();
             ++report.sweeps;
+            if (static_cast<std::size_t>(report.sweeps) % std::max(kLeastSweepsCompared, 2 * participants_.size()) != 0) continue;
+            if (!(largest_change_ < kCouplingStagnation * before)) break;
+            before = largest_change_;
         } while (largest_change_ > tolerance && report.sweeps < max_sweeps);
         report.residual = largest_change_, report.converged = largest_change_ <= tolerance;
         report.conflict = conflict_;
@@ -65,6 +75,8 @@ public:
     }
     void start_sweep();
     double largest_change() const { return largest_change_; }
+    /// The largest |rate| of a shaft in this solve.
+    double scale(Ref shaft) const;
 
     /// rad/s^2 or rad/s of all members, by shaft.
     void store_rates(std::span<double> out) const;

@@ -94,6 +94,7 @@ CouplingReport ShaftSystem::solve_speeds(const StepContext& context, Shafts& sha
         const CouplingReport report = sweep(part, context);
         part.coupling.store_speeds(shafts);
         part.coupling.account(work, 1.0);
+        worst.sweeps = std::max(worst.sweeps, report.sweeps);
         if (report.residual > worst.residual) worst.residual = report.residual;
         worst.converged = worst.converged && report.converged;
         if (report.conflict && !worst.conflict) worst.conflict = report.conflict;
@@ -102,6 +103,24 @@ CouplingReport ShaftSystem::solve_speeds(const StepContext& context, Shafts& sha
 }
 
 double ShaftSystem::rate(std::uint32_t shaft) const { return parts_[part_of_shaft_[shaft]].coupling.rate({Facet::Shaft, shaft}); }
+
+const ShaftSystem::Part* ShaftSystem::swept_part_of(std::uint32_t shaft) const
+{
+    const std::uint32_t i = part_of(shaft);
+    return i == kNoIndex || parts_[i].couplings.empty() ? nullptr : &parts_[i];
+}
+
+double ShaftSystem::scale(std::uint32_t shaft) const
+{
+    const Part* part = swept_part_of(shaft);
+    return part ? part->coupling.scale({Facet::Shaft, shaft}) : 0.0;
+}
+
+bool ShaftSystem::yields(std::uint32_t shaft) const
+{
+    const Part* part = swept_part_of(shaft);
+    return part && part->coupling.mobility({Facet::Shaft, shaft}) > 0;
+}
 
 void ShaftSystem::account(std::vector<double>& work, double share)
 {

@@ -23,6 +23,12 @@ public:
     CouplingReport solve_speeds(const StepContext& context, Shafts& shafts, std::vector<double>& work);
     /// Of the last solve; rad/s^2.
     double rate(std::uint32_t shaft) const;
+    /// The shafts that sweeps bring together with this one.
+    std::uint32_t part_of(std::uint32_t shaft) const { return shaft < part_of_shaft_.size() ? part_of_shaft_[shaft] : kNoIndex; }
+    /// After solve_speeds(): the largest |speed| that it had on the way, rad/s; 0 where nothing is swept.
+    double scale(std::uint32_t shaft) const;
+    /// Likewise: whether pairwise couplings move it. Prescribed motion and one-way drives do not yield.
+    bool yields(std::uint32_t shaft) const;
     void account(std::vector<double>& work, double share);
     void add_reactions(ShaftTorques& torques) const;
 
@@ -37,6 +43,7 @@ private:
     };
     Part& part_of_cluster(std::uint32_t cluster);
     CouplingReport sweep(Part& part, const StepContext& context);
+    const Part* swept_part_of(std::uint32_t shaft) const;
 
     const world::World* world_ = nullptr;
     const Schedule* schedule_ = nullptr;

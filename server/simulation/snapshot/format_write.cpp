@@ -1,8 +1,7 @@
 // From a snapshot to bytes.
-#include <cstdio>
 #include <map>
 
-#include "plab/plugin.h"
+#include "simulation/snapshot/build.h"
 #include "simulation/snapshot/format.h"
 #include "simulation/snapshot/format_cells.h"
 #include "simulation/snapshot/format_scene.h"
@@ -104,13 +103,6 @@ void write_pairs(const std::string& name, List list, const FileRows& rows, std::
 {
     for (auto& head : list.heads) head.detector = rows.component(head.detector), head.a = rows.body(head.a), head.b = rows.body(head.b);
     out.push_back(section_of(name, list.heads)), out.push_back(section_of(name + ".points", list.points));
-}
-
-std::string build_name()
-{
-    char layout[24];
-    std::snprintf(layout, sizeof layout, "%016llx", static_cast<unsigned long long>(layout_stamp()));
-    return "sdk " + std::to_string(kSdkVersion) + ", compiler " __VERSION__ ", layout " + layout;
 }
 
 void write_run(const SnapshotContent& s, bool loaded_is_scene, std::vector<Section>& out)

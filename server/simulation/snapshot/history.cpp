@@ -63,6 +63,28 @@ std::size_t bytes_of(const Snapshot& snapshot)
            s.ledger.work.size() * sizeof(double);
 }
 
+namespace
+{
+
+/// About what a request holds in memory: texts and blueprints by their parts.
+std::size_t bytes_of(const Request& request)
+{
+    constexpr std::size_t kComponent = 1024, kValue = 128;
+    std::size_t out = sizeof request;
+    for (const Operation& op : request.operations)
+    {
+        out += sizeof op;
+        if (const auto* add = std::get_if<AddOperation>(&op)) out += add->fragment.components.size() * kComponent;
+        if (const auto* add = std::get_if<AddBlueprintOperation>(&op)) out += add->blueprint.components.size() * kComponent;
+        if (const auto* swap = std::get_if<SwapOperation>(&op)) out += swap->values.size() * kValue;
+        if (const auto* set = std::get_if<SetOperation>(&op))
+            if (const auto* text = std::get_if<std::string>(&set->value)) out += text->size();
+    }
+    return out;
+}
+
+}  // namespace
+
 void History::configure(const HistoryOptions& options) { options_ = options, interval_ = options.interval; }
 
 Result<void> History::keep(const std::string& name, const Snapshot& snapshot)
@@ -99,7 +121,7 @@ void History::begin(const Simulation& simulation)
 {
     if (is_rewinding_) return;
     course_.clear(), asked_.clear();
-    bytes_ = 0, interval_ = options_.interval;
+    bytes_ = asked_bytes_ = 0, interval_ = options_.interval;
     if (options_.interval > 0) add_point(simulation);
 }
 
@@ -115,9 +137,12 @@ void History::note(const Simulation& simulation, const Request& request)
     // Pause and rate are the present's: they are not asked again.
     if (!concerns_the_course(request)) return;
     if (begins_a_run(request.operations.front())) return;  // begin() was told of it
-    Asked asked{request, simulation.tick()};
+    Asked asked{request, simulation.tick(), bytes_of(request)};
     asked.request.at.reset(), asked.request.revision.reset();
+    asked_bytes_ += asked.bytes;
     asked_.push_back(std::move(asked));
+    // Too much since the last point: one more follows at the next step, and lets go what was before it.
+    if (asked_bytes_ > options_.most_asked_bytes) next_ = simulation.time();
 }
 
 void History::add_point(const Simulation& simulation)
@@ -127,9 +152,24 @@ void History::add_point(const Simulation& simulation)
     bytes_ += point.bytes, next_ = point.time + interval_;
     course_.push_back(std::move(point));
     while (bytes_ > options_.most_bytes && course_.size() > 2) thin();
+    give_up_earliest();
 }
 
-/// The first one stays: the whole run can be made again, with more steps in between.
+/// Requests since the first point are all needed to make again what lies between the points: who asks much and for long gives up
+/// the beginning of the run.
+void History::give_up_earliest()
+{
+    std::size_t points = 0, requests = 0;
+    while (asked_bytes_ > options_.most_asked_bytes && points + 1 < course_.size())
+    {
+        bytes_ -= course_[points++].bytes;
+        for (; requests < asked_.size() && asked_[requests].step < course_[points].step; ++requests) asked_bytes_ -= asked_[requests].bytes;
+    }
+    course_.erase(course_.begin(), course_.begin() + static_cast<std::ptrdiff_t>(points));
+    asked_.erase(asked_.begin(), asked_.begin() + static_cast<std::ptrdiff_t>(requests));
+}
+
+/// The first one stays: all that is kept of the run can be made again, with more steps in between.
 void History::thin()
 {
     std::vector<Point> kept;
@@ -168,8 +208,9 @@ Result<void> History::rewind(Simulation& simulation, double time)
     const Tick step = simulation.tick();
     std::erase_if(course_, [&](const Point& p) { return p.step > step; });
     std::erase_if(asked_, [&](const Asked& a) { return a.step >= step; });
-    bytes_ = 0;
+    bytes_ = asked_bytes_ = 0;
     for (const Point& p : course_) bytes_ += p.bytes;
+    for (const Asked& a : asked_) asked_bytes_ += a.bytes;
     next_ = course_.back().time + interval_;
     return {};
 }

@@ -2,6 +2,7 @@
 /// between them, from which any step of the run can be made again.
 #pragma once
 
+#include <deque>
 #include <limits>
 #include <map>
 #include <string>
@@ -15,8 +16,9 @@ namespace plab::simulation
 
 struct HistoryOptions
 {
-    double interval = 0;                 ///< s, simulated, between snapshots of its own; 0: none, and nothing can be rewound
-    std::size_t most_bytes = 64u << 20;  ///< of those; beyond it every second one is given up and they come half as often
+    double interval = 0;                       ///< s, simulated, between snapshots of its own; 0: none, and nothing can be rewound
+    std::size_t most_bytes = 64u << 20;        ///< of those; beyond it every second one is given up and they come half as often
+    std::size_t most_asked_bytes = 32u << 20;  ///< of requests between them; beyond it the earliest of the run is given up
     std::size_t most_named = 64;
     std::size_t most_named_bytes = 256u << 20;
 };
@@ -35,7 +37,8 @@ public:
 
     void configure(const HistoryOptions& options);
     bool can_rewind() const { return options_.interval > 0 && !course_.empty(); }
-    std::size_t bytes() const { return bytes_; }  ///< of the course, about
+    std::size_t bytes() const { return bytes_; }              ///< of the course, about
+    std::size_t asked_bytes() const { return asked_bytes_; }  ///< of what was asked since its first point, about
     /// s: the earliest time of the present run that rewind() reaches.
     double earliest() const { return course_.empty() ? std::numeric_limits<double>::infinity() : course_.front().time; }
 
@@ -69,17 +72,19 @@ private:
     {
         Request request;
         Tick step = 0;
+        std::size_t bytes = 0;
     };
     struct Present;
     void add_point(const Simulation& simulation);
     void thin();
+    void give_up_earliest();
     Result<void> go_forward(Simulation& simulation, const std::vector<Asked>& asked, double time);
 
     HistoryOptions options_;
     double interval_ = 0;  ///< s: the present one
     std::vector<Point> course_;
-    std::vector<Asked> asked_;
-    std::size_t bytes_ = 0;
+    std::deque<Asked> asked_;  ///< in the order of steps
+    std::size_t bytes_ = 0, asked_bytes_ = 0;
     double next_ = 0;  ///< s
     std::map<std::string, Named> named_;
     bool is_rewinding_ = false;

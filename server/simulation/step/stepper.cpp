@@ -84,14 +84,7 @@ void Stepper::couple_speeds()
     StepContext context;
     context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
     const CouplingReport done = speed_system_.solve_speeds(context, shafts, work_);
-    report_.coupling_residual = std::max(report_.coupling_residual, done.converged ? 0.0 : done.residual);
-    if (!done.conflict) return;
-    Event e;
-    e.time = frame_.start_time, e.kind = "coupling.conflict", e.severity = Severity::Warning;
-    e.component = done.conflict->second;
-    e.message = "drives " + world_.id_of(Ref{Facet::Shaft, done.conflict->shaft}) + " against " + world_.id_of(done.conflict->first) +
-                ", which is obeyed";
-    emit(std::move(e));
+    coupling_watch_.tell(world_, speed_system_, done, frame_.start_time, *this, told_.contradictory);
 }
 
 void Stepper::draw()

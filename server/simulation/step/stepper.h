@@ -7,6 +7,7 @@
 #include "simulation/contact_forces/contact_forces.h"
 #include "simulation/contacts/contacts.h"
 #include "simulation/groups/system_pool.h"
+#include "simulation/shafts/coupling_watch.h"
 #include "simulation/shafts/shaft_reactions.h"
 #include "simulation/sight.h"
 #include "simulation/step/worker_pool.h"
@@ -23,7 +24,6 @@ struct StepReport
     int resting_pairs = 0;
     std::uint64_t evaluations = 0;  ///< of forces, summed over the systems that solvers advanced, trials included
     double worst_residual = 0;      ///< m/s, left over by contact responses
-    double coupling_residual = 0;   ///< relative, left over by shaft couplings
     double deepest = 0;             ///< m, overlap left at the end of the step
     std::vector<Ref> frozen;        ///< objects whose state was not finite any more
 };
@@ -40,7 +40,7 @@ struct CostBook
 struct Told
 {
     bool stiff = false;                       ///< contact.stiff
-    std::vector<std::uint8_t> contradictory;  ///< constraint.contradiction, by component
+    std::vector<std::uint8_t> contradictory;  ///< constraint.contradiction and coupling.*, by component
 };
 
 /// Events of one thread, until all threads are done.
@@ -281,6 +281,7 @@ private:
     std::vector<Unit> units_;
     std::vector<std::uint32_t> smooth_, in_contact_, shadows_, island_, island_all_, same_unit_;
     ShaftSystem speed_system_;
+    CouplingWatch coupling_watch_;
     std::vector<std::uint8_t> group_flags_;
     std::vector<std::uint32_t> contact_groups_;
     std::vector<std::uint8_t> done_;

@@ -81,6 +81,8 @@ void Stepper::connect_graph(Errors& errors)
     directory.component_id = [this](std::uint32_t c) { return world_.id_of(c); };
     if (auto built = graph_.build(world_.host().shafts, directory); !built)
         errors.insert(errors.end(), built.errors().begin(), built.errors().end());
+    else
+        coupling_watch_.rebuild(world_, schedule_, graph_, directory);
 }
 
 Result<void> Stepper::rebuild()

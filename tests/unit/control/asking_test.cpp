@@ -15,7 +15,17 @@ TEST_CASE("servers lists those of the domain, and it is an error if there are no
     REQUIRE(both.json()["servers"].size() == 2);
     CHECK(both.json()["servers"][0]["name"] == "one");
     CHECK(both.json()["servers"][1]["process"] == 42);
-    CHECK(has(plabctl("servers").out, "scene.xml"));
+    const Outcome table = plabctl("servers");
+    CHECK(has(table.out, "scene.xml"));
+    CHECK(!has(table.out, "note"));
+    CHECK(both.json()["servers"][1]["recording"].is_null());
+    two.fill_disk();
+    const auto told = [&]
+    { return has(plabctl("servers").out, "recording stands still: no space left on device; 3 messages not recorded"); };
+    bool is_told = told();
+    for (int i = 0; i < 10 && !is_told; ++i) is_told = told();
+    CHECK(is_told);
+    CHECK(plabctl("servers --json").json()["servers"][1]["recording"]["dropped"] == 3);
 }
 
 TEST_CASE("a server is found by name, or if it is the only one")

@@ -177,6 +177,7 @@ void FakeServer::publish_state()
     s.run = 1, s.revision = 3, s.step = step_, s.time = static_cast<double>(s.step) * kDt, s.dt = kDt, s.paused = paused_;
     s.rate_asked = 1, s.rate_reached = 0.998, s.overload = text(""), s.threads = 1;
     s.started_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+    if (disk_is_full_) s.recording = {text("run.mcap"), 1000, 10, 3, text("no space left on device")};
     (void)ends_->server.write(s);
 }
 

@@ -42,6 +42,8 @@ public:
     void skip_numbers(std::uint64_t count) { skip_ += count; }
     /// Answers like a server that is at this step.
     void go_to_step(std::int64_t step) { step_ = step; }
+    /// Shows a recording on a disk that is full.
+    void fill_disk() { disk_is_full_ = true; }
 
 private:
     struct Ends;
@@ -59,7 +61,7 @@ private:
 
     std::string name_;
     std::unique_ptr<Ends> ends_;
-    std::atomic<bool> stop_{false};
+    std::atomic<bool> stop_{false}, disk_is_full_{false};
     std::atomic<std::uint64_t> skip_{0};
     std::atomic<std::int64_t> step_{1200};
     std::uint64_t number_ = 1, frames_ = 0;

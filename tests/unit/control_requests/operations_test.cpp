@@ -52,6 +52,12 @@ TEST_CASE("each verb becomes its operation")
     (void)only<simulation::PauseOperation>({"pause", "", "", "", {}});
     (void)only<simulation::ResumeOperation>({"resume", "", "", "", {}});
     (void)only<simulation::ResetOperation>({"reset", "", "", "", {}});
+    const auto to = only<simulation::RewindOperation>({"rewind", "", "500 ms", "", {}});
+    CHECK((to.time == 0.5 && !to.back));
+    const auto by = only<simulation::RewindOperation>({"rewind", "", "back 0.25 s", "", {}});
+    CHECK((by.time == 0.25 && by.back));
+    CHECK(control::text_of(by).argument == "back 0.25");
+    CHECK(only<simulation::SnapshotOperation>({"snapshot", "before.2_a-b", "", "", {}}).name == "before.2_a-b");
     const auto add =
         only<simulation::AddBlueprintOperation>({"add", "", "", "<component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>", {}});
     CHECK(add.blueprint.components.size() == 1);
@@ -92,7 +98,8 @@ TEST_CASE("what a verb does not use is refused, and so is what it lacks")
     CHECK(refusal({"push", "red", "", "", {{"impulse", "1 nan 0"}}}).find("impulse") != std::string::npos);
     for (const char* bad : {"", "0", "-1", "1.5", "1e3", "99999999999999999999", "7 "})
         CHECK(wanted({{"step", "", bad, "", {}}}).ok() == false);
-    for (const char* bad : {"0", "-1", "fast", "inf", "nan", "1 ", "1e300", "1e-20"}) CHECK(wanted({{"rate", "", bad, "", {}}}).ok() == false);
+    for (const char* bad : {"0", "-1", "fast", "inf", "nan", "1 ", "1e300", "1e-20"})
+        CHECK(wanted({{"rate", "", bad, "", {}}}).ok() == false);
     CHECK(refusal({"swpa", "a", "T", "", {}}) == "operation 1 (swpa): 'swpa' is no operation, did you mean 'swap'?");
 }
 
@@ -125,4 +132,13 @@ TEST_CASE("step and revision that a request names")
     const auto free = control::wanted_of(text, library);
     CHECK_FALSE(free->request.at.has_value());
     CHECK_FALSE(free->request.revision.has_value());
+}
+
+TEST_CASE("a sign is no way to go back, and names of snapshots are as those of servers")
+{
+    for (const char* time : {"-1", "-0", "-2 s", "back -1", "back -0 s"})
+        CHECK(refusal({"rewind", "", time, "", {}}).find("is negative") != std::string::npos);
+    for (const char* time : {"back", "back ", "back1", "now", "1 m"}) CHECK(!refusal({"rewind", "", time, "", {}}).empty());
+    for (const std::string& name : {std::string("a/b"), std::string("a b"), std::string("\n"), std::string(65, 'a')})
+        CHECK(refusal({"snapshot", name, "", "", {}}).find("is no name of a snapshot") != std::string::npos);
 }

@@ -122,6 +122,33 @@ TEST_CASE("a rewound run stands where it stood, to the last bit, and goes on as 
     CHECK(kept.scene.hash() != hashes[67]);
 }
 
+TEST_CASE("what was asked takes bounded room: who asks for long gives up the beginning, and the rest is the same again")
+{
+    simulation::HistoryOptions options = every(0.1);
+    options.most_asked_bytes = 20000;
+    Kept kept(options);
+    std::vector<std::uint64_t> hashes{kept.scene.hash()};
+    std::size_t most = 0;
+    for (int i = 0; i < 400; ++i)
+    {
+        CHECK(kept.scene.ask(simulation::PushOperation{"ball", {1e-3 * (i % 3), 0, 0}, {}}).done);
+        kept.scene.step();
+        hashes.push_back(kept.scene.hash());
+        most = std::max(most, kept.s().history().asked_bytes());
+    }
+    CHECK(most > 10000);
+    CHECK(most < 2 * options.most_asked_bytes);
+    const double earliest = kept.s().history().earliest();
+    CHECK(earliest > 1);
+    CHECK(earliest < 3.9);
+    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{earliest - 0.02, false})).find("which begins at") != std::string::npos);
+    for (const double time : {3.95, earliest})
+    {
+        REQUIRE(kept.scene.ask(simulation::RewindOperation{time, false}).done);
+        CHECK(kept.scene.hash() == hashes[static_cast<std::size_t>(kept.s().tick())]);
+    }
+}
+
 TEST_CASE("what is asked at the step that is rewound to can be asked otherwise")
 {
     Kept kept(every(0.1));

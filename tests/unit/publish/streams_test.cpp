@@ -330,6 +330,29 @@ TEST_CASE("a warm step allocates nothing: unwatched, and with frames")
     }
 }
 
+TEST_CASE("frames are numbered for each observer: one that gets every tenth has missed none")
+{
+    Scene scene(kDrop);
+    Watched run(scene);
+    Watcher seldom;
+    seldom.wanted = {Stream::States}, seldom.intervals[Stream::States] = 10 * scene.simulation().dt();
+    run.collector.attach(seldom);
+    std::uint64_t last = 0;
+    for (int i = 0; i < 100; ++i)
+    {
+        run.step();
+        if (i == 50) run.watcher.wanted.erase(Stream::States);
+        if (i == 60) run.watcher.wanted.insert(Stream::States);
+        CHECK(run.watcher.frame.number == run.watcher.frames);
+        CHECK(seldom.frame.number == seldom.frames);
+        CHECK(seldom.frame.number - last <= 1);
+        last = seldom.frame.number;
+    }
+    CHECK(run.watcher.frames > 80);
+    CHECK(seldom.frames < 20);
+    CHECK(seldom.frames >= 10);
+}
+
 TEST_CASE("watching changes no bit")
 {
     Scene plain(kDrop), watched(kDrop);

@@ -93,6 +93,8 @@ TEST_CASE("recover: 0 whole, 5 something lost, 1 nothing usable")
     CHECK(cut.code == 5);
     CHECK(has(cut.output, "plab/states: "));
     CHECK(has(cut.output, "lost: "));
+    CHECK_MESSAGE(has(cut.output, "lost: what was recorded after "), cut.output);
+    CHECK_MESSAGE(!has(whole.output, "lost: "), whole.output);
     CHECK(has(plabctl({"info", out}).output, "whole"));
     // It is not written over.
     CHECK(plabctl({"recover", make_recording("cli_whole.mcap"), "-o", out}).code == 1);
@@ -131,6 +133,23 @@ TEST_CASE("diff: exit code 0 without a difference, 1 with one")
     const std::string empty = make_recording("cli_diff_none.mcap", {.steps = 0, .frame_every = 7, .with_hashes = false});
     CHECK(plabctl({"diff", a, empty}).code == 0);  // the first step is the same
     CHECK(plabctl({"diff", a}).code == 2);
+    const Outcome longer = plabctl({"diff", a, make_recording("cli_diff_runs.mcap", {.steps_after = 30})});
+    CHECK(longer.code == 1);
+    CHECK_MESSAGE(has(longer.output, "1 and 2: not compared, as only B has them: 2"), longer.output);
+}
+
+TEST_CASE("play refuses times and rates that make no sense, before it joins the bus")
+{
+    const std::string file = make_recording("cli_play.mcap");
+    for (const std::string rate : {"0", "5000", "-1", "fast"})
+    {
+        const Outcome refused = plabctl({"play", file, "--rate", rate});
+        CHECK(refused.code == 2);
+        CHECK_MESSAGE(has(refused.errors, "must be from 0.001 to 1000, not '" + rate + "'"), refused.errors);
+    }
+    const Outcome backwards = plabctl({"play", file, "--from", "5", "--to", "2"});
+    CHECK(backwards.code == 2);
+    CHECK_MESSAGE(has(backwards.errors, "--to is before --from"), backwards.errors);
 }
 
 TEST_CASE("plot and report write what they are named after")
@@ -164,6 +183,15 @@ TEST_CASE("log of a file")
     CHECK(has(plabctl({"log", file, "--json", "--severity", "warning"}).output, R"("severity":"warning")"));
     CHECK(plabctl({"log", file, "--severity", "loud"}).code == 2);
     CHECK(plabctl({"log", "--from", "1"}).code == 2);
+    CHECK(plabctl({"log", file, "--from", "3", "--to", "2"}).code == 2);
+    CHECK(plabctl({"log", file, "--kind", "collision.rest"}).code == 0);  // there may be such, if not in this file
+    for (const char* option : {"--kind", "--object"})
+    {
+        const auto nobody = plabctl({"log", file, option, "nope"});
+        CHECK(nobody.code == 1);
+        CHECK_MESSAGE(has(nobody.errors, "nope"), nobody.errors);
+        CHECK(nobody.output.empty());
+    }
 }
 
 TEST_CASE("damage is said on standard error, and the exit code tells that not all was read")

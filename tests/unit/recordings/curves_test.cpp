@@ -145,7 +145,9 @@ TEST_CASE("what there is not is refused with what there is")
     CHECK(refused(log, "red.position.q").find("a body has position") != std::string::npos);
     CHECK(refused(log, "red").find("no quantity 'red'") != std::string::npos);
     CHECK(curves(log, "contact.response.nothing")[0].points.empty());
-    CHECK(curves(log, "axle.position.x")[0].points.empty());
+    CHECK(refused(log, "axle.position.x").find("a shaft has angle, speed") != std::string::npos);
+    CHECK(refused(log, "axle.position.x").find("a body has") == std::string::npos);
+    CHECK(refused(log, "red.angle").find("a shaft has") == std::string::npos);
 }
 
 TEST_CASE("swaps, runs and events are marked where they were")

@@ -43,6 +43,21 @@ TEST_CASE("a recording does not differ from itself, whatever the compression")
     CHECK(d.objects.front().largest == 0);
 }
 
+TEST_CASE("a run that only one of them has is a difference, and is named")
+{
+    const Difference d = difference({.steps_after = 30}, {});
+    CHECK(d.runs_a == 2);
+    CHECK(d.runs_b == 1);
+    REQUIRE(d.not_compared.size() == 1);
+    CHECK(d.not_compared[0].run == 2);
+    CHECK(d.not_compared[0].is_in_a);
+    CHECK(!d.first_hash);
+    CHECK(!d.is_none());
+    const Difference other = difference({}, {.steps_after = 30});
+    REQUIRE(other.not_compared.size() == 1);
+    CHECK(!other.not_compared[0].is_in_a);
+}
+
 TEST_CASE("the first difference is named: step, object, quantity, both values")
 {
     const Difference d = difference({}, {.differs_from = 57});

@@ -40,16 +40,21 @@ public:
     }
     Result<std::optional<publish::Frame>> frame(std::uint64_t run, Tick step) override
     {
-        const auto found = frames.find({run, step});
-        return found == frames.end() ? std::nullopt : std::optional(found->second);
+        const auto found = frames.lower_bound({run, step});
+        return found == frames.end() || found->first.first != run ? std::nullopt : std::optional(found->second);
     }
     Result<std::vector<std::pair<std::uint32_t, std::string>>> objects(std::uint64_t) override
     {
         return std::vector<std::pair<std::uint32_t, std::string>>{{1, "ball"}};
     }
-    std::string origin(const std::string&) const override { return {}; }
+    std::string origin(const std::string& key) const override
+    {
+        const auto found = about.find(key);
+        return found == about.end() ? std::string() : found->second;
+    }
     std::string damage() const override { return {}; }
 
+    std::map<std::string, std::string> about;
     std::vector<record::RecordedSnapshot> places;
     std::vector<publish::SnapshotRecord> records;
     std::vector<publish::JournalRecord> entries;
@@ -101,6 +106,7 @@ public:
             tape.hashes.push_back(record);
             publish::Frame frame;
             const std::uint32_t ball = s.world().find("ball");
+            frame.run = s.run(), frame.step = s.tick();
             if (ball != kNoIndex) frame.bodies = {publish::state_of(s.world().host().bodies, s.world().component(ball).host_index, 1)};
             tape.frames[{s.run(), s.tick()}] = std::move(frame);
         }
@@ -186,6 +192,54 @@ TEST_CASE("a request that the recording does not know shows at its step, with ob
     const std::string text = report.mismatch->text();
     CHECK(text.find("step 26") != std::string::npos);
     CHECK(text.find("ball.position: recorded ") != std::string::npos);
+}
+
+TEST_CASE("without a frame of the step the next one tells the column, whichever of it and the snapshot comes first")
+{
+    for (const int snapshot_at : {27, 40})
+    {
+        Taping taping(kBall);
+        taping.step(25);
+        REQUIRE(taping.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);
+        taping.step(snapshot_at - 25);
+        taping.keep_snapshot("periodic");
+        taping.step(45 - snapshot_at);
+        for (Tick step = 26; step < 30; ++step) taping.tape.frames.erase({taping.scene.simulation().run(), step});
+        const replay::ReplayReport report = made_again(taping.tape);
+        REQUIRE(report.mismatch);
+        CHECK(report.mismatch->step == 26);
+        CHECK(report.mismatch->snapshot_step == snapshot_at);
+        CHECK(!report.mismatch->in_snapshot.empty());
+        CHECK(report.mismatch->frame_step == (snapshot_at == 40 ? 30 : -1));
+        CHECK(report.mismatch->in_frame.empty() == (snapshot_at == 27));
+        if (snapshot_at == 40)
+            CHECK(report.mismatch->text().find("in the recorded frame of step 30:\n  ball.position") != std::string::npos);
+    }
+}
+
+TEST_CASE("a gap in the numbers of the journal is a doubt, also between two runs")
+{
+    Taping taping(kBall);
+    taping.step(5);
+    taping.ask({{"set", "ball", "", "", {{"mass", "2 kg"}}}});
+    taping.step(5);
+    taping.ask({{"reset", "", "", "", {}}});
+    taping.keep_snapshot("begin");
+    taping.step(5);
+    CHECK(made_again(taping.tape).doubts.empty());
+    taping.tape.entries[1].number = 4;
+    const replay::ReplayReport between = made_again(taping.tape);
+    REQUIRE(between.doubts.size() == 1);
+    CHECK(between.doubts[0].find("entries 2 to 3 are missing, after step 5 of run") != std::string::npos);
+    // What came before the first entry is known of plabd's own recordings only.
+    taping.tape.entries[0].number = 3;
+    CHECK(made_again(taping.tape).doubts.empty());
+    taping.tape.about["recorder"] = "plabd";
+    CHECK(made_again(taping.tape).doubts.size() == 1);
+    taping.tape.about["topics"] = "plab/states plab/hashes";
+    const replay::ReplayReport without = made_again(taping.tape);
+    REQUIRE(without.doubts.size() == 1);
+    CHECK(without.doubts[0].find("made without plab/journal") != std::string::npos);
 }
 
 TEST_CASE("one wrong bit in a recorded hash is found")

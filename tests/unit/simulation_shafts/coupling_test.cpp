@@ -320,6 +320,23 @@ TEST_CASE("circles of drives do not settle, and two drives of one train are repo
     CHECK_FALSE(two.sweep().conflict.has_value());
 }
 
+TEST_CASE("sweeps end where a contradiction moves to and fro for ever, and not where a change has a long way to go")
+{
+    Coupled loop;
+    for (const double w : {1.0, 2.0, 6.0}) loop.add_shaft(1, w);
+    loop.impulse.add(0, 0, 1, 2), loop.impulse.add(1, 1, 2, 3), loop.impulse.add(2, 2, 0, 1 / 6.0001);
+    loop.prepare(), loop.begin_speeds();
+    const auto report = loop.sweep();
+    CHECK_FALSE(report.converged);
+    CHECK(report.sweeps == 64);
+    CHECK(std::fabs(std::log10(report.residual) + 5.5) < 1.5);
+    Coupled line;  // against the order of its rows a change goes one coupling further with each sweep
+    for (int i = 0; i < 200; ++i) line.add_shaft(1, i == 199 ? 1 : 0);
+    for (std::uint32_t i = 0; i < 199; ++i) line.impulse.add(i, i, i + 1, 1);
+    line.prepare(), line.begin_speeds();
+    CHECK(line.sweep().sweeps == simulation::kMaxCouplingSweeps);
+}
+
 TEST_CASE("a rate that is not a number is not called converged")
 {
     Coupled t;

@@ -260,18 +260,46 @@ TEST_CASE("a run that goes wrong is a record with the reason")
     CHECK(record_run(library(), compiled(kBall), unknown).outcome == Outcome::Refused);
 }
 
-TEST_CASE("a swap inside a run is carried out and answered")
+TEST_CASE("a swap inside a run is carried out and answered; one that is refused ends it")
 {
     RunOptions how = options(1);
-    how.swaps = {{40, "solver", "Solver/SemiImplicitEuler"}, {60, "nobody", "Solver/SemiImplicitEuler"}};
+    how.swaps = {{40, "solver", "Solver/SemiImplicitEuler"}};
     how.allocations = &count_nothing;
     const RunRecord record = record_run(library(), compiled(kBall + kWeight), how);
-    REQUIRE(record.swaps.size() == 2);
+    REQUIRE(record.swaps.size() == 1);
+    CHECK(record.ok());
     CHECK(record.swaps[0].done);
     CHECK(record.swaps[0].step == 40);
     CHECK(record.swaps[0].swaps.front().to == "Solver/SemiImplicitEuler");
-    CHECK(!record.swaps[1].done);
     CHECK(record.allocations == 0);
     // Semi-implicit Euler from t = 0.4 on: late by g dt/2 a second.
     CHECK(record.courses[0].values.back() == doctest::Approx(1 - 0.5 * 9.81 - 0.6 * 9.81 * 0.005).epsilon(1e-9));
+    how.swaps.push_back({60, "nobody", "Solver/SemiImplicitEuler"});
+    const RunRecord refused = record_run(library(), compiled(kBall + kWeight), how);
+    CHECK(refused.outcome == Outcome::SwapRefused);
+    CHECK(refused.why.find("the swap before step 60, at t = 0.6 s: ") == 0);
+    CHECK(refused.why.find("nobody") != std::string::npos);
+    CHECK(refused.steps == 61);
+    REQUIRE(refused.swaps.size() == 2);
+    CHECK(!refused.swaps[1].done);
+    how.swaps.back() = {100, "solver", "Solver/Exact"};
+    CHECK(record_run(library(), compiled(kBall + kWeight), how).outcome == Outcome::SwapRefused);
+}
+
+TEST_CASE("allocations are counted in warm steps: not in the first ones, nor those after a swap")
+{
+    // Each step is seen to allocate once.
+    static std::uint64_t calls = 0;
+    const auto count = [](double until, std::vector<SwapAt> swaps)
+    {
+        RunOptions how = options(until);
+        how.swaps = std::move(swaps), how.allocations = [] { return calls++; };
+        return record_run(library(), compiled(kBall + kWeight), how).allocations;
+    };
+    CHECK(count(4, {}) == 360);
+    CHECK(count(1, {}) == 80);
+    CHECK(!count(0.2, {}).has_value());
+    CHECK(!count(0.03, {}).has_value());
+    // Steps 21 to 40, and from the 20th after the one that the swap came before.
+    CHECK(count(1, {{40, "solver", "Solver/SemiImplicitEuler"}}) == 20 + 39);
 }

@@ -79,6 +79,28 @@ TEST_CASE("all combinations, dt fastest, rungs in front")
     CHECK(!parse_rung("solver").ok());
 }
 
+TEST_CASE("each run has a name of its own, and no setting is overridden unseen")
+{
+    const auto why = [](const std::vector<std::string>& rungs, const std::vector<std::string>& vary)
+    {
+        std::vector<Rung> all;
+        std::vector<std::vector<Setting>> of;
+        for (const std::string& text : rungs) all.push_back(*parse_rung(text));
+        for (const std::string& text : vary) of.push_back(varied(text));
+        const auto done = check_settings(all, of);
+        return done ? "none" : done.error().text();
+    };
+    CHECK(why({"a: x=A", "b: x=B"}, {"dt=1/60,1/120", "y=A,B", "z=A,B"}) == "none");
+    CHECK(has(why({}, {"dt=1/60", "dt=1/120"}), "--vary dt is given twice: write all values in one"));
+    CHECK(has(why({}, {"dt=1/60,1/60"}), "'1/60' and '1/60' are one value given twice"));
+    CHECK(has(why({}, {"dt=1/50,1/60,20 ms"}), "'1/50' and '20 ms' are one value"));
+    CHECK(has(why({}, {"x=Kind/A,A"}), "two runs would have the name 'A'"));
+    CHECK(has(why({"x=A", "y=A"}, {}), "two runs would have the name 'A'"));
+    CHECK(has(why({"a: x=A", "a: x=B"}, {}), "two runs would have the name 'a'"));
+    CHECK(has(why({"a: x=A x=B"}, {}), "--rung sets x twice"));
+    CHECK(has(why({"a: x=A dt=1/60"}, {"dt=1/60,1/30"}), "dt is set by a --rung and varied"));
+}
+
 TEST_CASE("settings: types, parameters, entries of scripts; what does not hold is said")
 {
     const model::SceneSpec scene = scene_of("scenes/studies/bounce.xml");
@@ -90,7 +112,11 @@ TEST_CASE("settings: types, parameters, entries of scripts; what does not hold i
     const auto entry = apply(scene_of("scenes/studies/oscillator.xml"), library(), varied("spring.parameters.stiffness=7"));
     REQUIRE(entry.ok());
     CHECK(has(refused(scene, "contakt.response=None"), "no component has the id 'contakt.response', did you mean 'contact.response'"));
-    CHECK(has(refused(scene, "contact.response=Nobody"), "Response/Nobody"));
+    CHECK(has(refused(scene, "contact.response=Nobody"), "unknown type 'Response/Nobody', did you mean 'Response/None'"));
+    CHECK(has(refused(scene, "solver=Nope"), "unknown type 'Solver/Nope'"));
+    CHECK(has(refused(scene, "solver=Nope"), "; it can be 'Solver/Automatic', 'Solver/DormandPrince54'"));
+    CHECK(!has(refused(scene, "solver=Nope"), "Resolution/None"));
+    CHECK(has(refused(scene, "solver=RungeKuta4"), "did you mean 'Solver/RungeKutta4'"));
     CHECK(has(refused(scene, "contact.response.restitutoin=1"), "did you mean 'restitution'"));
     CHECK(has(refused(scene, "contact.response.restitution=2"), "at most 1"));
     CHECK(has(refused(scene, "contact.response=Resolution/None"), "cannot be exchanged"));
@@ -272,6 +298,27 @@ TEST_CASE("a run that is lost is no small error: it is named, left out of the fr
                       [](const auto& s) { return has(s, "One run gave no result (blew up): RungeKutta4 at 1/60 s"); }));
 }
 
+TEST_CASE("one run has no range, and runs that agree have none either")
+{
+    const auto energy = [](const std::vector<double>& drifts)
+    {
+        StudyResult r;
+        for (const double drift : drifts)
+        {
+            Point& p = r.points.emplace_back();
+            p.combination.rung = "R" + std::to_string(r.points.size()), p.energy_drift = drift, p.record.energy.scale = 1;
+        }
+        for (const std::string& s : findings(r))
+            if (s.starts_with("Energy")) return s;
+        return std::string();
+    };
+    CHECK(energy({0.25}) == "Energy that nobody put in, beside the largest there was: 0.25 (R1).");
+    CHECK(energy({0.25, 0.25}) == "Energy that nobody put in, beside the largest there was: 0.25 by all.");
+    CHECK(energy({0.5, 0.25}) == "Energy that nobody put in, beside the largest there was: from 0.25 (R2) to 0.5 (R1).");
+    CHECK(energy({0}) == "Energy is kept to round-off.");
+    CHECK(energy({0, 0}) == "Energy is kept to round-off by all.");
+}
+
 TEST_CASE("nothing to study is an error that says what would be right")
 {
     const std::string file = "scenes/studies/projectile.xml";
@@ -281,7 +328,17 @@ TEST_CASE("nothing to study is an error that says what would be right")
         return r ? "none" : r.error().text();
     };
     CHECK(has(why(plan(file, {"dt=1/60"}, "none", {"bell.position"}, 1)), "did you mean 'ball'"));
-    CHECK(has(why(plan(file, {"dt=1/60"}, "none", {"ball.positoin"}, 1)), "it has"));
+    CHECK(
+        has(why(plan(file, {"dt=1/60"}, "none", {"ball.positoin"}, 1)), "ball has no number 'positoin', did you mean 'position'?; it has"));
+    CHECK(has(why(plan(file, {"dt=1/60"}, "none", {"ball"}, 1)), "names no field of ball: write ID.field, such as ball."));
+    CHECK(has(why(plan(file, {"dt=1/60"}, "none", {"bell"}, 1)), "did you mean 'ball'"));
+    CHECK(
+        has(why(plan("scenes/studies/bounce.xml", {"dt=1/60"}, "none", {"contact.respnse.sweeps"}, 1)), "did you mean 'contact.response'"));
+    Plan scaled = plan(file, {"dt=1/60"}, "none", {"ball.position"}, 1);
+    scaled.scales["ball.position"] = 1;
+    CHECK(why(scaled) == "none");
+    scaled.scales["ball.positon"] = 1;
+    CHECK(has(why(scaled), "--scale ball.positon: no quantity of that name is compared, did you mean 'ball.position'"));
     CHECK(has(why(plan(file, {"dt=1/60"}, "exact:nothing", {"ball.position"}, 1)), "there is no closed form"));
     CHECK(has(why(plan(file, {"dt=1/7,1/9"}, "none", {"ball.position"}, 0.5)), "after --until"));
 }

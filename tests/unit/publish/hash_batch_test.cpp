@@ -1,0 +1,77 @@
+// Hashes on their way to a recording: complete, in order, and never for long.
+#include "publish/hash_batch.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <deque>
+
+using plab::Tick;
+using plab::publish::HashBatch;
+using plab::publish::HashRecord;
+using plab::publish::Nanoseconds;
+
+namespace
+{
+
+constexpr Nanoseconds kMillisecond = 1'000'000;
+
+struct Course
+{
+    Nanoseconds oldest = 0;  ///< longest time between a step and the record that has its hash
+    std::size_t records = 0, largest = 0;
+};
+
+/// Steps at this interval.
+Course course_of(Nanoseconds interval, int steps)
+{
+    Course out;
+    HashBatch batch;
+    Tick due = 1;
+    for (Tick step = 1; step <= steps; ++step)
+    {
+        const Nanoseconds now = 1000 * kMillisecond + step * interval;
+        const auto record = batch.add(1, step, static_cast<std::uint64_t>(step), now);
+        if (!record) continue;
+        CHECK(record->step == due);
+        CHECK(record->first == static_cast<std::uint64_t>(due));
+        CHECK(record->hashes.front() == static_cast<std::uint64_t>(due));
+        out.oldest = std::max(out.oldest, (step - due) * interval);
+        out.largest = std::max(out.largest, record->hashes.size());
+        ++out.records, due = record->step + static_cast<Tick>(record->hashes.size());
+        // The next hash that is not handed over yet is the next step's.
+        CHECK(due == step + 1);
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("no hash waits for longer than 3 ms, however long steps are, and fast ones go together")
+{
+    for (const Nanoseconds interval :
+         {kMillisecond / 50, kMillisecond / 4, kMillisecond, 2 * kMillisecond, 4 * kMillisecond, 50 * kMillisecond})
+    {
+        CAPTURE(interval);
+        CHECK(course_of(interval, 1000).oldest <= 3 * kMillisecond);
+    }
+    CHECK(course_of(kMillisecond, 1000).records == 250);
+    CHECK(course_of(4 * kMillisecond, 1000).records == 1000);
+    CHECK(course_of(kMillisecond / 50, 1000).largest == 64);
+}
+
+TEST_CASE("a hash that does not follow the last one begins a record")
+{
+    HashBatch batch;
+    (void)batch.add(1, 1, 7, 0);
+    CHECK(!batch.add(1, 2, 8, 1));
+    const auto gap = batch.add(1, 5, 9, 2);
+    REQUIRE(gap);
+    CHECK(gap->step == 1);
+    CHECK(gap->hashes.size() == 2);
+    const auto run = batch.add(2, 6, 10, 3);
+    REQUIRE(run);
+    CHECK(run->step == 5);
+    CHECK(batch.flush()->run == 2);
+    CHECK(!batch.flush());
+}
