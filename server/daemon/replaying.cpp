@@ -114,7 +114,7 @@ int replay_recording(plugins::PluginLibrary& library, const Options& options, co
     if (trace) trace->sample(simulation, true);
     print_report(*report, options);
     for (const std::string& doubt : report->doubts) std::printf("%s: %s\n", report->mismatch ? "the cause may be" : "note", doubt.c_str());
-    const std::string beyond = beyond_the_end(*report, options);
+    const std::string beyond = stop ? std::string() : beyond_the_end(*report, options);
     const bool nothing = options.replay.verify && report->verified == 0 && !report->mismatch && !stop;
     if (!beyond.empty())
         (void)std::fprintf(stderr, "%s\n", beyond.c_str());
