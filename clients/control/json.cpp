@@ -182,6 +182,8 @@ Json json_of(const link::Type& t)
             {"plugin", t.plugin},
             {"loaded", t.loaded},
             {"order", t.order},
+            {"accuracy", t.accuracy},
+            {"strengths", t.strengths},
             {"cost", t.cost},
             {"limits", t.limits},
             {"source", t.source},

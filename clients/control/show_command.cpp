@@ -139,6 +139,8 @@ void print_type(Context& c, const link::Type& t)
     lines.add("plugin", t.plugin);
     lines.add("loaded", yes_no(t.loaded));
     lines.add("order", t.order > 0 ? std::to_string(t.order) : "");
+    lines.add("accuracy", t.accuracy);
+    lines.add("good for", t.strengths);
     lines.add("cost", t.cost);
     lines.add("limits", t.limits);
     lines.add("source", t.source);

@@ -101,7 +101,7 @@ struct Type
     std::string name, family, doc, plugin;
     bool loaded = false;
     int order = 0;
-    std::string cost, limits, source;
+    std::string accuracy, strengths, cost, limits, source;
     std::vector<RoleInfo> roles;
     std::vector<FieldInfo> fields;
 };

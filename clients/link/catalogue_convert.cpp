@@ -89,7 +89,7 @@ Type type_of(const plab_v1_Type& t)
     Type out;
     out.name = t.type_name, out.family = t.family, out.doc = t.doc, out.plugin = t.plugin;
     out.loaded = t.is_loaded, out.order = t.order;
-    out.cost = t.cost, out.limits = t.limits, out.source = t.source;
+    out.accuracy = t.accuracy, out.strengths = t.strengths, out.cost = t.cost, out.limits = t.limits, out.source = t.source;
     out.roles = list(t.roles, role), out.fields = list(t.fields, field);
     return out;
 }

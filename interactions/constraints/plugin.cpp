@@ -24,6 +24,8 @@ PLAB_PLUGIN("constraints", registrar)
         .command<&prepare<AssignRows>>(Phase::Prepare, "Constraint/Prepare", kPrepareDoc)
         .command<&assign_driven>(Phase::Couple, kCouple, "gives driven the speed of driver times the factor")
         .command<&finish<AssignRows>>(Phase::Finish, "Constraint/Finish", kFinishDoc)
+        .accuracy("the ratio of speeds to rounding; no torque comes back")
+        .strengths("one-way drives, at the cost of a copy")
         .cost("1 copy per row and sweep; a chain takes as many sweeps as it has drives, at worst")
         .limits("momentum and energy of the driven shaft are made up; no circles")
         .source("the paper's AngularVelocity constraint");
@@ -32,6 +34,8 @@ PLAB_PLUGIN("constraints", registrar)
         .command<&prepare<ImpulseRows>>(Phase::Prepare, "Constraint/Prepare", kPrepareDoc)
         .command<&exchange_impulses>(Phase::Couple, kCouple, "corrects the pair's speeds by an impulse weighted by inertia")
         .command<&finish<ImpulseRows>>(Phase::Finish, "Constraint/Finish", kFinishDoc)
+        .accuracy("the ratio of speeds to rounding after enough sweeps, momentum shared; order 1")
+        .strengths("pairs and short trains; contradictory loops run on")
         .cost("2 impulses per row and sweep; 2 sweeps for a pair, of the order of n^2 for a line of n")
         .limits(
             "long trains of light shafts converge slowly: what 1000 sweeps leave is told by the event coupling.not_converged; loops that "
@@ -43,6 +47,8 @@ PLAB_PLUGIN("constraints", registrar)
         .command<&connect>(Phase::Connect, "Constraint/Connect", "joins the two shafts in the constraint graph")
         .host_command(Phase::Couple, kCouple, "the host moves joined shafts as one degree of freedom")
         .command<&finish<GraphRows>>(Phase::Finish, "Constraint/Finish", kFinishDoc)
+        .accuracy("the solver's order; angles and speeds at the ratio by construction")
+        .strengths("trains of any length and ratio at the cost of one shaft")
         .cost("a few ns per shaft and force evaluation, whatever the ratios; the graph is built when couplings change")
         .limits(
             "two shafts per coupling (no differentials); loops must multiply to 1; at most one prescribed shaft per "

@@ -10,6 +10,7 @@ PLAB_PLUGIN("managers", registrar)
                                    "sweeps of sequential impulses from the last step's, then overlap parted by sweeps of positions")
         .command<solve_sequential>(Phase::Solve, "Manager/Solve", "advances an island of contacts and one-sided rows")
         .order(1)
+        .strengths("large piles that change little: warm starts")
         .cost("sweeps x contact points, no matrix; from warm starts few sweeps are needed where little changes")
         .limits(
             "first order. Sweeps that are needed grow with the square of a stack's height and with its mass ratio, heavy on light: beyond "
@@ -21,6 +22,7 @@ PLAB_PLUGIN("managers", registrar)
         .component<SoftStepRows>("Manager/SoftStep", "sub-steps with soft contacts, a relaxing sweep after each, restitution at the end")
         .command<solve_soft_step>(Phase::Solve, "Manager/Solve", "advances an island of contacts and one-sided rows")
         .order(1)
+        .strengths("the same cost in each step, whatever happens; joints and contacts of like masses")
         .cost("substeps x (1 + relax_iterations) sweeps over the contact points")
         .limits(
             "first order in the sub-step. Contacts give way under load, by about the load over its stiffness, and come back over some "
@@ -30,6 +32,7 @@ PLAB_PLUGIN("managers", registrar)
     registrar.component<DirectRows>("Manager/Direct", "the contact law of the island as it is, by Newton's method with sparse factors")
         .command<solve_direct>(Phase::Solve, "Manager/Solve", "advances an island of contacts and one-sided rows")
         .order(1)
+        .strengths("mass ratios to 1e8, stacks of 100, friction by the cone; stands still to rounding")
         .cost(
             "nothing but a look where the last step's impulses still fit; else some Newton steps, each one factorisation of 6 x 6 blocks "
             "over the graph of who "

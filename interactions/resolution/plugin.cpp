@@ -10,6 +10,8 @@ PLAB_PLUGIN("resolution", registrar)
     using namespace plab::resolution;
     registrar.component<NoneRows>("Resolution/None", "answers an impact at the end of the step in which it is seen")
         .command<accept_end>(Phase::Locate, "Resolution/Locate", "takes the end of the step")
+        .accuracy("times of impact to one step: order 1")
+        .strengths("the cheapest; enough where contacts stay")
         .cost("nothing")
         .limits("bodies overlap by up to speed x step when they meet, or pass through one another; times of impact are right to one step")
         .source("time stepping without location of events; the lowest rung, to compare with");
@@ -18,6 +20,8 @@ PLAB_PLUGIN("resolution", registrar)
         .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket of the time of impact")
         .locates()
         .order(1)
+        .accuracy("times of impact to its tolerance")
+        .strengths("asks nothing of forces and shapes")
         .cost("up to 48 advances of the whole world per impact")
         .limits("an overlap that begins and ends inside one step is not seen")
         .source(
@@ -29,6 +33,8 @@ PLAB_PLUGIN("resolution", registrar)
         .locates()
         .local()
         .order(1)
+        .accuracy("times of impact to its tolerance")
+        .strengths("as Resolution/Bisection, at the cost of who touches")
         .cost("up to 48 advances of the touched group per impact")
         .limits("an overlap that begins and ends inside one step is not seen")
         .source("Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH (2000): only what is touched goes back");
@@ -37,6 +43,8 @@ PLAB_PLUGIN("resolution", registrar)
                                     "locates nothing: gaps that may close within the step are contacts for a manager")
         .command<accept_speculation>(Phase::Locate, "Resolution/Locate", "takes the end of the step")
         .speculates()
+        .accuracy("times of impact to one step: order 1")
+        .strengths("nothing tunnels, without trials: many fast bodies")
         .cost("contacts of bodies that are near; no trials")
         .limits(
             "needs a response by rows; bodies stop at a surface ahead of them though they would have passed beside it (ghost contacts); "
@@ -50,6 +58,8 @@ PLAB_PLUGIN("resolution", registrar)
         .local()
         .certifies()
         .order(1)
+        .accuracy("times of impact to its tolerance")
+        .strengths("nothing tunnels; exact for what flies head-on")
         .cost("one look per step towards the contact: a few head-on, many where bodies pass close by or spin")
         .limits(
             "slow where bodies graze or spin (resolution.grazing); bounds come from the states at both ends of a piece: what a force does "
@@ -64,6 +74,8 @@ PLAB_PLUGIN("resolution", registrar)
         .local()
         .certifies()
         .order(2)
+        .accuracy("times of impact to rounding")
+        .strengths("nothing tunnels; grazing hits and spinning corners are found, in the fewest looks")
         .cost("1 to 7 looks per impact; pairs that come near one another cost one")
         .limits(
             "bounds come from the states at both ends of a piece: what a force does faster than that is not seen; bodies of several shapes "

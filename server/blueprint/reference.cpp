@@ -92,7 +92,10 @@ std::string facts_of(const TypeInfo& info)
     fact("exchangeable within", "`" + info.family + "`");
     // A resolution's is not that of the motion: how its trials come nearer to the time of impact.
     const bool searches = info.name.starts_with("Resolution/");
-    fact(searches ? "order of its search for the time of impact" : "order of convergence", info.order > 0 ? std::to_string(info.order) : "");
+    fact(searches ? "order of its search for the time of impact" : "order of convergence",
+         info.order > 0 ? std::to_string(info.order) : "");
+    fact("accuracy", info.accuracy);
+    fact("good for", info.strengths);
     fact("cost", info.cost);
     fact("limits", info.limits);
     fact("source", info.source);

@@ -91,6 +91,7 @@ TypeSummary summary_of(const ComponentType& type)
     TypeSummary out;
     out.name = type.info.name, out.family = type.info.family, out.doc = type.info.doc, out.plugin = type.plugin;
     out.loaded = true, out.order = type.info.order;
+    out.accuracy = type.info.accuracy, out.strengths = type.info.strengths;
     out.cost = type.info.cost, out.limits = type.info.limits, out.source = type.info.source;
     for (const Role& role : type.schema.roles()) out.roles.push_back(summary_of(role));
     for (const Field& field : type.schema.fields())

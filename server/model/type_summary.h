@@ -28,7 +28,7 @@ struct TypeSummary
     std::string name, family, doc, plugin;
     bool loaded = false;
     int order = 0;
-    std::string cost, limits, source;
+    std::string accuracy, strengths, cost, limits, source;
     std::vector<RoleSummary> roles;
     std::vector<FieldSummary> fields;
     friend bool operator==(const TypeSummary&, const TypeSummary&) = default;

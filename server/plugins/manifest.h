@@ -1,8 +1,8 @@
 /// Manifests: which types a plugin has and what they declare, told without loading it.
 ///
-///   plab-manifest 2
+///   plab-manifest 3
 ///   plugin  fields
-///   type    Field/Gravity  Field  0  uniform gravity  ...      name, family, order, doc, cost, limits, source
+///   type    Field/Gravity  Field  0  uniform gravity  ...      name, family, order, doc, accuracy, strengths, cost, limits, source
 ///   role    between  body  1  4294967295  bodies that ...      name, accepts, least, most, doc
 ///   field   gravity  param  vector  m/s^2  0 0 -9.81  ...      name, kind, value type, unit, default, required, rule, doc
 ///
@@ -19,7 +19,7 @@
 namespace plab::plugins
 {
 
-inline constexpr std::string_view kManifestHeader = "plab-manifest 2";
+inline constexpr std::string_view kManifestHeader = "plab-manifest 3";
 
 struct Manifest
 {

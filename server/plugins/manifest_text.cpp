@@ -105,7 +105,7 @@ Result<void> ManifestReader::add(std::string_view line)
         Result<void> (ManifestReader::*add)(Cells&);
     };
     constexpr Kind kinds[] = {{"plugin", 2, &ManifestReader::add_plugin},
-                              {"type", 8, &ManifestReader::add_type},
+                              {"type", 10, &ManifestReader::add_type},
                               {"role", 6, &ManifestReader::add_role},
                               {"field", 9, &ManifestReader::add_field}};
     if (line.empty()) return {};
@@ -139,7 +139,8 @@ Result<void> ManifestReader::add_type(Cells& cells)
     if (!order) return order.errors();
     model::TypeSummary& type = types_.emplace_back();
     type.name = std::move(cells[1]), type.family = std::move(cells[2]), type.order = *order, type.doc = std::move(cells[4]);
-    type.cost = std::move(cells[5]), type.limits = std::move(cells[6]), type.source = std::move(cells[7]);
+    type.accuracy = std::move(cells[5]), type.strengths = std::move(cells[6]);
+    type.cost = std::move(cells[7]), type.limits = std::move(cells[8]), type.source = std::move(cells[9]);
     return {};
 }
 
@@ -182,7 +183,7 @@ std::string manifest_lines(const std::string& plugin, const std::vector<model::T
     std::string out = line_of({"plugin", plugin});
     for (const model::TypeSummary& t : types)
     {
-        out += line_of({"type", t.name, t.family, std::to_string(t.order), t.doc, t.cost, t.limits, t.source});
+        out += line_of({"type", t.name, t.family, std::to_string(t.order), t.doc, t.accuracy, t.strengths, t.cost, t.limits, t.source});
         for (const model::RoleSummary& r : t.roles)
             out += line_of({"role", r.name, r.accepts, std::to_string(r.least), std::to_string(r.most), r.doc});
         for (const model::FieldSummary& f : t.fields)

@@ -183,6 +183,7 @@ const plab_v1_Type& TypeSample::of(const model::TypeSummary& type)
                  });
     wire_.type_name = text(type.name), wire_.family = text(type.family), wire_.doc = text(type.doc);
     wire_.plugin = text(type.plugin), wire_.is_loaded = type.loaded, wire_.order = type.order;
+    wire_.accuracy = text(type.accuracy), wire_.strengths = text(type.strengths);
     wire_.cost = text(type.cost), wire_.limits = text(type.limits), wire_.source = text(type.source);
     view(wire_.roles, roles_);
     view(wire_.fields, fields_);

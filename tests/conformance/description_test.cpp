@@ -71,6 +71,13 @@ void check_command(const CommandInfo& command)
     CHECK(is_doc(command.doc));
 }
 
+/// What somebody who chooses among the algorithms of a family has to know.
+void check_rung(const TypeInfo& info)
+{
+    CHECK_MESSAGE((info.order > 0 || is_doc(info.accuracy)), "neither an order nor an accuracy");
+    for (const std::string* text : {&info.strengths, &info.cost, &info.limits, &info.source}) CHECK(is_doc(*text));
+}
+
 std::vector<std::string> sorted(std::vector<std::string> names)
 {
     std::sort(names.begin(), names.end());
@@ -122,6 +129,8 @@ TEST_CASE("every type says what it is, field by field, role by role, command by 
             CHECK(names.insert(command.name).second);
             check_command(command);
         }
+        for (const char* kind : {"Solver/", "Constraint/", "Response/", "Manager/", "Resolution/"})
+            if (name.starts_with(kind)) check_rung(info);
     }
 }
 

@@ -78,8 +78,81 @@ Case free_body()
     return c;
 }
 
+Case pendulum()
+{
+    const auto solvers = quick_solvers();
+    Case c{"long_pendulum",
+           "A jointed body for ten million steps",
+           "A ball of 1 kg on a ball joint 0.5 m above it, released at 0.5 rad, steps of 1/240 s. Error: of the energy at the end, "
+           "relative to "
+           "that of the swing, or the joint's gap, m. Stable to 1e-2, bounded to 1.",
+           "solver",
+           "steps",
+           solvers,
+           brief(kCounts),
+           {},
+           {}};
+    c.run = [solvers](std::size_t r, std::size_t v)
+    {
+        constexpr double kLength = 0.5, kTilt = 0.5;  // m, rad
+        const Vec3 start{kLength * std::sin(kTilt), 0, -kLength * std::cos(kTilt)};
+        Trial t(body("bob", 1, {0.01, 0.01, 0.01}, start) + gravity() +
+                    component("joint", "Constraint/Ball", attribute("b", std::string("bob")) + attribute("anchor", Vec3{})),
+                dt(kStep) + attribute("solver", "Solver/" + solvers[r]), kNoLimit);
+        t.run(kCounts[v] * kStep);
+        if (!t.loaded()) return t.judge(0, {});
+        const double swing = kG * kLength * (1 - std::cos(kTilt));
+        const double height = t.vec("bob", "position").z - start.z;
+        const double gap = std::fabs(length(t.vec("bob", "position")) - kLength);
+        return t.judge(std::fmax(std::fabs(t.simulation().totals().kinetic + kG * height) / swing, gap), {1e-2, 1});
+    };
+    c.cpu_seconds = 300;
+    c.quick = [](std::size_t, std::size_t v) { return v == 0; };
+    return c;
+}
+
+/// Those that hold what rests at the cost of some microseconds; springs take thousands of pieces for a step.
+std::vector<ContactRung> quick_contacts()
+{
+    std::vector<ContactRung> out;
+    for (const ContactRung& rung : contact_rungs())
+        if (!rung.spring()) out.push_back(rung);
+    return out;
+}
+
+Case resting_cube()
+{
+    const auto rungs = quick_contacts();
+    Case c{
+        "long_rest",
+        "A cube on a slope for ten million steps",
+        "A cube of 1 m and 1 kg stands on a slope of 15 degrees with friction 0.5, steps of 1/240 s: eleven and a half hours. Error: the "
+        "way of its centre, m. Stable to 1e-6, bounded to 0.1.",
+        "contact",
+        "steps",
+        names_of(rungs),
+        brief(kCounts),
+        {},
+        {}};
+    c.run = [rungs](std::size_t r, std::size_t v)
+    {
+        const double slope = 15 * std::acos(-1.0) / 180;
+        const Vec3 weight{kG * std::sin(slope), 0, -kG * std::cos(slope)};
+        Trial t(ground() + box("cube", {0.5, 0.5, 0.5}, 1, {0, 0, 0.5}) +
+                    component("weight", "Field/Gravity", attribute("between", std::string("*")) + attribute("acceleration", weight)) +
+                    contact(rungs[r], attribute("response.friction", 0.5)),
+                dt(kStep), kNoLimit);
+        t.run(kCounts[v] * kStep);
+        if (!t.loaded()) return t.judge(0, {});
+        return t.judge(length(t.vec("cube", "position") - Vec3{0, 0, 0.5}), {1e-6, 0.1});
+    };
+    c.cpu_seconds = 300;
+    c.quick = [](std::size_t, std::size_t v) { return v == 0; };
+    return c;
+}
+
 }  // namespace
 
-std::vector<Case> long_cases() { return {oscillator(), free_body()}; }
+std::vector<Case> long_cases() { return {oscillator(), free_body(), pendulum(), resting_cube()}; }
 
 }  // namespace plab::stability

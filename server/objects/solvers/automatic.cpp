@@ -52,6 +52,7 @@ public:
     {
         begin_turn();
         if (is_free() && advance_in_closed_form(h_, system_)) return say(Method::Exact);
+        if (system_.is_undersampled()) return advance_undersampled();
         spin_ = fastest_spin(system_) * h_;
         StageSlopes slopes(system_);
         const bool fast = spin_ > kFast && !system_.is_constrained(), at_once = !fast && expects_soft();
@@ -128,6 +129,13 @@ private:
         turns[m_.call++] = soft ? 1 : 0;
     }
 
+    void advance_undersampled()
+    {
+        remember(false);
+        say(Method::RungeKutta4);
+        advance_by_runge_kutta4(h_, system_);
+    }
+
     void advance_stiff()
     {
         if (advance_by_exponential(h_, true, kExponentialSize, m_.exponential, system_).fine) return say(Method::Exponential);
@@ -160,6 +168,7 @@ private:
             case Method::RotationSplitting:
                 return "h |w| = " + number(spin_) + " is above 0.05";
             default:
+                if (system_.is_undersampled()) return "contacts ask for more sub-steps than they may have, whatever the method";
                 return "h |w| = " + number(spin_) + " and |h lambda| = " + number(stiffness_) + " are small";
         }
     }

@@ -124,12 +124,14 @@ void MatrixExponential::apply(int root, std::span<const double> v, std::span<dou
 {
     const SquareMatrix<double>& e = root_[static_cast<std::size_t>(root)];
     const std::size_t n = e.size();
-    for (std::size_t i = 0; i < n; ++i)
+    std::fill_n(out.begin(), n, 0.0);
+    // By columns: one division for each, and sums that do not wait for one another.
+    for (std::size_t j = 0; j < n; ++j)
     {
-        double sum = 0;
-        for (std::size_t j = 0; j < n; ++j) sum += e(i, j) * (v[j] / scale_[j]);
-        out[i] = scale_[i] * sum;
+        const double scaled = v[j] / scale_[j];
+        for (std::size_t i = 0; i < n; ++i) out[i] += e(i, j) * scaled;
     }
+    for (std::size_t i = 0; i < n; ++i) out[i] *= scale_[i];
 }
 
 /// gram_ = the integral of y y^T over the first 2^-squarings of the time, y by its Taylor series at Gauss' nodes: of degree 15 in

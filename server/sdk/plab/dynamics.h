@@ -51,6 +51,9 @@ public:
     virtual bool forces_are_uniform() const = 0;
     /// Rows hold the members together: the motion is projected onto them when the advance is over.
     virtual bool is_constrained() const = 0;
+    /// The host has cut the step for stiff forces of its own (contacts), but may not cut as often as they ask: methods that
+    /// would make those steps themselves break its bound.
+    virtual bool is_undersampled() const { return false; }
     /// Working memory of the length of coordinates(), kept warm between steps; i < 32. Contents are undefined.
     virtual std::span<double> workspace(int i) = 0;
 };

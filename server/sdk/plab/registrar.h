@@ -117,6 +117,8 @@ struct TypeInfo
     bool by_rows = false;      ///< response: contacts are rows that a manager holds, impacts included
     bool by_force = false;     ///< response: contacts are forces, at every solver stage
     bool uniform = false;      ///< force: the same whatever time and state
+    std::string accuracy;      ///< what `order` does not say: "times of impact to one step"
+    std::string strengths;     ///< what it is good for
     std::string cost;          ///< e.g. "4 force evaluations per step"
     std::string limits;        ///< where it fails
     std::string source;        ///< paper or book, with the equation
@@ -257,6 +259,8 @@ public:
     TypeBuilder& by_rows() { return info_->by_rows = true, *this; }
     TypeBuilder& by_force() { return info_->by_force = true, *this; }
     TypeBuilder& uniform() { return info_->uniform = true, *this; }
+    TypeBuilder& accuracy(std::string text) { return info_->accuracy = std::move(text), *this; }
+    TypeBuilder& strengths(std::string text) { return info_->strengths = std::move(text), *this; }
     TypeBuilder& cost(std::string text) { return info_->cost = std::move(text), *this; }
     TypeBuilder& limits(std::string text) { return info_->limits = std::move(text), *this; }
     TypeBuilder& source(std::string text) { return info_->source = std::move(text), *this; }

@@ -153,6 +153,7 @@ double ContactForces::contact_time(double left, int used)
         }
         per_contact = std::max(per_contact, pieces_per_contact(pair.contacts[p.contact], wanted_pieces));
     }
+    undersampled_ = false;
     const double rate = fastest_rate();
     // A stiction spring's turn is known up to half a turn.
     const double turn = spin_rate();
@@ -161,6 +162,7 @@ double ContactForces::contact_time(double left, int used)
     const double wanted = std::numbers::pi / (rate * per_contact);
     if (used < 0.5 * most || left / wanted <= most - used) return std::min(longest, wanted);
     if (left / wanted + used > pieces_needed_) pieces_needed_ = left / wanted + used, stiff_ = response;
+    undersampled_ = true;
     const double fewest = std::numbers::pi / (rate * kFewestPerContact);
     const double share = left / std::max(most - used, 1.0);
     return std::min(longest, share < fewest ? std::max(share, wanted) : share);

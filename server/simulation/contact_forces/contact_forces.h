@@ -59,6 +59,7 @@ public:
     void save_ends() { end_ = live_; }
 
     void add(const StepContext& context, Wrenches& wrenches) override;
+    bool is_undersampled() const override { return undersampled_; }
     void book(const StepContext& context, std::vector<double>& work, std::vector<double>& power, double share) override;
 
 private:
@@ -229,6 +230,7 @@ private:
     std::array<std::vector<double>, 3> sums_;  ///< by body, of ContactRates: normal, tangential, damping
     double pieces_needed_ = 0;                 ///< the most that a step of an island asked for beyond what it may have
     std::uint32_t stiff_ = kNoIndex;           ///< response that asked
+    bool undersampled_ = false;                ///< the present piece is longer than was asked for
     std::vector<std::size_t> converted_;       ///< contact points, by detector
     struct Law
     {

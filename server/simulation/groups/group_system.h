@@ -52,6 +52,8 @@ public:
     virtual void add(const StepContext& context, Wrenches& wrenches) = 0;
     /// After add, where the stage is booked: takes what add left in `power` (W by component) times `share` (s) into `work`.
     virtual void book(const StepContext& context, std::vector<double>& work, std::vector<double>& power, double share) = 0;
+    /// See DynamicSystem.
+    virtual bool is_undersampled() const { return false; }
 };
 
 class GroupSystem final : public DynamicSystem
@@ -116,6 +118,7 @@ public:
     std::size_t body_count() const override { return bodies_.size(); }
     RigidMember rigid(std::size_t body) const override;
     std::size_t quantity_count() const override { return quantity_values_; }
+    bool is_undersampled() const override { return extra_ != nullptr && extra_->is_undersampled(); }
     bool forces_are_uniform() const override { return uniform_ && !extra_ && !is_constrained(); }
     bool is_constrained() const override { return rows_ != nullptr; }
 

@@ -202,14 +202,15 @@ void RowSystem::correct_speeds(const StepContext& context, bool least_squares)
     if (done) change_speeds(context);
 }
 
-void RowSystem::match_speeds(const StepContext& context, ProjectionReport& report, const RowBook& book)
+void RowSystem::match_speeds(const StepContext& context, ProjectionReport& report)
 {
+    speed_work_.assign(rows_.size(), 0.0);
     double left = measure_speeds(context.dt);
     bool soft = false;
     for (int i = 0; i < kMostSpeedCorrections && left > kRounding; ++i)
     {
         correct_speeds(context, soft);
-        if (book.work) book_speeds(book);
+        add_speed_work();
         const double before = left;
         left = measure_speeds(context.dt);
         if (left < 0.5 * before) continue;
@@ -221,16 +222,22 @@ void RowSystem::match_speeds(const StepContext& context, ProjectionReport& repor
 }
 
 /// J^T mu (v + v') / 2: what each row's impulse has done. Called when speeds have just been changed.
-void RowSystem::book_speeds(const RowBook& book)
+void RowSystem::add_speed_work()
 {
     const auto slots = equations_.slots();
     for (std::size_t s = 0; s < slots.size(); ++s)
     {
         const ConstraintRow& row = rows_[slots[s].row];
-        if (!books(row, book)) continue;
         const double after = speed_of(row) - speed_of_others(row);
-        (*book.work)[row.component] += book.sign * equations_.multiplier(s) * (after - 0.5 * equations_.moved(s));
+        speed_work_[slots[s].row] += equations_.multiplier(s) * (after - 0.5 * equations_.moved(s));
     }
+}
+
+void RowSystem::book_speed_work(const RowBook& book) const
+{
+    if (!book.work) return;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (speed_work_[i] != 0 && books(rows_[i], book)) (*book.work)[rows_[i].component] += book.sign * speed_work_[i];
 }
 
 void RowSystem::count_redundant(ProjectionReport& report)
@@ -274,7 +281,9 @@ ProjectionReport RowSystem::project(const StepContext& context, const RowBook& b
             position_error_[i] = rows_[i].error, left = std::fmax(left, std::fabs(rows_[i].error) / position_scale(rows_[i]));
     report.converged = left < kContradiction;
     if (!report.converged) name_contradictory(position_error_, report);
-    match_speeds(context, report, book);
+    match_speeds(context, report);
+    // What rows take that hold is the solver's error, and stays unexplained; what those take that cannot hold is theirs.
+    if (!report.converged) book_speed_work(book);
     double stuck = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i)
         if (nobody_moves(rows_[i]) && speed_of(rows_[i]) != rows_[i].rate)
@@ -296,7 +305,8 @@ ProjectionReport RowSystem::project_speeds(const StepContext& context, const Row
     collect(context);
     equations_.set_rows(rows_, pieces_);
     measure_positions();
-    match_speeds(context, report, book);
+    match_speeds(context, report);
+    book_speed_work(book);
     count_redundant(report);
     for (const double e : speed_error_) report.speed_error = std::fmax(report.speed_error, std::fabs(e));
     std::sort(report.contradictory.begin(), report.contradictory.end());

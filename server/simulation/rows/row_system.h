@@ -92,8 +92,8 @@ public:
     /// does work: rates, and kinematic participants.
     void account(const RowBook& book, double share) const;
 
-    /// Puts the members onto their rows: poses first (error = 0), then speeds (J v = rate). At the end of an advance. The change
-    /// of kinetic energy is booked to the components: of rows that contradict one another it is not small.
+    /// Puts the members onto their rows: poses first (error = 0), then speeds (J v = rate). At the end of an advance. What rows
+    /// that contradict one another take of the kinetic energy is booked to their components.
     ProjectionReport project(const StepContext& context, const RowBook& book = {});
     /// Speeds only. The change of kinetic energy is booked to the components.
     ProjectionReport project_speeds(const StepContext& context, const RowBook& book = {});
@@ -138,10 +138,11 @@ private:
     void relax_positions(const StepContext& context, ProjectionReport& report);
     bool correct_positions(const StepContext& context, double compliance);
     void move_members(const StepContext& context);
-    void match_speeds(const StepContext& context, ProjectionReport& report, const RowBook& book);
+    void match_speeds(const StepContext& context, ProjectionReport& report);
     void correct_speeds(const StepContext& context, bool least_squares);
     void change_speeds(const StepContext& context);
-    void book_speeds(const RowBook& book);
+    void add_speed_work();
+    void book_speed_work(const RowBook& book) const;
     bool books(const ConstraintRow& row, const RowBook& book) const;
     bool misfits(double dt) const;
     double measure_positions();
@@ -166,6 +167,7 @@ private:
     std::vector<RowPiece> pieces_;
     std::vector<double> lambda_;                        ///< by row, N or N m
     std::vector<double> position_error_, speed_error_;  ///< by row, after the last projection
+    std::vector<double> speed_work_;                    ///< J by row, of the last projection of speeds
     std::vector<std::uint32_t> redundant_;              ///< by piece
     std::vector<double> held_speed_;                    ///< by row that a manager holds: of its mobile members at the start
     std::vector<Reaction> reactions_;

@@ -163,7 +163,7 @@ void FakeServer::publish_types()
         plab_v1_Type type{};
         const std::string family(name, std::strchr(name, '/'));
         type.type_name = text(name), type.family = text(family), type.doc = text("a type of the test"), type.plugin = text("test");
-        type.is_loaded = true, type.cost = type.limits = type.source = text("");
+        type.is_loaded = true, type.accuracy = type.strengths = type.cost = type.limits = type.source = text("");
         type.roles = {1, 1, &role, false};
         type.fields = sequence<dds_sequence_plab_v1_FieldInfo>(fields);
         (void)ends_->types.write(type);

@@ -20,10 +20,10 @@ const std::string kSamples = SAMPLE_DIR;
 
 std::string sample(const std::string& flaw) { return kSamples + "/sample_" + flaw + ".so"; }
 
-const std::string kHead = "plab-manifest 2\nplugin\tsample\n";
+const std::string kHead = "plab-manifest 3\nplugin\tsample\n";
 
 /// A line for a type of which nothing but the name is told.
-std::string bare_type(const std::string& name) { return "type\t" + name + "\tSample\t0\t\t\t\t\n"; }
+std::string bare_type(const std::string& name) { return "type\t" + name + "\tSample\t0\t\t\t\t\t\t\n"; }
 
 std::string manifest(const std::string& types)
 {
@@ -165,22 +165,22 @@ TEST_CASE("bad manifests are problems, not the end")
         std::string text, problem;
     };
     const std::vector<Case> cases{
-        {"plab-manifest 1\nA/B\n", ":1:1: is no manifest of this version: the first line must be 'plab-manifest 2'"},
+        {"plab-manifest 1\nA/B\n", ":1:1: is no manifest of this version: the first line must be 'plab-manifest 3'"},
         {"", ": cannot be read"},
-        {"plab-manifest 2\n" + bare_type("A/B"), ": names no plugin"},
+        {"plab-manifest 3\n" + bare_type("A/B"), ": names no plugin"},
         {kHead + "plugin\tother\n", ":3:1: names a second plugin"},
         {kHead + bare_type("A/B") + bare_type("no spaces please"), ":4:1: is no type name; letters, digits, '_' and '/' are allowed"},
         {kHead + bare_type("A/B") + bare_type("C/D") + bare_type("A/B"), ": names A/B twice"},
         {kHead + "A/B\n", ":3:1: begins with no word of a manifest; plugin, type, role and field are allowed"},
-        {kHead + "type\tA/B\tA\t0\n", ":3:1: a 'type' line has 8 cells, not 4"},
-        {kHead + "type\tA/B\tA\t4x\t\t\t\t\n", ":3:1: the order of convergence is no whole number that fits"},
+        {kHead + "type\tA/B\tA\t0\n", ":3:1: a 'type' line has 10 cells, not 4"},
+        {kHead + "type\tA/B\tA\t4x\t\t\t\t\t\t\n", ":3:1: the order of convergence is no whole number that fits"},
         {kHead + "field\tx\tparam\treal\tm\t0\toptional\t\t\n", ":3:1: a field before the first type"},
         {kHead + bare_type("A/B") + "field\tx\tparam\treal\tm\t0\tmaybe\t\t\n", ":4:1: a field is 'required' or 'optional'"},
         {kHead + bare_type("A/B") + "role\tx\tbody\t1\t4294967296\t\n",
          ":4:1: the largest number of participants is no whole number that fits"},
-        {kHead + "type\tA/B\tA\t0\tdo\\c\t\t\t\n", ":3:1: holds a '\\' that is neither '\\\\' nor '\\x' and two digits"},
-        {kHead + "type\tA/B\tA\t0\tdo\\x0\t\t\t\n", ":3:1: holds a '\\' that is neither '\\\\' nor '\\x' and two digits"},
-        {kHead + "type\tA/B\tA\t0\tdo\rc\t\t\t\n", ":3:1: holds a control character; it must be written as \\x and two digits"},
+        {kHead + "type\tA/B\tA\t0\tdo\\c\t\t\t\t\t\n", ":3:1: holds a '\\' that is neither '\\\\' nor '\\x' and two digits"},
+        {kHead + "type\tA/B\tA\t0\tdo\\x0\t\t\t\t\t\n", ":3:1: holds a '\\' that is neither '\\\\' nor '\\x' and two digits"},
+        {kHead + "type\tA/B\tA\t0\tdo\rc\t\t\t\t\t\n", ":3:1: holds a control character; it must be written as \\x and two digits"},
     };
     std::vector<std::string> expected;
     for (std::size_t i = 0; i < cases.size(); ++i)
@@ -289,7 +289,7 @@ TEST_CASE("manifests are written sorted, whole or not at all, and read back with
     model::TypeSummary odd, plain;
     plain.name = "A/B", plain.family = "A", plain.plugin = odd.plugin = "sample";
     odd.name = "B/C", odd.family = "B", odd.doc = "a tab\t, a line\nbreak, a back\\slash, \x7f and \xc3\xa9";
-    odd.order = -3, odd.cost = "\\x41", odd.limits = " ", odd.source = "|";
+    odd.order = -3, odd.accuracy = "1e-12", odd.strengths = "\t", odd.cost = "\\x41", odd.limits = " ", odd.source = "|";
     odd.roles = {{"between", "body or shaft", "who\r", 0, 4294967295}};
     odd.fields = {{"code", "param", "text", "", "x = 1\n\ty = 2", "", "", false},
                   {"mass", "param", "real", "kg", "", "positive", "", true}};

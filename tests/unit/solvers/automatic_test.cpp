@@ -118,6 +118,22 @@ TEST_CASE("free flight is exact, fast spin is split, stiff springs are exponenti
     CHECK(reaction[0] == doctest::Approx(0.1706167732170483e1).epsilon(1e-8));
 }
 
+TEST_CASE("a host that could not cut its step as finely as its contacts ask gets no steps within the step")
+{
+    Automatic automatic;
+    Points a = damped_spring(1e6, 0.05), b = damped_spring(1e6, 0.05);
+    a.undersampled = true;
+    a.run(0.01, 3, std::ref(automatic)), b.run(0.01, 3, rk4);
+    CHECK(a.place == b.place);
+    CHECK(a.evaluations == b.evaluations);
+    CHECK(automatic.resolved() == "RungeKutta4");
+    CHECK(automatic.rows.reason[0] == "RungeKutta4: contacts ask for more sub-steps than they may have, whatever the method");
+    CHECK(automatic.events.all.empty());
+    a.undersampled = false;
+    a.run(0.01, 1, std::ref(automatic));
+    CHECK(automatic.resolved() == "RungeKutta4, Exponential");
+}
+
 TEST_CASE("a stiff spring that wakes up long after the start does not blow up for one step")
 {
     Automatic automatic;

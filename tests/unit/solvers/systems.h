@@ -80,6 +80,7 @@ public:
     std::size_t quantity_count() const override { return quantities_; }
     bool forces_are_uniform() const override { return uniform; }
     bool is_constrained() const override { return constrained; }
+    bool is_undersampled() const override { return undersampled; }
     void evaluate(double t, double weight) override
     {
         ++evaluations;
@@ -109,7 +110,7 @@ public:
     int evaluations = 0;
     double booked = 0;  ///< sum of weights: 1 for each step
     double work = 0;    ///< J, as the ledger books it
-    bool uniform = false, constrained = false;
+    bool uniform = false, constrained = false, undersampled = false;
 
 protected:
     std::vector<double> x_, u_, dx_, du_;
