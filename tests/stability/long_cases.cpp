@@ -80,7 +80,8 @@ Case free_body()
 
 Case pendulum()
 {
-    const auto solvers = quick_solvers();
+    // Under joints Exact is RungeKutta4, and RotationSplitting takes 30 us a step.
+    const std::vector<std::string> solvers{"RungeKutta4", "SemiImplicitEuler", "StoermerVerlet"};
     Case c{"long_pendulum",
            "A jointed body for ten million steps",
            "A ball of 1 kg on a ball joint 0.5 m above it, released at 0.5 rad, steps of 1/240 s. Error: of the energy at the end, "
