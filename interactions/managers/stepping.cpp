@@ -128,7 +128,12 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
 
 void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing)
 {
-    for (std::size_t i = 0; i < problem.points.size(); ++i) problem.points[i].least = std::min(0.0, island.contacts[i].depth + slop) / h;
+    for (std::size_t i = 0; i < problem.points.size(); ++i)
+    {
+        // What pressed may stand up to the slop away; what comes is to touch, or it would never bounce.
+        const Contact& c = island.contacts[i];
+        problem.points[i].least = std::min(0.0, c.depth + (dot(c.impulse, c.normal) > 0 ? slop : 0.0)) / h;
+    }
     for (std::size_t i = 0; i < passing.size(); ++i) problem.points[i].least = std::min(problem.points[i].least, passing[i]);
     for (Line& line : problem.lines)
     {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "reference/contact_rungs.h"
 #include "support/ground.h"
 #include "support/scene.h"
 #include "support/text.h"
@@ -39,20 +40,7 @@ inline std::string contact(const std::string& between, const std::string& resolu
     return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + resolution +
            "\" response=\"Response/Impulse\" response.restitution=\"" + restitution + "\" " + more + "/>";
 }
-/// A way to deal with contacts: who finds the time, who answers, and for rows by which manager.
-struct Rung
-{
-    const char* resolution;
-    const char* response;
-    const char* manager = "Direct";
-
-    bool rows() const { return std::string(response) == "Rows"; }
-    bool locates() const { return !is("None") && !is("Speculative"); }
-    bool certifies() const { return is("LocalRoot") || is("ConservativeAdvancement"); }
-    bool is(const std::string& wanted) const { return resolution == wanted; }
-    std::string name() const { return std::string(resolution) + " + " + response + (rows() ? std::string("/") + manager : ""); }
-};
-/// Every resolution with every response by impulses that takes it.
+/// Every resolution with every response by impulses that takes it; all rungs: contact_rungs.h.
 inline constexpr Rung kRungs[] = {
     {"None", "Impulse"},           {"Bisection", "Impulse"},
     {"LocalBisection", "Impulse"}, {"ConservativeAdvancement", "Impulse"},
@@ -61,14 +49,6 @@ inline constexpr Rung kRungs[] = {
     {"LocalBisection", "Rows"},    {"ConservativeAdvancement", "Rows"},
     {"LocalRoot", "Rows"},
 };
-inline std::string contact(const std::string& between, const Rung& rung, double restitution, double friction = 0,
-                           const std::string& more = "")
-{
-    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + rung.resolution +
-           "\" response=\"Response/" + rung.response + "\" response.restitution=\"" + text(restitution) + "\" response.friction=\"" +
-           text(friction) + "\"" + (rung.rows() ? std::string(" response.manager=\"Manager/") + rung.manager + "\"" : "") + " " + more +
-           "/>";
-}
 inline std::string sensor(const std::string& between, const std::string& resolution, const std::string& against = "")
 {
     const std::string others = against.empty() ? "" : "\" against=\"" + against;

@@ -1,4 +1,5 @@
-// Many impacts: their number, their order and what they leave. C4 to C9 and C13 as in the catalogue.
+// Many impacts: their number, their order and what they leave. C4, C5, C6 and C9 as in the catalogue, with the best rung; every rung, C8
+// and C13: impacts_flight_rungs_test.cpp and impacts_series_rungs_test.cpp.
 //
 // | problem | rung                            | bound                                                                     |
 // |---------|---------------------------------|---------------------------------------------------------------------------|
@@ -7,12 +8,7 @@
 // |         |                                 | a step for e = .5, .9; 200 for e = .99, whose bounces are cut off in the  |
 // |         |                                 | step in which their sum ends (1023 in all, 90 s)                          |
 // | C6      | LocalRoot                       | 3, 31, 314, 3141 (31415 in impacts_long)                                  |
-// | C8      | LocalRoot + Impulse             | gaps: k in, k out to 1e-10                                                |
-// |         | gap 0, Impulse, any resolution  | k in, k out to 1e-12: the declared law, one pair after the other          |
-// |         | gap 0, Rows, not located        | the other declared law, all at once: those that touch share               |
-// |         |                                 | u_n' >= -e u_n; momentum and energy kept                                  |
 // | C9      | LocalRoot + Impulse             | 1e-12 of (3M - m)/(M + m); Penalty 8e-9 of its own equations, half of that  |
-// | C13     | LocalRoot + Impulse             | mirror 1e-12, ids 1e-12 (Rows: stacks_test)                               |
 #include <algorithm>
 
 #include "impacts.h"
@@ -95,65 +91,6 @@ TEST_CASE("C6: Galperin's balls count the digits of pi, whatever happens within 
     }
 }
 
-TEST_CASE("C8: Newton's cradle with gaps: k in, k out")
-{
-    for (const double gap : {1e-6, 1e-9})
-        for (int k = 1; k <= 3; ++k)
-        {
-            CAPTURE(gap);
-            CAPTURE(k);
-            std::string balls, all;
-            for (int i = 0; i < 5; ++i)
-            {
-                const std::string id = "b" + std::to_string(i);
-                const bool comes = i < k;
-                balls += sphere(id, 0.1, at({i * (0.2 + gap) - (comes ? 0.1 : 0), 0, 0}, {comes ? 1.0 : 0.0, 0, 0}));
-                all += id + " ";
-            }
-            Scene s(balls + contact(all, "LocalRoot", "1"), "dt=\"1/60\"");
-            REQUIRE_MESSAGE(s.loaded(), s.error());
-            s.run(0.5);
-            for (int i = 0; i < 5; ++i)
-                CHECK(std::fabs(s.vec("b" + std::to_string(i), "linear_velocity").x - (i >= 5 - k ? 1 : 0)) < 1e-10);
-        }
-}
-
-TEST_CASE("C8: Newton's cradle without gaps: each response keeps to its declared law")
-{
-    const auto cradle = [](const Rung& rung, int k)
-    {
-        std::string balls, all;
-        for (int i = 0; i < 5; ++i)
-        {
-            const std::string id = "b" + std::to_string(i);
-            balls += sphere(id, 0.1, at({i * 0.2 - (i < k ? 0.1 : 0), 0, 0}, {i < k ? 1.0 : 0.0, 0, 0}));
-            all += id + " ";
-        }
-        Scene s(balls + contact(all, rung, 1), "dt=\"1/60\"");
-        REQUIRE_MESSAGE(s.loaded(), s.error());
-        s.run(0.5);
-        std::vector<double> v;
-        for (int i = 0; i < 5; ++i) v.push_back(s.vec("b" + std::to_string(i), "linear_velocity").x);
-        return v;
-    };
-    for (const Rung& rung : kRungs)
-        for (int k = 1; k <= 3; ++k)
-        {
-            CAPTURE(rung.name());
-            CAPTURE(k);
-            const std::vector<double> v = cradle(rung, k);
-            double momentum = 0, energy = 0;
-            for (const double x : v) momentum += x, energy += x * x;
-            CHECK(std::fabs(momentum - k) < 1e-12);
-            CHECK(std::fabs(energy - k) < 1e-11);
-            for (std::size_t i = 0; i < 5 && !rung.rows(); ++i) CHECK(std::fabs(v[i] - (static_cast<int>(i) >= 5 - k ? 1 : 0)) < 1e-12);
-        }
-    // One into four that touch, at once: the first contact parts at 1 m/s, the others at none: -0.6 and 0.4 for all.
-    const std::vector<double> v = cradle({"None", "Rows"}, 1);
-    CHECK(std::fabs(v[0] + 0.6) < 1e-12);
-    for (std::size_t i = 1; i < 5; ++i) CHECK(std::fabs(v[i] - 0.4) < 1e-12);
-}
-
 // Both contacts press at once: M x'' = k (-x)+ - k (x - y)+ - M g, m y'' = k (x - y)+ - m g, from the touch of the big one, by
 // Runge-Kutta with 4000 steps in a radian of the fastest oscillation. The small one is fastest at the end of the step in which it leaves.
 TEST_CASE("C9: contacts that last do not do what impacts one after the other do")
@@ -194,51 +131,4 @@ TEST_CASE("C9: Galileo's cannon: the small ball leaves with (3M - m)/(M + m) of 
     const double up = v - g * (t2 - t1), down = -g * t2, M = 1, m = 0.1;
     const double after = (m * down + M * up + M * (up - down)) / (M + m);
     CHECK(near(s.vec("small", "linear_velocity").z, after - g * (s.simulation().time() - t2), 1e-12));
-}
-
-namespace
-{
-/// Cue ball into a rack of 15, along its axis; ids run through `rank`. Returns final velocities by place.
-std::vector<Vec3> break_rack(const std::vector<int>& rank, double gap)
-{
-    std::string balls, all;
-    std::vector<std::string> ids;
-    const double d = 0.1 + gap;
-    for (int row = 0, n = 0; row < 5; ++row)
-        for (int i = 0; i <= row; ++i, ++n)
-        {
-            ids.push_back("b" + std::to_string(100 + rank[static_cast<std::size_t>(n)]));
-            balls += sphere(ids.back(), 0.05, at({row * d * std::sqrt(0.75), (i - 0.5 * row) * d, 0}));
-            all += ids.back() + " ";
-        }
-    balls += sphere("cue", 0.05, at({-0.5, 0, 0}, {10, 0, 0}));
-    Scene s(balls + contact(all + "cue", "LocalRoot", "1"), "dt=\"1/60\"");
-    REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.run(0.5);
-    std::vector<Vec3> out;
-    for (const std::string& id : ids) out.push_back(s.vec(id, "linear_velocity"));
-    return out;
-}
-}  // namespace
-
-TEST_CASE("C13: a rack breaks as symmetric as it stands, whatever the ids")
-{
-    std::vector<int> straight, mixed;
-    for (int i = 0; i < 15; ++i) straight.push_back(i), mixed.push_back((i * 7 + 3) % 15);
-    for (const double gap : {0.0, 1e-4})
-    {
-        CAPTURE(gap);
-        const std::vector<Vec3> v = break_rack(straight, gap), w = break_rack(mixed, gap);
-        double worst = 0, other = 0, energy_sum = 0;
-        for (int row = 0, first = 0; row < 5; first += ++row)
-            for (int i = 0; i <= row; ++i)
-            {
-                const Vec3 &a = v[static_cast<std::size_t>(first + i)], &b = v[static_cast<std::size_t>(first + row - i)];
-                worst = std::max({worst, std::fabs(a.x - b.x), std::fabs(a.y + b.y)});
-            }
-        for (std::size_t i = 0; i < v.size(); ++i) other = std::max(other, length(v[i] - w[i])), energy_sum += length_squared(v[i]);
-        CHECK(worst < 1e-12);
-        CHECK(other < 1e-12);
-        CHECK(energy_sum > 50);
-    }
 }

@@ -34,32 +34,13 @@ TEST_CASE("E2: a stage of a step next to the singular configuration costs nothin
 
 TEST_CASE("E4: a four-bar follows Freudenstein's equation")
 {
-    // Crank .2, coupler .5, rocker .4, ground .5; the crank is turned at 1 rev/s.
-    constexpr double a = .2, b = .5, c = .4, d = .5;
-    const auto rocker_at = [](double crank)
-    {
-        // The circle of b about the crank's end meets that of c about the other foot, above the ground.
-        const double x = a * std::cos(crank), z = a * std::sin(crank), dx = d - x, dz = -z, r2 = dx * dx + dz * dz, r = std::sqrt(r2);
-        const double along = (b * b - c * c + r2) / (2 * r), up = std::sqrt(b * b - along * along);
-        return Vec3{x + along * dx / r - up * dz / r, 0, z + along * dz / r + up * dx / r};
-    };
-    const Vec3 p = rocker_at(0);
-    const auto link = [](const std::string& id, const Vec3& from, const Vec3& to) {
-        return body(id, 1, {.01, .01, .01}, 0.5 * (from + to));
-    };
-    Scene s(solver_is("RungeKutta4") + gravity() + link("crank", {0, 0, 0}, {a, 0, 0}) + link("coupler", {a, 0, 0}, p) +
-                link("rocker", {d, 0, 0}, p) + hinge("j1", "", "crank", {0, 0, 0}, "0 -1 0") + hinge("j2", "crank", "coupler", {a, 0, 0}) +
-                hinge("j3", "coupler", "rocker", p) + hinge("j4", "", "rocker", {d, 0, 0}) +
-                joint("m", "Motor", "", "crank", "axis='0 -1 0' speed='" + text(2 * std::numbers::pi) + "'"),
-            dt(240));
+    Scene s(FourBar::scene(solver_is("RungeKutta4")), dt(240));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     double worst = 0;
     for (int i = 1; i <= 3 * 240; ++i)
     {
         s.step();
-        const double crank = 2 * std::numbers::pi * i / 240;
-        // The middle of the rocker is half way up to its end.
-        worst = std::fmax(worst, length(2 * s.vec("rocker", "position") - Vec3{d, 0, 0} - rocker_at(crank)));
+        worst = std::fmax(worst, FourBar::error(s));
     }
     MESSAGE("worst place of the rocker's end: ", worst);
     CHECK(worst < 1e-9);
@@ -72,11 +53,7 @@ TEST_CASE("E4: a four-bar follows Freudenstein's equation")
 
 TEST_CASE("E8: pins too far apart share the error, and say so")
 {
-    // A body with arms of 0.9 m between pins 2 m apart.
-    Scene s(solver_is("RungeKutta4") + gravity() + body("rod", 1, {.1, .3, .3}, {0, 0, 0}) +
-                joint("left", "Ball", "", "rod", "anchor_a='-1 0 0' anchor_b='-0.9 0 0'") +
-                joint("right", "Ball", "", "rod", "anchor_a='1 0 0' anchor_b='0.9 0 0'"),
-            dt(240));
+    Scene s(torn_rod(solver_is("RungeKutta4")), dt(240));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = s.keep_events = true;
     s.run(5);

@@ -12,7 +12,7 @@
 //     The state is the momentum in the world, whose rounding (2e-15 of 20 N m s) is a disturbance like e: below e = 1e-9 it is what
 //     decides about the second flip, and errors of the energy decide about it for methods that make some.
 // A5: symmetric tops precess in the body at (I3 - I1) / I1 w3; eigen-gaps of 1e-14 and balls keep their spin. The table below.
-#include "reference/motion.h"
+#include "reference/rungs.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -59,6 +59,9 @@ Flips flips_of(const SolverRung& rung, double offset, int steps, double until)
     return out;
 }
 
+/// s, of the first flip at e = 1e-3.
+double flip_error(const SolverRung& rung, int steps) { return std::fabs(flips_of(rung, 1e-3, steps, 3).first - 1.66131075292830108); }
+
 struct Reference
 {
     double offset, first, interval;  ///< rad/s, s
@@ -104,6 +107,24 @@ TEST_CASE("A3: a wing nut flips when the elliptic integral says, whatever the di
             CHECK(std::fabs(found.first - r.first) < row.first[i]);
             if (i == 0) CHECK(std::fabs(found.second - found.first - r.interval) < row.interval);
         }
+}
+
+TEST_CASE("A3: the first flip by every solver, with its order")
+{
+    const RungRow table[] = {
+        {{"SemiImplicitEuler"}, 1000, 1.9e-4, 1},
+        {{"StoermerVerlet"}, 100, 1.9e-3, 2},
+        {{"RotationSplitting", "order=\"2\""}, 100, 8.2e-4, 2},
+        {{"ImplicitMidpoint"}, 100, 9.6e-4, 2},
+        {{"RungeKutta4"}, 100, 9.2e-7, 4},
+        {{"RotationSplitting"}, 50, 5.4e-7, 4},
+        {{"Exponential"}, 100, 4.3e-6, 4},
+        {{"DormandPrince54"}, 100, 2.9e-10, 0},
+        {{"Radau5"}, 100, 2.1e-6, 0},
+        {{"Exact"}, 100, 5e-10, 0},  // what the interpolation between steps leaves
+    };
+    for (const RungRow& row : table) check_rung(row, flip_error);
+    check_same({"Automatic"}, {"Exact"}, 100, flip_error);
 }
 
 TEST_CASE("A5: degenerate tops by the rungs")

@@ -157,7 +157,7 @@ TEST_CASE("the solver keeps its order through contacts")
 TEST_CASE("Hertz: two balls part after 2.9432 (x_m / v), and have pushed as deep as they should")
 {
     // m x'' = -k x^1.5:  x_m = (5 m v^2 / (4 k))^(2/5),  T = 2 x_m / v int_0^1 du / sqrt(1 - u^2.5).
-    const double k = 1e8, m = 0.5, v = 2, deepest = std::pow(1.25 * m * v * v / k, 0.4), time = 2.9432749960 * deepest / v;
+    const double k = 1e8, m = 0.5, v = 2, deepest = std::pow(1.25 * m * v * v / k, 0.4), time = 2.9432751843247047 * deepest / v;
     Scene s(ball("a", "mass=\"1\" position=\"-0.101 0 0\" linear_velocity=\"1 0 0\"") +
                 ball("b", "mass=\"1\" position=\"0.101 0 0\" linear_velocity=\"-1 0 0\"") +
                 contact("a b", "HuntCrossley\" response.stiffness=\"" + text(k) + "\"") +

@@ -24,32 +24,11 @@
 //
 // Aims not reached: the fixed point to more digits. Standing contacts are held at the level of speeds, with order 1.
 #include <algorithm>
-#include <numbers>
 
-#include "impacts.h"
+#include "rocking.h"
 
 using namespace plab;
 using namespace plab::test;
-
-namespace
-{
-constexpr double kAlpha = 0.2, kQuarter = .48608973195735393546;
-
-/// A block on two plates, so that each edge meets a body of its own and its impact can be located; turned about the edge at the
-/// origin by `tilt` from standing flat, spinning with `spin` towards flat. The plates reach `under` (m) below it: where that is much,
-/// it comes to lie on their ends as well as on its edge, and what the impact leaves is not Housner's.
-std::string block(double tilt, double spin, double under, const Rung& rung)
-{
-    const Vec3 arm{-std::sin(kAlpha - tilt), 0, std::cos(kAlpha - tilt)};
-    const std::string attitude = " orientation=\"" + text(std::cos(tilt / 2)) + " 0 " + text(std::sin(tilt / 2)) + " 0\"";
-    const std::string turning = " angular_velocity=\"0 " + text(-spin) + " 0\"";
-    const double left = -2 * std::sin(kAlpha) + under - 1;
-    return box("left", {1, 2, 0.5}, "position=\"" + text(Vec3{left, 0, -0.5}) + "\"", "Static") +
-           box("right", {1, 2, 0.5}, "position=\"" + text(Vec3{1 - under, 0, -0.5}) + "\"", "Static") +
-           box("block", {std::sin(kAlpha), 0.5, std::cos(kAlpha)}, at(arm, cross({0, -spin, 0}, arm)) + attitude + turning) +
-           contact("block", rung, 0, 2, "against=\"left right\"");
-}
-}  // namespace
 
 TEST_CASE("C23: at the impact of a rocking block the old edge lets go")
 {
@@ -66,21 +45,6 @@ TEST_CASE("C23: at the impact of a rocking block the old edge lets go")
     }
 }
 
-namespace
-{
-/// s: when the block first meets the other plate, as it is told.
-double first_impact(const Rung& rung, double h)
-{
-    Scene s(block(0.1, 0, 0.1, rung) + gravity("block"), "dt=\"" + text(h) + "\"");
-    REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.warnings_expected = s.keep_events = true;
-    while (s.simulation().time() < 0.6) s.step();
-    for (const Event& e : s.events)
-        if (e.kind == "contact.begin" && e.time > 0.3) return e.time;
-    return 0;
-}
-}  // namespace
-
 TEST_CASE("C23: a rocking block comes down after Housner's quarter period")
 {
     for (const Rung& rung : kRungs)
@@ -95,47 +59,6 @@ TEST_CASE("C23: a rocking block comes down after Housner's quarter period")
     }
     CHECK(std::fabs(first_impact({"LocalRoot", "Impulse"}, 0.000625) - kQuarter) < 0.5 * (kQuarter - 0.485519587413140505));
 }
-
-namespace
-{
-constexpr Vec3 kDownhill{0.783963147838, 0, -9.778624738829};  // 9.81 (sin .08, 0, -cos .08)
-
-std::string wheel(const Rung& rung)
-{
-    const double alpha = std::numbers::pi / 8, spin = 1.2;
-    std::string points;
-    for (int i = 0; i < 8; ++i)
-        for (const double y : {-0.3, 0.3}) points += text(Vec3{std::sin(alpha + 2 * alpha * i), y, std::cos(alpha + 2 * alpha * i)}) + " ";
-    return std::string(kGround) + "<component id=\"wheel.shape\" type=\"Shape/ConvexHull\" points=\"" + points +
-           "\"/><component id=\"wheel\" type=\"State/RigidBody\" shape=\"wheel.shape\" center_of_mass=\"0 0 0\" inertia=\"" +
-           text(Vec3{1, 1e-3, 1}) + "\" angular_velocity=\"0 " + text(spin) + " 0\" " +
-           at({0, 0, std::cos(alpha)}, {spin * std::cos(alpha), 0, spin * std::sin(alpha)}) + "/>" + gravity("wheel", kDownhill) +
-           contact("wheel ground", rung, 0, 3);
-}
-
-/// Spins after each step of a rimless wheel.
-std::vector<double> walk(const Rung& rung, double h, double until)
-{
-    Scene s(wheel(rung), "dt=\"" + text(h) + "\"");
-    REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.warnings_expected = true;
-    std::vector<double> out;
-    // A step of the walk is where the spin falls; the impact may take two time steps.
-    double before = 1.2, least = 1.2;
-    bool falling = false;
-    while (s.simulation().time() < until)
-    {
-        s.step();
-        const double now = s.vec("wheel", "angular_velocity").y;
-        if (now < before - 0.02)
-            falling = true, least = now;
-        else if (falling)
-            falling = false, out.push_back(least);
-        before = now;
-    }
-    return out;
-}
-}  // namespace
 
 TEST_CASE("C24: a rimless wheel comes to its limit cycle, half as far away with each step")
 {

@@ -1,32 +1,10 @@
 // Gears: reduced coordinates, pairwise impulses, one-way copies. F1.. as in the catalogue of reference problems.
 #include <algorithm>
 
-#include "support/scene.h"
+#include "reference/shafts.h"
 
 using namespace plab;
-using plab::test::near;
-using plab::test::Scene;
-
-namespace
-{
-
-std::string shaft(const std::string& id, double inertia, double speed = 0)
-{
-    return "<component id=\"" + id + "\" type=\"State/Shaft\" inertia=\"" + std::to_string(inertia) + "\" angular_velocity=\"" +
-           std::to_string(speed) + "\"/>";
-}
-std::string gear(const std::string& id, const std::string& type, const std::string& a, const std::string& b, const std::string& factor)
-{
-    return "<component id=\"" + id + "\" type=\"Constraint/AngularVelocity/" + type + "\" driver=\"" + a + "\" driven=\"" + b +
-           "\" velocity_factor=\"" + factor + "\"/>";
-}
-std::string torque(const std::string& on, const std::string& value)
-{
-    return "<component id=\"torque\" type=\"Script/Lua\" driven=\"" + on +
-           "\"><param name=\"code\">function force(t, state) driven:add_torque(" + value + ") end</param></component>";
-}
-
-}  // namespace
+using namespace plab::test;
 
 TEST_CASE("F1: a pair accelerates with its reflected inertia")
 {
@@ -55,25 +33,11 @@ TEST_CASE("F1, one way: an assigned shaft follows and the driver feels nothing")
 
 TEST_CASE("F2: six meshes of 10:1, both ways")
 {
-    const auto train = [](const char* factor)
-    {
-        std::string body;
-        for (int i = 0; i < 7; ++i) body += shaft("s" + std::to_string(i), 0.001);
-        for (int i = 0; i < 6; ++i)
-            body += gear("g" + std::to_string(i), "Graph", "s" + std::to_string(i), "s" + std::to_string(i + 1), factor);
-        return body + torque("s0", "1");
-    };
-    const auto inertia = [](double r)
-    {
-        double sum = 0;
-        for (int i = 6; i >= 0; --i) sum += std::pow(r * r, i) * 1e-3;
-        return sum;
-    };
-    Scene down(train("0.1"), "dt=\"1/100\""), up(train("10"), "dt=\"1/100\"");
+    Scene down(six_meshes("Graph", "0.1"), "dt=\"1/100\""), up(six_meshes("Graph", "10"), "dt=\"1/100\"");
     REQUIRE_MESSAGE(down.loaded(), down.error());
     down.run(1), up.run(1);
-    CHECK(std::fabs(down.spin("s0") * inertia(0.1) - 1) < 2e-14);
-    CHECK(std::fabs(up.spin("s0") * inertia(10) - 1) < 2e-14);
+    CHECK(std::fabs(down.spin("s0") * inertia_from(0, 0.1) - 1) < 2e-14);
+    CHECK(std::fabs(up.spin("s0") * inertia_from(0, 10) - 1) < 2e-14);
     CHECK(std::fabs(up.spin("s6") / up.spin("s0") / 1e6 - 1) < 1e-14);
 }
 
@@ -215,37 +179,15 @@ TEST_CASE("a train too long for the sweeps of Impulse says so once and names the
 
 TEST_CASE("F7: a line of 1000 gears has no drift at all")
 {
-    std::string body;
-    std::uint64_t seed = 7;
-    double rho = 1;
-    std::vector<double> rhos{1};
-    for (int i = 0; i < 1000; ++i)
-    {
-        char id[16];
-        std::snprintf(id, sizeof id, "s%04d", i);
-        body += shaft(id, 0.001);
-        if (i == 0) continue;
-        char before[16];
-        std::snprintf(before, sizeof before, "s%04d", i - 1);
-        seed = seed * 6364136223846793005ull + 1442695040888963407ull;
-        const int driver = 20 + static_cast<int>((seed >> 33) % 40), driven = 20 + static_cast<int>((seed >> 43) % 40);
-        body += "<component id=\"g" + std::string(id) + "\" type=\"Constraint/AngularVelocity/Graph\" driver=\"" + before + "\" driven=\"" +
-                id + "\" driver_teeth=\"" + std::to_string(driver) + "\" driven_teeth=\"" + std::to_string(driven) + "\"/>";
-        rho *= -static_cast<double>(driver) / driven;
-        rhos.push_back(rho);
-    }
-    Scene s(body + torque("s0000", "1"), "dt=\"1/100\"");
+    const GearLine line(1000, "Graph");
+    Scene s(line.parts, "dt=\"1/100\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(2000);
-    double worst = 0;
+    const auto& world = s.simulation().world();
     for (int i = 0; i < 1000; ++i)
-    {
-        char id[16];
-        std::snprintf(id, sizeof id, "s%04d", i);
-        const auto& shafts = s.simulation().world().host().shafts;
-        const std::uint32_t k = s.simulation().world().component(s.simulation().world().find(id)).host_index;
-        CHECK(std::fabs(shafts.ratio[k] / rhos[static_cast<std::size_t>(i)] - 1) < 1e-12);
-        worst = std::max(worst, std::fabs(shafts.angle[k] - shafts.ratio[k] * shafts.angle[shafts.root[k]]));
-    }
-    CHECK(worst == 0);
+        CHECK(std::fabs(world.host().shafts.ratio[world.component(world.find(GearLine::id(i))).host_index] /
+                            line.ratios[static_cast<std::size_t>(i)] -
+                        1) < 1e-12);
+    CHECK(GearLine::drift(s) == 0);
+    CHECK(line.phase(s) < 1e-12);
 }

@@ -11,7 +11,7 @@
 // are Radau5's, with an absolute tolerance well below.
 #include <vector>
 
-#include "reference/motion.h"
+#include "reference/rungs.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -128,4 +128,68 @@ TEST_CASE("B5: explicit steps give up by name, or take their time")
     const double digits = scd(kHires, {"DormandPrince54"}, 10);
     MESSAGE("HIRES: " << digits);
     CHECK(digits > 9);
+}
+
+namespace
+{
+
+/// Relative, of the worst component.
+double relative_error(const Reaction& r, const SolverRung& rung, int steps) { return std::pow(10, -scd(r, rung, steps)); }
+
+}  // namespace
+
+TEST_CASE("B5: HIRES by the solvers that are not made for it")
+{
+    // Its fastest rate is about 200 1/s for a while: explicit rungs need 64000 (orders 1 and 2) or 32000 steps. Without places a kick is
+    // the whole of a step, so StoermerVerlet is Heun's method and RotationSplitting of order 2 is RungeKutta4.
+    const auto error = [](const SolverRung& rung, int steps) { return relative_error(kHires, rung, steps); };
+    const RungRow table[] = {
+        {{"SemiImplicitEuler"}, 64000, 5.9e-4, 0}, {{"StoermerVerlet"}, 64000, 6.3e-6, 0}, {{"RungeKutta4"}, 32000, 1.1e-10, 0},
+        {{"ImplicitMidpoint"}, 1000, 1.0e-2, 2},   {{"Exponential"}, 1000, 2.7e-7, 0},
+    };
+    for (const RungRow& row : table) check_rung(row, error);
+    check_same({"RotationSplitting", "order=\"2\""}, {"RungeKutta4"}, 16000, error);
+    // Beyond their limits they swing within what nonlinear rates allow: wrong, finite, and nothing tells of it.
+    CHECK(error({"SemiImplicitEuler"}, 32000) > 0.3);
+    CHECK(error({"RotationSplitting"}, 8000) > 0.3);
+}
+
+TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are not made for them: what they tell, or how wrong they are")
+{
+    struct Row
+    {
+        SolverRung rung;
+        std::string event;              ///< for both
+        double robertson, van_der_pol;  ///< relative; 0: the event says it all
+    };
+    const Row table[] = {
+        {{"SemiImplicitEuler"}, "script.error", 0, 0},
+        {{"StoermerVerlet"}, "script.error", 0, 0},
+        {{"RungeKutta4"}, "script.error", 0, 0},
+        {{"RotationSplitting", "order=\"2\""}, "script.error", 0, 0},
+        {{"RotationSplitting"}, "script.error", 0, 0},
+        {{"Exact"}, "script.error", 0, 0},                       // RotationSplitting
+        {{"Exponential"}, "solver.fell_back", 2.2e-5, 3.9e-11},  // to Radau5
+    };
+    for (const Row& row : table)
+        for (const Reaction* reaction : {&kRobertson, &kVanDerPol})
+        {
+            const std::string name = name_of(row.rung);
+            CAPTURE(name);
+            CAPTURE(reaction->values);
+            Scene s = scene_of(*reaction, row.rung, 1000);
+            REQUIRE_MESSAGE(s.loaded(), s.error());
+            s.warnings_expected = s.keep_events = true;
+            s.step(1000);
+            CHECK(s.count(row.event) == 1);
+            const double bound = reaction == &kRobertson ? row.robertson : row.van_der_pol;
+            if (bound > 0) CHECK(relative_error(*reaction, row.rung, 1000) < 2 * bound);
+        }
+    // ImplicitMidpoint is not L-stable. Robertson: it rings about the answer, the second number 5e7 times too large (4e-6). Van der Pol: it
+    // does not find its midpoints, and says so.
+    CHECK(relative_error(kRobertson, {"ImplicitMidpoint"}, 1000) == doctest::Approx(4.8e7).epsilon(0.5));
+    Scene s = scene_of(kVanDerPol, {"ImplicitMidpoint"}, 200);
+    s.warnings_expected = s.keep_events = true;
+    s.step(200);
+    CHECK(s.count("solver.failed") > 0);
 }

@@ -40,31 +40,42 @@ inline std::string contact(const std::string& between, const std::string& manage
 
 inline std::string name_of_box(std::size_t i) { return "b" + std::string(i < 10 ? "00" : i < 100 ? "0" : "") + std::to_string(i); }
 
-/// What the contacts of a and b put on b in the last step, N, W: a manager's impulses over the step.
-inline Vec3 force_between(const Scene& s, const std::string& a, const std::string& b)
+/// What each contact point of two bodies puts on the pair's second one, N, W; in the order of features. Of managers and impulses: over the
+/// last step.
+struct PointForce
+{
+    Vec3 force, normal;
+    bool on_first = false;  ///< of those asked for: then the force is on `a`
+};
+inline std::vector<PointForce> forces_of(const Scene& s, const std::string& a, const std::string& b)
 {
     const world::World& world = s.simulation().world();
-    Vec3 sum;
-    for (const simulation::PairState& p : s.simulation().stepper().contacts().pairs())
+    const auto& cache = s.simulation().stepper().contacts();
+    std::vector<PointForce> out;
+    const auto add = [&](const auto& p, auto force)
     {
         const std::string &of_a = world.id_of(p.a), &of_b = world.id_of(p.b);
-        const double sign = of_a == a && of_b == b ? 1 : of_b == a && of_a == b ? -1 : 0;
-        for (std::uint32_t i = 0; i < p.count; ++i) sum += p.contacts[i].impulse * sign;
-    }
-    return sum / s.simulation().dt();
+        const bool straight = of_a == a && of_b == b, turned = of_b == a && of_a == b;
+        for (std::uint32_t i = 0; (straight || turned) && i < p.count; ++i) out.push_back({force(p.contacts[i]), p.normal, turned});
+    };
+    for (const simulation::PairState& p : cache.pairs()) add(p, [&](const auto& c) { return c.impulse / s.simulation().dt(); });
+    for (const simulation::ForcePair& p : cache.force_pairs()) add(p, [](const auto& c) { return c.force; });
+    return out;
 }
 
-/// Impulses of a pair's points in the last step over its length, N, along the normal; in the order of features.
+/// What the contacts of a and b put on b, N, W.
+inline Vec3 force_between(const Scene& s, const std::string& a, const std::string& b)
+{
+    Vec3 sum;
+    for (const PointForce& f : forces_of(s, a, b)) sum += f.on_first ? -f.force : f.force;
+    return sum;
+}
+
+/// Forces of a pair's points along the normal, N.
 inline std::vector<double> point_forces(const Scene& s, const std::string& a, const std::string& b)
 {
-    const world::World& world = s.simulation().world();
     std::vector<double> out;
-    for (const simulation::PairState& p : s.simulation().stepper().contacts().pairs())
-    {
-        const std::string &of_a = world.id_of(p.a), &of_b = world.id_of(p.b);
-        if (!(of_a == a && of_b == b) && !(of_a == b && of_b == a)) continue;
-        for (std::uint32_t i = 0; i < p.count; ++i) out.push_back(dot(p.contacts[i].impulse, p.normal) / s.simulation().dt());
-    }
+    for (const PointForce& f : forces_of(s, a, b)) out.push_back(dot(f.force, f.normal));
     return out;
 }
 

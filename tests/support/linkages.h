@@ -1,8 +1,9 @@
-/// Linkages of the catalogue that several tests run: E2 and E3.
+/// Linkages of the catalogue that several tests run: E2, E3, E4 and E8.
 #pragma once
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "support/joints.h"
 
@@ -25,9 +26,9 @@ inline std::string hinge(const std::string& id, const std::string& a, const std:
 inline std::string number(int i) { return std::to_string(100 + i); }
 
 /// E2: N four-bars side by side, upright, moving to +x at 1 m/s on top. Passes its singular configuration twice a turn.
-inline std::string four_bars(int n)
+inline std::string four_bars(int n, const std::string& solver = solver_is("RungeKutta4"))
 {
-    std::string parts = solver_is("RungeKutta4") + gravity();
+    std::string parts = solver + gravity();
     for (int i = 0; i <= n; ++i)
     {
         const Vec3 foot{double(i), 0, 0}, top{double(i), 0, 1};
@@ -45,6 +46,46 @@ inline std::string four_bars(int n)
     return parts;
 }
 inline Vec3 top_of(const Scene& s) { return 2 * s.vec("v" + number(0), "position"); }
+
+/// E4: crank .2, coupler .5, rocker .4, ground .5; a motor turns the crank at 1 rev/s.
+struct FourBar
+{
+    static constexpr double crank = .2, coupler = .5, rocker = .4, ground = .5;
+
+    /// The rocker's end: where the circle of the coupler about the crank's end meets that of the rocker about its foot, above the ground.
+    static Vec3 rocker_end(double angle)
+    {
+        const double x = crank * std::cos(angle), z = crank * std::sin(angle), dx = ground - x, dz = -z, r2 = dx * dx + dz * dz,
+                     r = std::sqrt(r2);
+        const double along = (coupler * coupler - rocker * rocker + r2) / (2 * r), up = std::sqrt(coupler * coupler - along * along);
+        return Vec3{x + along * dx / r - up * dz / r, 0, z + along * dz / r + up * dx / r};
+    }
+    static std::string scene(const std::string& solver)
+    {
+        const Vec3 knee{crank, 0, 0}, foot{ground, 0, 0}, end = rocker_end(0);
+        const auto link = [](const std::string& id, const Vec3& from, const Vec3& to) {
+            return body(id, 1, {.01, .01, .01}, 0.5 * (from + to));
+        };
+        return solver + gravity() + link("crank", {0, 0, 0}, knee) + link("coupler", knee, end) + link("rocker", foot, end) +
+               hinge("j1", "", "crank", {0, 0, 0}, "0 -1 0") + hinge("j2", "crank", "coupler", knee) +
+               hinge("j3", "coupler", "rocker", end) + hinge("j4", "", "rocker", foot) +
+               joint("m", "Motor", "", "crank", "axis='0 -1 0' speed='" + text(2 * std::numbers::pi) + "'");
+    }
+    /// m, of the rocker's end: its middle is half way up to it.
+    static double error(const Scene& s)
+    {
+        const double angle = 2 * std::numbers::pi * s.simulation().time();
+        return length(2 * s.vec("rocker", "position") - Vec3{ground, 0, 0} - rocker_end(angle));
+    }
+};
+
+/// E8: a body with arms of 0.9 m between pins 2 m apart.
+inline std::string torn_rod(const std::string& solver)
+{
+    return solver + gravity() + body("rod", 1, {.1, .3, .3}, {0, 0, 0}) +
+           joint("left", "Ball", "", "rod", "anchor_a='-1 0 0' anchor_b='-0.9 0 0'") +
+           joint("right", "Ball", "", "rod", "anchor_a='1 0 0' anchor_b='0.9 0 0'");
+}
 
 /// E3: five rods and the ground, six hinges; let go.
 inline std::string bricard()

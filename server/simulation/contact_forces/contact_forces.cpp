@@ -10,6 +10,14 @@
 namespace plab::simulation
 {
 
+namespace
+{
+
+constexpr int kMostRounds = 64;
+constexpr double kSameReach = 1 + 1e-9, kLeastReach = 0.01;  // the latter of a body's radius: what rests is not looked at twice
+
+}  // namespace
+
 void ContactForces::rebuild()
 {
     const world::World& world = s_->world_;
@@ -78,6 +86,7 @@ void ContactForces::begin_step()
     reach_.assign(s_->world_.host().bodies.size(), 0.0);
     fill_reach(s_->frame_.step);
     look_near(s_->frame_.step);
+    spread_reach(s_->frame_.step);
     segment_ = live_;
 }
 
@@ -97,6 +106,53 @@ void ContactForces::fill_reach(double h)
         const double way = speed_of({Facet::Body, b}) * h;
         reach_[b] += bodies.dynamic(b) ? 1.5 * way : way;
     }
+}
+
+/// Whoever may be hit within the step may leave with the speed that the blow gives, and hit the next one.
+void ContactForces::spread_reach(double h)
+{
+    for (int round = 0; raise_reach(); ++round)
+    {
+        const bool is_last = round == kMostRounds;
+        if (is_last) level_reach();
+        look_near(h);
+        if (is_last) return;
+    }
+}
+
+/// Reaches of near pairs, until they agree; false if they did. Of two that meet head-on without a loss the one at rest leaves with
+/// 2 m / (m + m') of the other's speed. Round a circle of pairs these shares multiply to 1 at most: it comes to an end.
+bool ContactForces::raise_reach()
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const auto hits = [&](Ref a, Ref b)
+    {
+        if (!dynamic(b)) return false;
+        const double share = dynamic(a) ? 2 / (1 + bodies.mass[b.index] * bodies.inverse_mass[a.index]) : 2.0;
+        const double reach = share * reach_[a.index];
+        if (!(reach > reach_[b.index] * kSameReach && reach > kLeastReach * s_->radius_of_body_[b.index])) return false;
+        reach_[b.index] = reach;
+        return true;
+    };
+    bool raised = false;
+    for (bool again = true; again; raised = raised || again)
+    {
+        again = false;
+        for (const NearPair& p : near_)
+        {
+            if (hits(p.a, p.b)) again = true;
+            if (hits(p.b, p.a)) again = true;
+        }
+    }
+    return raised;
+}
+
+/// For a row longer than there are rounds: nobody is out of anybody's reach who is near the fastest.
+void ContactForces::level_reach()
+{
+    const double most = *std::max_element(reach_.begin(), reach_.end());
+    for (std::uint32_t b = 0; b < reach_.size(); ++b)
+        if (dynamic({Facet::Body, b})) reach_[b] = std::max(reach_[b], most);
 }
 
 void ContactForces::add_near(std::uint32_t detector, Ref a, Ref b)

@@ -109,6 +109,9 @@ private:
     void make_room();
     void look_near(double h);
     void fill_reach(double h);
+    void spread_reach(double h);
+    bool raise_reach();
+    void level_reach();
     bool within_reach(std::span<const std::uint32_t> groups, double h) const;
     void add_near(std::uint32_t detector, Ref a, Ref b);
     void make_islands(std::span<const std::uint32_t> groups);

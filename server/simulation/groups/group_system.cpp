@@ -11,9 +11,9 @@ namespace plab::simulation
 namespace
 {
 
-/// What has died away is 0: arithmetic with denormal numbers costs a hundredfold. Too small for products with steps and
-/// masses to be lost.
-double without_traces(double speed) { return std::fabs(speed) < 1e-280 ? 0.0 : speed; }
+/// What has died away is 0: arithmetic with denormal numbers costs a hundredfold, and squares of speeds are the first to become
+/// such. Far too small for products with steps and masses to be lost.
+double without_traces(double speed) { return std::fabs(speed) < 1e-150 ? 0.0 : speed; }
 Vec3 without_traces(const Vec3& v) { return {without_traces(v.x), without_traces(v.y), without_traces(v.z)}; }
 
 }  // namespace

@@ -1,0 +1,21 @@
+/// Scenes of C14 and C15: what slides on a plane.
+#pragma once
+
+#include "impacts.h"
+
+namespace plab::test
+{
+
+inline constexpr double kG = 9.81;  // m/s^2
+
+inline std::string step_of(double h) { return "dt=\"" + text(h) + "\""; }
+/// A ramp that stays level, with gravity leaning along x.
+inline Vec3 leaning(double angle) { return {kG * std::sin(angle), 0, -kG * std::cos(angle)}; }
+inline std::string brick(const Vec3& v = {}) { return kGround + box("a", {0.5, 0.5, 0.1}, at({0, 0, 0.1}, v)); }
+inline std::string held(const Rung& rung, double friction)
+{
+    return contact("a ground", rung, plastic(rung), friction,
+                   stiffness(rung, 1e5, 1e7, "response.tangential_damping_ratio=\"1\" response.steps_per_contact=\"20\""));
+}
+
+}  // namespace plab::test

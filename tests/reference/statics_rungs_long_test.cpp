@@ -1,0 +1,24 @@
+// Stacks by every rung of contacts (contact_rungs.h): D2 of the catalogue. Direct alone to 100 cubes: statics_test.cpp.
+#include "statics_problems.h"
+
+using namespace plab;
+using namespace plab::test;
+
+TEST_CASE("D2: three and ten cubes for two seconds, by every rung")
+{
+    // Loads and way of the top for three; the same for ten, and whether it is told.
+    constexpr Bound<5> table[] = {
+        {"None", "Impulse", {8e-6, 0.019, 1.01, 9, 1}, {0, 4e-3, 0.9, 1, 1}},
+        {"located", "Impulse", {1e-12, 4e-9, 0.09, 4.5e-3, 0}, {0, 0, 6e-3, 2e-4, 0}},
+        {"*", "Rows/Direct", {2.5e-12, 1.1e-13, 1.2e-12, 4.5e-13, 0}},
+        {"None", "Rows/SequentialImpulse", {8e-7, 1.2e-4, 0.01, 0.045, 1}, {0, 1e-5, 0, 4e-3, 1}},
+        {"Speculative", "Rows/SequentialImpulse", {8e-7, 1.2e-4, 0.14, 0.1, 1}, {0, 1e-5, 0.015, 0.01, 1}},
+        {"*", "Rows/SoftStep", {3e-11, 1e-3, 0.04, 0.012, 1}, {0, 1e-4, 4e-3, 1e-3, 1}},
+    };
+    check_rungs(rigid_rungs(), table,
+                [](const Rung& rung)
+                {
+                    const Stood three = stand(rung, std::vector<double>(3, 1.0), 120), ten = stand(rung, std::vector<double>(10, 1.0), 120);
+                    return std::array{three.load, three.sunk, ten.load, ten.sunk, ten.told};
+                });
+}
