@@ -157,7 +157,8 @@ Case denormal()
            "A spring as above, k = 100 N/m, pulled by the given length about 0 (its anchor), and a slow spin of that many rad/s; 1 s at "
            "1/60 s. "
            "Error: of the place at the end, relative to the amplitude. Stable to 1e-1 (a denormal has few digits), bounded to 3. Below "
-           "1e-154 m the square of a length is 0: the spring has no direction and no force, and the body stays where it is.",
+           "1e-154 m the square of a length is 0: the spring has no direction and no force, and the body stays where it is. Speeds below "
+           "1e-150 m/s count as 0.",
            "solver",
            "amplitude, m",
            solvers,
