@@ -18,7 +18,7 @@ Identity identify(const std::string& name, const std::string& version)
     return {name, version, host.data(), getpid(), std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()};
 }
 
-bool keeps_the_name(const plab_v1_Server& other, const Identity& self)
+bool keeps_the_name(const plab_v2_Server& other, const Identity& self)
 {
     if (other.started_ns <= 0 || other.host == nullptr || other.name == nullptr || self.name != other.name) return false;
     const auto order = [](std::int64_t started, std::string_view host, std::int32_t process) { return std::tuple(started, host, process); };

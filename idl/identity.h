@@ -22,6 +22,6 @@ Identity identify(const std::string& name, const std::string& version);
 
 /// Whether `other` is another server of this name, and may keep it: it started earlier, or at the same time and comes
 /// first by host and process.
-bool keeps_the_name(const plab_v1_Server& other, const Identity& self);
+bool keeps_the_name(const plab_v2_Server& other, const Identity& self);
 
 }  // namespace plab::wire

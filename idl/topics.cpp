@@ -9,23 +9,23 @@ namespace
 {
 
 constexpr std::array<Topic, 17> kTopics{{
-    {"plab/server", &plab_v1_Server_desc, Delivery::Catalogue, "the server's state, at least once a second"},
-    {"plab/scene", &plab_v1_Scene_desc, Delivery::Catalogue, "what is loaded, and its cameras"},
-    {"plab/objects", &plab_v1_Object_desc, Delivery::Catalogue, "bodies and shafts"},
-    {"plab/shapes", &plab_v1_Shape_desc, Delivery::Catalogue, "geometry of bodies"},
-    {"plab/interactions", &plab_v1_Interaction_desc, Delivery::Catalogue, "all other components, with their algorithm"},
-    {"plab/types", &plab_v1_Type_desc, Delivery::Catalogue, "what can be added or swapped in"},
-    {"plab/states", &plab_v1_Frame_desc, Delivery::Newest, "positions and velocities, one sample per frame"},
-    {"plab/collisions", &plab_v1_Collisions_desc, Delivery::Log, "contacts that begin, bounce, rest and end"},
-    {"plab/events", &plab_v1_Events_desc, Delivery::Log, "events of interactions, failures, applied requests"},
-    {"plab/metrics", &plab_v1_Metrics_desc, Delivery::Catalogue, "cost, error and work of each interaction, energy"},
-    {"plab/requests", &plab_v1_Request_desc, Delivery::Request, "what clients ask for"},
-    {"plab/replies", &plab_v1_Reply_desc, Delivery::Reply, "answers, each for one client"},
-    {"plab/images", &plab_v1_Image_desc, Delivery::Newest, "pictures of cameras in the scene"},
-    {"plab/journal", &plab_v1_Journal_desc, Delivery::Log, "requests that took effect, in words"},
-    {"plab/hashes", &plab_v1_Hashes_desc, Delivery::Log, "the state hash of every step"},
-    {"plab/snapshots", &plab_v1_Snapshot_desc, Delivery::Newest, "everything that a run needs to go on from there"},
-    {"plab/gone", &plab_v1_Gone_desc, Delivery::Log, "in recordings only: catalogue entries that were disposed of"},
+    {"plab/server", &plab_v2_Server_desc, Delivery::Catalogue, "the server's state, at least once a second"},
+    {"plab/scene", &plab_v2_Scene_desc, Delivery::Catalogue, "what is loaded, and its cameras"},
+    {"plab/objects", &plab_v2_SceneObject_desc, Delivery::Catalogue, "bodies and shafts"},
+    {"plab/shapes", &plab_v2_Shape_desc, Delivery::Catalogue, "geometry of bodies"},
+    {"plab/interactions", &plab_v2_Interaction_desc, Delivery::Catalogue, "all other components, with their algorithm"},
+    {"plab/types", &plab_v2_Type_desc, Delivery::Catalogue, "what can be added or swapped in"},
+    {"plab/states", &plab_v2_Frame_desc, Delivery::Newest, "positions and velocities, one sample per frame"},
+    {"plab/collisions", &plab_v2_Collisions_desc, Delivery::Log, "contacts that begin, bounce, rest and end"},
+    {"plab/events", &plab_v2_Events_desc, Delivery::Log, "events of interactions, failures, applied requests"},
+    {"plab/metrics", &plab_v2_Metrics_desc, Delivery::Catalogue, "cost, error and work of each interaction, energy"},
+    {"plab/requests", &plab_v2_Request_desc, Delivery::Request, "what clients ask for"},
+    {"plab/replies", &plab_v2_Reply_desc, Delivery::Reply, "answers, each for one client"},
+    {"plab/images", &plab_v2_Image_desc, Delivery::Newest, "pictures of cameras in the scene"},
+    {"plab/journal", &plab_v2_Journal_desc, Delivery::Log, "requests that took effect, in words"},
+    {"plab/hashes", &plab_v2_Hashes_desc, Delivery::Log, "the state hash of every step"},
+    {"plab/snapshots", &plab_v2_Snapshot_desc, Delivery::Newest, "everything that a run needs to go on from there"},
+    {"plab/gone", &plab_v2_Gone_desc, Delivery::Log, "in recordings only: catalogue entries that were disposed of"},
 }};
 
 }  // namespace
@@ -39,23 +39,23 @@ std::span<const Topic> topics() { return kTopics; }
         static_assert(kTopics[index].type == &Type##_desc); \
         return kTopics[index];                              \
     }
-PLAB_TOPIC(plab_v1_Server, 0)
-PLAB_TOPIC(plab_v1_Scene, 1)
-PLAB_TOPIC(plab_v1_Object, 2)
-PLAB_TOPIC(plab_v1_Shape, 3)
-PLAB_TOPIC(plab_v1_Interaction, 4)
-PLAB_TOPIC(plab_v1_Type, 5)
-PLAB_TOPIC(plab_v1_Frame, 6)
-PLAB_TOPIC(plab_v1_Collisions, 7)
-PLAB_TOPIC(plab_v1_Events, 8)
-PLAB_TOPIC(plab_v1_Metrics, 9)
-PLAB_TOPIC(plab_v1_Request, 10)
-PLAB_TOPIC(plab_v1_Reply, 11)
-PLAB_TOPIC(plab_v1_Image, 12)
-PLAB_TOPIC(plab_v1_Journal, 13)
-PLAB_TOPIC(plab_v1_Hashes, 14)
-PLAB_TOPIC(plab_v1_Snapshot, 15)
-PLAB_TOPIC(plab_v1_Gone, 16)
+PLAB_TOPIC(plab_v2_Server, 0)
+PLAB_TOPIC(plab_v2_Scene, 1)
+PLAB_TOPIC(plab_v2_SceneObject, 2)
+PLAB_TOPIC(plab_v2_Shape, 3)
+PLAB_TOPIC(plab_v2_Interaction, 4)
+PLAB_TOPIC(plab_v2_Type, 5)
+PLAB_TOPIC(plab_v2_Frame, 6)
+PLAB_TOPIC(plab_v2_Collisions, 7)
+PLAB_TOPIC(plab_v2_Events, 8)
+PLAB_TOPIC(plab_v2_Metrics, 9)
+PLAB_TOPIC(plab_v2_Request, 10)
+PLAB_TOPIC(plab_v2_Reply, 11)
+PLAB_TOPIC(plab_v2_Image, 12)
+PLAB_TOPIC(plab_v2_Journal, 13)
+PLAB_TOPIC(plab_v2_Hashes, 14)
+PLAB_TOPIC(plab_v2_Snapshot, 15)
+PLAB_TOPIC(plab_v2_Gone, 16)
 #undef PLAB_TOPIC
 
 Qos qos_of(Delivery delivery)

@@ -36,7 +36,7 @@ struct Topic
 /// All topics, in the order in which server/docs/bus.md lists them.
 std::span<const Topic> topics();
 
-/// The topic of a C type of plab.h: topic_of<plab_v1_Frame>().
+/// The topic of a C type of plab.h: topic_of<plab_v2_Frame>().
 template <class T>
 const Topic& topic_of();
 

@@ -3,15 +3,15 @@
 namespace plab::control
 {
 
-Frame frame_of(const plab_v1_Frame& f)
+Frame frame_of(const plab_v2_Frame& f)
 {
     Frame out;
     out.run = f.run, out.revision = f.revision, out.number = f.sequence_number;
     out.step = f.step, out.stamp_ns = f.stamp_ns, out.time = f.time;
-    const auto vec = [](const plab_v1_Vector& v) { return Vec3{v.x, v.y, v.z}; };
+    const auto vec = [](const plab_v2_Vector& v) { return Vec3{v.x, v.y, v.z}; };
     for (std::uint32_t i = 0; i < f.bodies._length; ++i)
     {
-        const plab_v1_BodyState& b = f.bodies._buffer[i];
+        const plab_v2_BodyState& b = f.bodies._buffer[i];
         out.motions[b.handle] = {false,
                                  vec(b.position),
                                  vec(b.linear_velocity),
@@ -28,11 +28,11 @@ Frame frame_of(const plab_v1_Frame& f)
 
 std::optional<Frame> next_frame(const link::Session& session, link::Seconds timeout)
 {
-    auto reader = session.reader<plab_v1_Frame>();
+    auto reader = session.reader<plab_v2_Frame>();
     if (!reader || !session.wait(*reader, timeout)) return {};
     std::optional<Frame> out;
     (void)reader->take(
-        [&](const plab_v1_Frame& f, const dds_sample_info_t& info)
+        [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
         {
             if (info.valid_data) out = frame_of(f);
         });

@@ -24,7 +24,7 @@ struct Frame
     std::map<std::uint32_t, Motion> motions;  ///< by handle
 };
 
-Frame frame_of(const plab_v1_Frame& sample);
+Frame frame_of(const plab_v2_Frame& sample);
 /// The next frame that comes within `timeout`; empty where none does (a paused server sends none).
 std::optional<Frame> next_frame(const link::Session& session, link::Seconds timeout);
 

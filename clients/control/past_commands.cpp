@@ -29,8 +29,8 @@ struct Snapshot
 };
 
 /// Waits for a snapshot for which `is_it` holds.
-Result<Snapshot> await_snapshot(Context& c, wire::Reader<plab_v1_Snapshot>& reader,
-                                const std::function<bool(const plab_v1_Snapshot&)>& is_it)
+Result<Snapshot> await_snapshot(Context& c, wire::Reader<plab_v2_Snapshot>& reader,
+                                const std::function<bool(const plab_v2_Snapshot&)>& is_it)
 {
     std::optional<Snapshot> out;
     const auto end = link::moment_after(c.timeout());
@@ -41,7 +41,7 @@ Result<Snapshot> await_snapshot(Context& c, wire::Reader<plab_v1_Snapshot>& read
             return reason("server '" + c.session().server() + "' sends no snapshot: it plays a recording, or is too old");
         (void)c.session().wait(reader, link::Seconds(0.1));
         reader.take(
-            [&](const plab_v1_Snapshot& s, const dds_sample_info_t& info)
+            [&](const plab_v2_Snapshot& s, const dds_sample_info_t& info)
             {
                 if (!info.valid_data || out || !is_it(s)) return;
                 out.emplace(Snapshot{s.step, s.time, {s.data._buffer, s.data._buffer + s.data._length}});
@@ -53,9 +53,9 @@ Result<Snapshot> await_snapshot(Context& c, wire::Reader<plab_v1_Snapshot>& read
 /// The present state: whoever begins to read the topic gets one.
 Result<Snapshot> present(Context& c)
 {
-    auto reader = c.session().reader<plab_v1_Snapshot>();
+    auto reader = c.session().reader<plab_v2_Snapshot>();
     if (!reader) return reader.errors();
-    return await_snapshot(c, *reader, [](const plab_v1_Snapshot&) { return true; });
+    return await_snapshot(c, *reader, [](const plab_v2_Snapshot&) { return true; });
 }
 
 Exit write_file(Context& c, const Snapshot& snapshot, const std::string& file)
@@ -83,13 +83,13 @@ Exit run_snapshot(Context& c, const SnapshotOptions& o)
         return c.fail(Exit::Usage, "'" + o.name + "' is no name of a snapshot: 1 to 64 letters, digits, '.', '_' or '-'");
     if (o.file.empty()) return send(c, {{"snapshot", o.name}}, o.timing);
     if (const Exit e = c.connect(); e != Exit::Done) return e;
-    auto reader = c.session().reader<plab_v1_Snapshot>();
+    auto reader = c.session().reader<plab_v2_Snapshot>();
     if (!reader) return c.fail(Exit::Failed, reader.errors());
     // The first one shows that the server knows of this reader: the one that is asked for will come, too.
-    if (auto first = await_snapshot(c, *reader, [](const plab_v1_Snapshot&) { return true; }); !first)
+    if (auto first = await_snapshot(c, *reader, [](const plab_v2_Snapshot&) { return true; }); !first)
         return c.fail(Exit::NoServer, first.errors());
     if (const Exit e = send(c, {{"snapshot", o.name}}, o.timing); e != Exit::Done) return e;
-    auto snapshot = await_snapshot(c, *reader, [&](const plab_v1_Snapshot& s) { return o.name == s.name; });
+    auto snapshot = await_snapshot(c, *reader, [&](const plab_v2_Snapshot& s) { return o.name == s.name; });
     if (!snapshot) return c.fail(Exit::NoServer, snapshot.errors());
     return write_file(c, *snapshot, o.file);
 }

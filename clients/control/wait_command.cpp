@@ -33,12 +33,12 @@ struct Place
 /// The server's state tells the time once a second and at every change, frames in between.
 std::optional<Place> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, Place place, Clock::time_point end)
 {
-    auto frames = c.session().reader<plab_v1_Frame>();
+    auto frames = c.session().reader<plab_v2_Frame>();
     while (!c.stopped() && Clock::now() < end && !catalogue.server_is_gone())
     {
         if (frames)
             (void)frames->take(
-                [&](const plab_v1_Frame& f, const dds_sample_info_t& info)
+                [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
                 {
                     if (info.valid_data) place = {f.run, f.step, f.time};
                 });

@@ -74,8 +74,8 @@ Exit stream(Watch& w, Handle handle)
 
 Exit watch_states(Watch& w)
 {
-    const Exit e = stream<plab_v1_Frame>(w,
-                                         [&](const plab_v1_Frame& sample)
+    const Exit e = stream<plab_v2_Frame>(w,
+                                         [&](const plab_v2_Frame& sample)
                                          {
                                              (void)w.numbers.missed_before(sample.sequence_number, 1);
                                              if (!w.thinning.takes(sample.run, sample.time)) return;
@@ -89,8 +89,8 @@ Exit watch_states(Watch& w)
 
 Exit watch_metrics(Watch& w)
 {
-    return stream<plab_v1_Metrics>(w,
-                                   [&](const plab_v1_Metrics& sample)
+    return stream<plab_v2_Metrics>(w,
+                                   [&](const plab_v2_Metrics& sample)
                                    {
                                        if (!w.thinning.takes(sample.run, sample.time)) return;
                                        w.printer.metrics(link::metrics_of(sample));
@@ -123,9 +123,9 @@ Exit run_watch(Context& c, const WatchOptions& o)
     if (o.stream == "states") return watch_states(w);
     if (o.stream == "metrics") return watch_metrics(w);
     if (o.stream == "collisions")
-        return watch_log<plab_v1_Collisions>(w, "collisions",
+        return watch_log<plab_v2_Collisions>(w, "collisions",
                                              [&](const auto& sample, std::uint32_t i) { return w.printer.collision(sample, i); });
-    return watch_log<plab_v1_Events>(w, "events", [&](const auto& sample, std::uint32_t i) { return w.printer.event(sample, i); });
+    return watch_log<plab_v2_Events>(w, "events", [&](const auto& sample, std::uint32_t i) { return w.printer.event(sample, i); });
 }
 
 std::string check_stream(const std::string& text)

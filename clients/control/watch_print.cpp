@@ -19,7 +19,7 @@ std::string padded(std::string text, std::size_t width)
     return columns < width ? text + std::string(width - columns, ' ') : text;
 }
 
-Vec3 vector(const plab_v1_Vector& v) { return {v.x, v.y, v.z}; }
+Vec3 vector(const plab_v2_Vector& v) { return {v.x, v.y, v.z}; }
 
 std::string name_of(std::uint32_t handle, const link::Catalogue& catalogue)
 {
@@ -103,9 +103,9 @@ void WatchPrinter::metrics(const link::Metrics& metrics)
     has_title_ = true;
 }
 
-bool WatchPrinter::collision(const plab_v1_Collisions& sample, std::uint32_t entry)
+bool WatchPrinter::collision(const plab_v2_Collisions& sample, std::uint32_t entry)
 {
-    const plab_v1_CollisionInfo& c = sample.entries._buffer[entry];
+    const plab_v2_CollisionInfo& c = sample.entries._buffer[entry];
     if (!selection_.takes(c.a) && !selection_.takes(c.b) && !selection_.takes(c.detector)) return false;
     const Vec3 position = vector(c.position), impulse = vector(c.impulse);
     if (json_)
@@ -134,10 +134,10 @@ bool WatchPrinter::collision(const plab_v1_Collisions& sample, std::uint32_t ent
     return true;
 }
 
-bool WatchPrinter::event(const plab_v1_Events& sample, std::uint32_t entry)
+bool WatchPrinter::event(const plab_v2_Events& sample, std::uint32_t entry)
 {
-    const plab_v1_EventInfo& e = sample.entries._buffer[entry];
-    if (!selection_.takes(e.component) && !selection_.takes(e.a) && !selection_.takes(e.b)) return false;
+    const plab_v2_EventInfo& e = sample.entries._buffer[entry];
+    if (!selection_.takes(e.component_id) && !selection_.takes(e.a) && !selection_.takes(e.b)) return false;
     const std::vector<double> values(e.values._buffer, e.values._buffer + e.values._length);
     if (json_)
     {
@@ -147,7 +147,7 @@ bool WatchPrinter::event(const plab_v1_Events& sample, std::uint32_t entry)
                          {"kind", e.kind},
                          {"severity", e.severity},
                          {"time", e.time},
-                         {"component", e.component},
+                         {"component", e.component_id},
                          {"a", e.a},
                          {"b", e.b},
                          {"message", e.message},
@@ -155,7 +155,7 @@ bool WatchPrinter::event(const plab_v1_Events& sample, std::uint32_t entry)
         return true;
     }
     std::string text = when(sample.step, e.time) + "  " + padded(printable(e.severity), 7) + "  " + printable(e.kind);
-    for (const char* id : {e.component, e.a, e.b})
+    for (const char* id : {e.component_id, e.a, e.b})
         if (*id != 0) text += "  " + printable(id);
     if (*e.message != 0) text += ": " + printable(e.message);
     for (const double value : values) text += " " + number(value);

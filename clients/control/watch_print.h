@@ -24,8 +24,8 @@ public:
     void frame(const Frame& frame, const link::Catalogue& catalogue);
     void metrics(const link::Metrics& metrics);
     /// Prints the entry, if it is selected; true if so.
-    bool collision(const plab_v1_Collisions& sample, std::uint32_t entry);
-    bool event(const plab_v1_Events& sample, std::uint32_t entry);
+    bool collision(const plab_v2_Collisions& sample, std::uint32_t entry);
+    bool event(const plab_v2_Events& sample, std::uint32_t entry);
     /// Numbers are missing: says so where it happened.
     void gap(const char* what, std::uint64_t missed, std::uint64_t before);
 

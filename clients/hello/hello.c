@@ -9,7 +9,7 @@ int main(int argc, char** argv)
     if (argc != 2) return fprintf(stderr, "usage: hello SERVER\n"), 2;
     const dds_entity_t participant = dds_create_participant(DDS_DOMAIN_DEFAULT, NULL, NULL);
     if (participant < 0) return fprintf(stderr, "hello: %s\n", dds_strretcode(participant)), 1;
-    const dds_entity_t topic = dds_create_topic(participant, &plab_v1_Frame_desc, "plab/states", NULL, NULL);
+    const dds_entity_t topic = dds_create_topic(participant, &plab_v2_Frame_desc, "plab/states", NULL, NULL);
     dds_qos_t* qos = dds_create_qos();
     dds_qset_partition1(qos, argv[1]); /* each server has the partition of its name */
     const dds_entity_t subscriber = dds_create_subscriber(participant, qos, NULL);
@@ -25,7 +25,7 @@ int main(int argc, char** argv)
             dds_sleepfor(DDS_MSECS(1));
             continue;
         }
-        const plab_v1_Frame* frame = samples[0];
+        const plab_v2_Frame* frame = samples[0];
         if (info[0].valid_data && frame->bodies._length > 0)
             printed++, printf("%8.3f s  z = %.3f m\n", frame->time, frame->bodies._buffer[0].position.z);
         dds_return_loan(reader, samples, 1);

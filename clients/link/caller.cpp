@@ -12,16 +12,16 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-std::vector<FieldFate> fates_of(const plab_v1_SwapReport& swap)
+std::vector<FieldFate> fates_of(const plab_v2_SwapReport& swap)
 {
     std::vector<FieldFate> out;
     for (std::uint32_t i = 0; i < swap.fields._length; ++i) out.push_back({swap.fields._buffer[i].name, swap.fields._buffer[i].fate});
     return out;
 }
 
-StepOutcome outcome_of(const plab_v1_StepOutcome& o) { return {o.energy, {o.momentum.x, o.momentum.y, o.momentum.z}, o.error, o.cost_ns}; }
+StepOutcome outcome_of(const plab_v2_StepOutcome& o) { return {o.energy, {o.momentum.x, o.momentum.y, o.momentum.z}, o.error, o.cost_ns}; }
 
-Reply reply_of(const plab_v1_Reply& r)
+Reply reply_of(const plab_v2_Reply& r)
 {
     Reply out;
     out.outcome = r.outcome, out.repeated = r.repeated;
@@ -30,9 +30,9 @@ Reply reply_of(const plab_v1_Reply& r)
     out.pause_ns = r.pause_ns, out.waited_ns = r.waited_ns;
     for (std::uint32_t i = 0; i < r.swaps._length; ++i)
     {
-        const plab_v1_SwapReport& s = r.swaps._buffer[i];
+        const plab_v2_SwapReport& s = r.swaps._buffer[i];
         out.swaps.push_back(
-            {s.component, s.from_type, s.to_type, fates_of(s), s.energy_before, outcome_of(s.with_old), outcome_of(s.with_new)});
+            {s.component_id, s.from_type, s.to_type, fates_of(s), s.energy_before, outcome_of(s.with_old), outcome_of(s.with_new)});
     }
     return out;
 }
@@ -75,14 +75,14 @@ char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
 struct Caller::State
 {
     const Session* session = nullptr;
-    plab_v1_ClientId id{};
+    plab_v2_ClientId id{};
     std::uint64_t last = 0;
-    wire::Reader<plab_v1_Reply> replies;  // its filter reads `id`: State never moves
-    wire::Writer<plab_v1_Request> requests;
+    wire::Reader<plab_v2_Reply> replies;  // its filter reads `id`: State never moves
+    wire::Writer<plab_v2_Request> requests;
 
     static bool is_mine(const void* sample, void* self)
     {
-        return std::memcmp(static_cast<const plab_v1_Reply*>(sample)->client, static_cast<State*>(self)->id, sizeof(plab_v1_ClientId)) == 0;
+        return std::memcmp(static_cast<const plab_v2_Reply*>(sample)->client, static_cast<State*>(self)->id, sizeof(plab_v2_ClientId)) == 0;
     }
 };
 
@@ -96,9 +96,9 @@ Result<Caller> Caller::make(const Session& session, Seconds timeout, const Stop&
     state.session = &session;
     std::random_device random;
     std::generate(std::begin(state.id), std::end(state.id), [&] { return static_cast<std::uint8_t>(random()); });
-    auto replies = session.reader<plab_v1_Reply>(&State::is_mine, &state);
+    auto replies = session.reader<plab_v2_Reply>(&State::is_mine, &state);
     if (!replies) return replies.errors();
-    auto requests = session.writer<plab_v1_Request>();
+    auto requests = session.writer<plab_v2_Request>();
     if (!requests) return requests.errors();
     state.replies = replies.take(), state.requests = requests.take();
     const auto end = moment_after(timeout);
@@ -120,16 +120,16 @@ Result<std::uint64_t> Caller::send(const Request& request)
 
 Result<void> Caller::send_again(const Request& request, std::uint64_t number)
 {
-    std::vector<std::vector<plab_v1_NamedText>> values;
-    std::vector<plab_v1_Operation> operations;
+    std::vector<std::vector<plab_v2_NamedText>> values;
+    std::vector<plab_v2_Operation> operations;
     for (const Operation& op : request.operations)
     {
-        std::vector<plab_v1_NamedText>& named = values.emplace_back();
+        std::vector<plab_v2_NamedText>& named = values.emplace_back();
         for (const auto& [name, value] : op.values) named.push_back({text(name), text(value)});
         const auto count = static_cast<std::uint32_t>(named.size());
         operations.push_back({text(op.verb), text(op.target), text(op.argument), text(op.blueprint), {count, count, named.data(), false}});
     }
-    plab_v1_Request sample{};
+    plab_v2_Request sample{};
     std::memcpy(sample.client, state_->id, sizeof sample.client);
     sample.number = number, sample.at = request.at.value_or(-1);
     sample.revision = request.revision ? static_cast<std::int64_t>(*request.revision) : -1;
@@ -143,7 +143,7 @@ Result<void> Caller::send_again(const Request& request, std::uint64_t number)
 void Caller::take(const std::function<void(std::uint64_t, Reply)>& handle)
 {
     (void)state_->replies.take(
-        [&](const plab_v1_Reply& reply, const dds_sample_info_t& info)
+        [&](const plab_v2_Reply& reply, const dds_sample_info_t& info)
         {
             if (info.valid_data) handle(reply.number, reply_of(reply));
         });

@@ -137,7 +137,7 @@ bool Catalogue::wait(Seconds timeout)
 bool Catalogue::take_state()
 {
     bool changed = server_.take(
-                       [&](const plab_v1_Server& sample, const dds_sample_info_t& info)
+                       [&](const plab_v2_Server& sample, const dds_sample_info_t& info)
                        {
                            if (info.instance_state != DDS_IST_ALIVE)
                                now_.server.reset();
@@ -146,7 +146,7 @@ bool Catalogue::take_state()
                        }) > 0;
     if (!metrics_.entity().valid()) return changed;
     changed |= metrics_.take(
-                   [&](const plab_v1_Metrics& sample, const dds_sample_info_t& info)
+                   [&](const plab_v2_Metrics& sample, const dds_sample_info_t& info)
                    {
                        if (info.valid_data) now_.metrics = metrics_of(sample);
                    }) > 0;
@@ -156,16 +156,16 @@ bool Catalogue::take_state()
 bool Catalogue::take_things()
 {
     bool changed = scene_.take(
-                       [&](const plab_v1_Scene& sample, const dds_sample_info_t& info)
+                       [&](const plab_v2_Scene& sample, const dds_sample_info_t& info)
                        {
                            if (info.valid_data && info.instance_state == DDS_IST_ALIVE) now_.scene = scene_of(sample);
                        }) > 0;
-    const auto component = [](const auto& sample) { return std::string(sample.component); };
+    const auto component = [](const auto& sample) { return std::string(sample.component_id); };
     changed |= take_into(objects_, now_.objects, component, object_of);
     changed |= take_into(shapes_, now_.shapes, component, shape_of);
     changed |= take_into(interactions_, now_.interactions, component, interaction_of);
     changed |= take_into(
-        types_, now_.types, [](const plab_v1_Type& t) { return std::string(t.type_name); }, type_of);
+        types_, now_.types, [](const plab_v2_Type& t) { return std::string(t.type_name); }, type_of);
     return changed;
 }
 

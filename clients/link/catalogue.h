@@ -129,7 +129,7 @@ struct Metrics
 };
 
 /// The sample as a plain struct, for those who read the topic themselves.
-Metrics metrics_of(const plab_v1_Metrics& sample);
+Metrics metrics_of(const plab_v2_Metrics& sample);
 
 /// The topics that a catalogue reads. What is left out costs nothing.
 enum class Part : unsigned
@@ -189,13 +189,13 @@ private:
 
     const Session* session_ = nullptr;
     Parts parts_ = 0;
-    wire::Reader<plab_v1_Server> server_;
-    wire::Reader<plab_v1_Scene> scene_;
-    wire::Reader<plab_v1_Object> objects_;
-    wire::Reader<plab_v1_Shape> shapes_;
-    wire::Reader<plab_v1_Interaction> interactions_;
-    wire::Reader<plab_v1_Type> types_;
-    wire::Reader<plab_v1_Metrics> metrics_;
+    wire::Reader<plab_v2_Server> server_;
+    wire::Reader<plab_v2_Scene> scene_;
+    wire::Reader<plab_v2_SceneObject> objects_;
+    wire::Reader<plab_v2_Shape> shapes_;
+    wire::Reader<plab_v2_Interaction> interactions_;
+    wire::Reader<plab_v2_Type> types_;
+    wire::Reader<plab_v2_Metrics> metrics_;
     wire::Entity waitset_;
     Snapshot now_;
     std::map<std::uint32_t, std::string> handles_;

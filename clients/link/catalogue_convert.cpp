@@ -24,31 +24,31 @@ auto list(const Sequence& s, Convert convert)
     return out;
 }
 
-Vec3 vector(const plab_v1_Vector& v) { return {v.x, v.y, v.z}; }
-Quat rotation(const plab_v1_Rotation& q) { return {q.w, q.x, q.y, q.z}; }
+Vec3 vector(const plab_v2_Vector& v) { return {v.x, v.y, v.z}; }
+Quat rotation(const plab_v2_Rotation& q) { return {q.w, q.x, q.y, q.z}; }
 std::string text(const char* t) { return t; }
-Parameter parameter(const plab_v1_Parameter& p) { return {p.name, p.text, p.unit, p.kind}; }
-Participants participants(const plab_v1_Participants& p) { return {p.role, list(p.members, text)}; }
-Camera camera(const plab_v1_View& v) { return {v.name, vector(v.position), vector(v.look_at), vector(v.up), v.field_of_view}; }
-RoleInfo role(const plab_v1_RoleInfo& r) { return {r.name, r.accepts, r.doc, r.least, r.most}; }
-FieldInfo field(const plab_v1_FieldInfo& f) { return {f.name, f.kind, f.value_type, f.unit, f.fallback, f.rule, f.doc, f.required}; }
+Parameter parameter(const plab_v2_Parameter& p) { return {p.name, p.text, p.unit, p.kind}; }
+Participants participants(const plab_v2_Participants& p) { return {p.role, list(p.members, text)}; }
+Camera camera(const plab_v2_View& v) { return {v.name, vector(v.position), vector(v.look_at), vector(v.up), v.field_of_view}; }
+RoleInfo role(const plab_v2_RoleInfo& r) { return {r.name, r.accepts, r.doc, r.least, r.most}; }
+FieldInfo field(const plab_v2_FieldInfo& f) { return {f.name, f.kind, f.value_type, f.unit, f.fallback, f.rule, f.doc, f.required}; }
 
-InteractionMetrics interaction_metrics(const plab_v1_InteractionMetrics& m)
+InteractionMetrics interaction_metrics(const plab_v2_InteractionMetrics& m)
 {
-    return {m.component, m.requested, m.resolved, m.cost_ns, m.error, m.work, m.quarantined, list(m.outputs, parameter)};
+    return {m.component_id, m.requested, m.resolved, m.cost_ns, m.error, m.work, m.quarantined, list(m.outputs, parameter)};
 }
 
 }  // namespace
 
-Scene scene_of(const plab_v1_Scene& s)
+Scene scene_of(const plab_v2_Scene& s)
 {
     return {s.run, s.file, s.title, s.dt, s.seed, s.objects, s.interactions, list(s.cameras, camera)};
 }
 
-Object object_of(const plab_v1_Object& o)
+Object object_of(const plab_v2_SceneObject& o)
 {
     Object out;
-    out.id = o.component, out.name = o.name, out.type = o.type_name;
+    out.id = o.component_id, out.name = o.name, out.type = o.type_name;
     out.handle = o.handle, out.run = o.run, out.is_shaft = text(o.shape_of) == "shaft";
     out.motion = o.motion, out.mass = o.mass;
     out.position = vector(o.position), out.orientation = rotation(o.orientation);
@@ -57,10 +57,10 @@ Object object_of(const plab_v1_Object& o)
     return out;
 }
 
-Shape shape_of(const plab_v1_Shape& s)
+Shape shape_of(const plab_v2_Shape& s)
 {
     Shape out;
-    out.id = s.component, out.type = s.type_name, out.form = s.form;
+    out.id = s.component_id, out.type = s.type_name, out.form = s.form;
     out.position = vector(s.position), out.orientation = rotation(s.orientation), out.size = vector(s.size);
     out.vertices = list(s.vertices, vector);
     const auto indices = items(s.triangles);
@@ -71,9 +71,9 @@ Shape shape_of(const plab_v1_Shape& s)
     return out;
 }
 
-Interaction interaction_of(const plab_v1_Interaction& i)
+Interaction interaction_of(const plab_v2_Interaction& i)
 {
-    return {i.component,
+    return {i.component_id,
             i.name,
             i.type_name,
             i.family,
@@ -84,7 +84,7 @@ Interaction interaction_of(const plab_v1_Interaction& i)
             list(i.parameters, parameter)};
 }
 
-Type type_of(const plab_v1_Type& t)
+Type type_of(const plab_v2_Type& t)
 {
     Type out;
     out.name = t.type_name, out.family = t.family, out.doc = t.doc, out.plugin = t.plugin;
@@ -94,7 +94,7 @@ Type type_of(const plab_v1_Type& t)
     return out;
 }
 
-Metrics metrics_of(const plab_v1_Metrics& m)
+Metrics metrics_of(const plab_v2_Metrics& m)
 {
     Metrics out;
     out.run = m.run, out.revision = m.revision, out.step = m.step, out.time = m.time;

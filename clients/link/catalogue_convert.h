@@ -6,11 +6,11 @@
 namespace plab::link
 {
 
-Scene scene_of(const plab_v1_Scene& sample);
-Object object_of(const plab_v1_Object& sample);
+Scene scene_of(const plab_v2_Scene& sample);
+Object object_of(const plab_v2_SceneObject& sample);
 /// Index triples that point outside the vertices are left out.
-Shape shape_of(const plab_v1_Shape& sample);
-Interaction interaction_of(const plab_v1_Interaction& sample);
-Type type_of(const plab_v1_Type& sample);
+Shape shape_of(const plab_v2_Shape& sample);
+Interaction interaction_of(const plab_v2_Interaction& sample);
+Type type_of(const plab_v2_Type& sample);
 
 }  // namespace plab::link

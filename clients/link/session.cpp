@@ -22,7 +22,7 @@ std::string names_of(const std::vector<ServerInfo>& servers)
 
 }  // namespace
 
-ServerInfo server_of(const plab_v1_Server& s)
+ServerInfo server_of(const plab_v2_Server& s)
 {
     ServerInfo out;
     out.name = s.name, out.version = s.version, out.host = s.host, out.scene_file = s.scene_file;
@@ -37,7 +37,7 @@ ServerInfo server_of(const plab_v1_Server& s)
     out.playback = s.playback, out.rewind_from = s.rewind_from;
     for (std::uint32_t i = 0; i < s.snapshots._length; ++i)
     {
-        const plab_v1_KeptSnapshot& k = s.snapshots._buffer[i];
+        const plab_v2_KeptSnapshot& k = s.snapshots._buffer[i];
         out.snapshots.push_back({k.name, k.run, k.step, k.time, k.bytes});
     }
     out.recording = {s.recording.file, s.recording.trouble, s.recording.bytes, s.recording.messages, s.recording.dropped};
@@ -113,12 +113,12 @@ std::vector<ServerInfo> Session::servers_in(const std::string& partition, Second
     std::map<std::string, ServerInfo> seen;
     auto subscriber = wire::make_subscriber(participant_, partition);
     if (!subscriber) return {};
-    auto reader = wire::Reader<plab_v1_Server>::make(participant_, *subscriber);
+    auto reader = wire::Reader<plab_v2_Server>::make(participant_, *subscriber);
     if (!reader) return {};
     do {
         if (!wait_for(reader->entity(), DDS_DATA_AVAILABLE_STATUS, left_until(end))) break;
         (void)reader->take(
-            [&](const plab_v1_Server& s, const dds_sample_info_t& sample)
+            [&](const plab_v2_Server& s, const dds_sample_info_t& sample)
             {
                 if (sample.valid_data && sample.instance_state == DDS_IST_ALIVE)
                     seen[s.name] = server_of(s);

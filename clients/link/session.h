@@ -1,8 +1,8 @@
 /// A client's place on the bus: participant, partition of one server, typed readers.
 ///
 ///   auto session = link::Session::join(options);
-///   auto frames = session->reader<plab_v1_Frame>();
-///   while (session->wait(*frames, 1s)) frames->take([](const plab_v1_Frame& f, const dds_sample_info_t& info) { ... });
+///   auto frames = session->reader<plab_v2_Frame>();
+///   while (session->wait(*frames, 1s)) frames->take([](const plab_v2_Frame& f, const dds_sample_info_t& info) { ... });
 #pragma once
 
 #include <functional>
@@ -62,7 +62,7 @@ struct ServerInfo
     Recording recording = {};
 };
 
-ServerInfo server_of(const plab_v1_Server& sample);
+ServerInfo server_of(const plab_v2_Server& sample);
 
 class Session
 {

@@ -27,12 +27,12 @@ Severity severity_of(std::string_view word)
     return word == "warning" ? Severity::Warning : Severity::Failure;
 }
 
-bool Filter::wants(const plab_v1_EventInfo& e) const
+bool Filter::wants(const plab_v2_EventInfo& e) const
 {
-    return events && severity_of(e.severity) >= severity && begins_with_one(e.kind, kinds) && names_one({e.component, e.a, e.b}, objects);
+    return events && severity_of(e.severity) >= severity && begins_with_one(e.kind, kinds) && names_one({e.component_id, e.a, e.b}, objects);
 }
 
-bool Filter::wants(const plab_v1_CollisionInfo& c) const
+bool Filter::wants(const plab_v2_CollisionInfo& c) const
 {
     return collisions && severity == Severity::Info && begins_with_one(std::string("collision.") + c.kind, kinds) &&
            names_one({c.detector, c.a, c.b}, objects);

@@ -27,8 +27,8 @@ struct Filter
     std::vector<std::string> objects = {};  ///< ids of which an entry names one, as component or participant; none: all
     Severity severity = Severity::Info;     ///< collisions are info
 
-    bool wants(const plab_v1_EventInfo& event) const;
-    bool wants(const plab_v1_CollisionInfo& collision) const;
+    bool wants(const plab_v2_EventInfo& event) const;
+    bool wants(const plab_v2_CollisionInfo& collision) const;
 };
 
 }  // namespace plab::logger

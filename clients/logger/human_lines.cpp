@@ -18,9 +18,9 @@ std::string number(double value)
     return text;
 }
 
-std::string vector(const plab_v1_Vector& v) { return "(" + number(v.x) + " " + number(v.y) + " " + number(v.z) + ")"; }
+std::string vector(const plab_v2_Vector& v) { return "(" + number(v.x) + " " + number(v.y) + " " + number(v.z) + ")"; }
 
-double length(const plab_v1_Vector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+double length(const plab_v2_Vector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
 /// "    5.0042 s  kind                  "
 std::string head(double time, std::string kind)
@@ -38,16 +38,16 @@ std::string note(const std::string& text) { return "-- " + text; }
 class HumanLines final : public Lines
 {
 public:
-    std::string event(const plab_v1_Events& sample, std::uint32_t index) const override
+    std::string event(const plab_v2_Events& sample, std::uint32_t index) const override
     {
-        const plab_v1_EventInfo& e = sample.entries._buffer[index];
+        const plab_v2_EventInfo& e = sample.entries._buffer[index];
         std::string line = head(e.time, e.kind);
         const auto add = [&](const std::string& word) { line += word.empty() ? "" : terminal_text(word) + " "; };
         if (severity_is_worth_saying(e.severity)) add(std::string(e.severity) + ":");
-        add(e.component);
+        add(e.component_id);
         add(e.a);
         add(e.b);
-        if (line.ends_with(' ') && *e.message != 0 && (*e.component != 0 || *e.a != 0)) line.back() = ':', line += ' ';
+        if (line.ends_with(' ') && *e.message != 0 && (*e.component_id != 0 || *e.a != 0)) line.back() = ':', line += ' ';
         add(e.message);
         for (std::uint32_t i = 0; i < e.values._length; ++i) line += (i == 0 ? "[" : " ") + number(e.values._buffer[i]);
         line += e.values._length > 0 ? "]" : "";
@@ -55,9 +55,9 @@ public:
         return line;
     }
 
-    std::string collision(const plab_v1_Collisions& sample, std::uint32_t index) const override
+    std::string collision(const plab_v2_Collisions& sample, std::uint32_t index) const override
     {
-        const plab_v1_CollisionInfo& c = sample.entries._buffer[index];
+        const plab_v2_CollisionInfo& c = sample.entries._buffer[index];
         std::string line = head(c.time, std::string("collision.") + c.kind) + terminal_text(c.a) + " " + terminal_text(c.b);
         if (std::string_view(c.kind) == "end") return line;
         line += "  at " + vector(c.position) + " m";
@@ -66,21 +66,21 @@ public:
         return line;
     }
 
-    std::string metrics(const plab_v1_Metrics& m) const override
+    std::string metrics(const plab_v2_Metrics& m) const override
     {
         std::string line = head(m.time, "metrics") + "step " + number(m.step_ns * 1e-3) + " us, x" + number(m.real_time_factor) +
                            " of real time, kinetic " + number(m.ledger.kinetic) + " J, unexplained " + number(m.ledger.unexplained) +
                            " J, " + std::to_string(m.contacts) + " contacts, deepest " + number(m.deepest) + " m";
         for (std::uint32_t i = 0; i < m.interactions._length; ++i)
         {
-            const plab_v1_InteractionMetrics& one = m.interactions._buffer[i];
-            line += "; " + terminal_text(one.component) + " " + terminal_text(one.resolved) + " " + number(one.cost_ns) + " ns, error " +
+            const plab_v2_InteractionMetrics& one = m.interactions._buffer[i];
+            line += "; " + terminal_text(one.component_id) + " " + terminal_text(one.resolved) + " " + number(one.cost_ns) + " ns, error " +
                     number(one.error) + (one.quarantined ? ", quarantined" : "");
         }
         return line;
     }
 
-    std::string status(const plab_v1_Server& s) const override
+    std::string status(const plab_v2_Server& s) const override
     {
         std::string line = head(s.time, "status") + "run " + std::to_string(s.run) + ", step " + std::to_string(s.step) + ", revision " +
                            std::to_string(s.revision) + ", x" + number(s.rate_reached) + (s.paused ? ", paused" : "");

@@ -22,7 +22,7 @@ void put(JsonWriter& json, const char* key, const T& value)
 {
     json.key(key).value(value);
 }
-void put(JsonWriter& json, const char* key, const plab_v1_Vector& v)
+void put(JsonWriter& json, const char* key, const plab_v2_Vector& v)
 {
     json.key(key).open('[').value(v.x).value(v.y).value(v.z).close(']');
 }
@@ -32,15 +32,15 @@ std::string end(JsonWriter& json) { return json.close('}').take(); }
 class JsonLines final : public Lines
 {
 public:
-    std::string event(const plab_v1_Events& sample, std::uint32_t index) const override
+    std::string event(const plab_v2_Events& sample, std::uint32_t index) const override
     {
-        const plab_v1_EventInfo& e = sample.entries._buffer[index];
+        const plab_v2_EventInfo& e = sample.entries._buffer[index];
         JsonWriter json = begin("event");
         put_place(json, sample, index);
         put(json, "time", e.time);
         put(json, "kind", e.kind);
         put(json, "severity", e.severity);
-        put(json, "component", e.component);
+        put(json, "component", e.component_id);
         put(json, "a", e.a);
         put(json, "b", e.b);
         put(json, "message", e.message);
@@ -50,9 +50,9 @@ public:
         return end(json);
     }
 
-    std::string collision(const plab_v1_Collisions& sample, std::uint32_t index) const override
+    std::string collision(const plab_v2_Collisions& sample, std::uint32_t index) const override
     {
-        const plab_v1_CollisionInfo& c = sample.entries._buffer[index];
+        const plab_v2_CollisionInfo& c = sample.entries._buffer[index];
         JsonWriter json = begin("collision");
         put_place(json, sample, index);
         put(json, "time", c.time);
@@ -67,7 +67,7 @@ public:
         return end(json);
     }
 
-    std::string metrics(const plab_v1_Metrics& m) const override
+    std::string metrics(const plab_v2_Metrics& m) const override
     {
         JsonWriter json = begin("metrics");
         put(json, "run", m.run);
@@ -94,7 +94,7 @@ public:
         return end(json);
     }
 
-    std::string status(const plab_v1_Server& s) const override
+    std::string status(const plab_v2_Server& s) const override
     {
         JsonWriter json = begin("status");
         put_server(json, link::server_of(s));
@@ -138,10 +138,10 @@ private:
         put(json, "step", sample.step);
     }
 
-    static void put_interaction(JsonWriter& json, const plab_v1_InteractionMetrics& i)
+    static void put_interaction(JsonWriter& json, const plab_v2_InteractionMetrics& i)
     {
         json.open('{');
-        put(json, "component", i.component);
+        put(json, "component", i.component_id);
         put(json, "requested", i.requested);
         put(json, "resolved", i.resolved);
         put(json, "cost_ns", i.cost_ns);

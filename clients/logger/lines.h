@@ -27,10 +27,10 @@ class Lines
 {
 public:
     virtual ~Lines() = default;
-    virtual std::string event(const plab_v1_Events& sample, std::uint32_t index) const = 0;
-    virtual std::string collision(const plab_v1_Collisions& sample, std::uint32_t index) const = 0;
-    virtual std::string metrics(const plab_v1_Metrics& sample) const = 0;
-    virtual std::string status(const plab_v1_Server& sample) const = 0;
+    virtual std::string event(const plab_v2_Events& sample, std::uint32_t index) const = 0;
+    virtual std::string collision(const plab_v2_Collisions& sample, std::uint32_t index) const = 0;
+    virtual std::string metrics(const plab_v2_Metrics& sample) const = 0;
+    virtual std::string status(const plab_v2_Server& sample) const = 0;
     virtual std::string gap(const Gap& gap) const = 0;
     virtual std::string run(std::uint64_t run) const = 0;
     virtual std::string server(ServerChange change, const link::ServerInfo& info) const = 0;

@@ -80,7 +80,7 @@ void Logger::say_server(ServerChange change, const link::ServerInfo& info)
 void Logger::take_server()
 {
     (void)server_.take(
-        [&](const plab_v1_Server& sample, const dds_sample_info_t& info)
+        [&](const plab_v2_Server& sample, const dds_sample_info_t& info)
         {
             if (!info.valid_data || info.instance_state != DDS_IST_ALIVE)
             {
@@ -110,10 +110,10 @@ void Logger::note_gap(const Sample& sample, const dds_sample_info_t& info, link:
 void Logger::take_events()
 {
     (void)events_.take(
-        [&](const plab_v1_Events& sample, const dds_sample_info_t& info)
+        [&](const plab_v2_Events& sample, const dds_sample_info_t& info)
         {
             if (!info.valid_data) return;
-            note_gap(sample, info, event_numbers_, wire::topic_of<plab_v1_Events>().name);
+            note_gap(sample, info, event_numbers_, wire::topic_of<plab_v2_Events>().name);
             for (std::uint32_t i = 0; i < sample.entries._length; ++i)
                 if (options_.filter.wants(sample.entries._buffer[i])) add(sample.run, sample.step, lines_->event(sample, i));
         });
@@ -122,10 +122,10 @@ void Logger::take_events()
 void Logger::take_collisions()
 {
     (void)collisions_.take(
-        [&](const plab_v1_Collisions& sample, const dds_sample_info_t& info)
+        [&](const plab_v2_Collisions& sample, const dds_sample_info_t& info)
         {
             if (!info.valid_data) return;
-            note_gap(sample, info, collision_numbers_, wire::topic_of<plab_v1_Collisions>().name);
+            note_gap(sample, info, collision_numbers_, wire::topic_of<plab_v2_Collisions>().name);
             for (std::uint32_t i = 0; i < sample.entries._length; ++i)
                 if (options_.filter.wants(sample.entries._buffer[i])) add(sample.run, sample.step, lines_->collision(sample, i));
         });
@@ -134,7 +134,7 @@ void Logger::take_collisions()
 void Logger::take_metrics()
 {
     (void)metrics_.take(
-        [&](const plab_v1_Metrics& sample, const dds_sample_info_t& info)
+        [&](const plab_v2_Metrics& sample, const dds_sample_info_t& info)
         {
             if (info.valid_data) add(sample.run, sample.step, lines_->metrics(sample));
         });

@@ -32,17 +32,17 @@ Result<Front> Front::open(std::uint32_t domain, const std::string& name, const s
 
 Result<void> Front::join(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber)
 {
-    if (auto done = take_into(replies_, wire::Writer<plab_v1_Reply>::make(participant, publisher)); !done) return done;
-    if (auto done = take_into(requests_, wire::Reader<plab_v1_Request>::make(participant, subscriber)); !done) return done;
-    if (auto done = take_into(others_, wire::Reader<plab_v1_Server>::make(participant, subscriber)); !done) return done;
-    return take_into(status_, wire::Writer<plab_v1_Server>::make(participant, publisher));
+    if (auto done = take_into(replies_, wire::Writer<plab_v2_Reply>::make(participant, publisher)); !done) return done;
+    if (auto done = take_into(requests_, wire::Reader<plab_v2_Request>::make(participant, subscriber)); !done) return done;
+    if (auto done = take_into(others_, wire::Reader<plab_v2_Server>::make(participant, subscriber)); !done) return done;
+    return take_into(status_, wire::Writer<plab_v2_Server>::make(participant, publisher));
 }
 
 Result<void> Front::use(recording::ByteView status) { return decoder_.decode(status, *recorded_); }
 
 void Front::send(const Standing& s)
 {
-    plab_v1_Server out = **recorded_;  // its texts and sequences are still those of the sample
+    plab_v2_Server out = **recorded_;  // its texts and sequences are still those of the sample
     out.name = text(identity_.name), out.version = text(identity_.version), out.host = text(identity_.host);
     out.process = identity_.process, out.started_ns = identity_.started_ns;
     out.run = s.run, out.step = s.step, out.time = s.time;
@@ -62,18 +62,18 @@ void Front::send(const Standing& s)
 void Front::answer(const Standing& standing)
 {
     (void)requests_.take(
-        [&](const plab_v1_Request& request, const dds_sample_info_t& info)
+        [&](const plab_v2_Request& request, const dds_sample_info_t& info)
         {
             if (info.valid_data) refuse(request, standing);
         },
         kMostAtOnce);
 }
 
-void Front::refuse(const plab_v1_Request& request, const Standing& standing)
+void Front::refuse(const plab_v2_Request& request, const Standing& standing)
 {
     const std::string why = "this is a playback of " + file_ + ": nothing in it can be changed";
     char* reasons[] = {text(why)};
-    plab_v1_Reply reply{};
+    plab_v2_Reply reply{};
     std::memcpy(reply.client, request.client, sizeof reply.client);
     reply.number = request.number;
     reply.outcome = const_cast<char*>("refused");
@@ -87,7 +87,7 @@ void Front::refuse(const plab_v1_Request& request, const Standing& standing)
 std::optional<std::string> Front::look_for_rival()
 {
     std::optional<std::string> why;
-    const auto compare = [&](const plab_v1_Server& other, const dds_sample_info_t& info)
+    const auto compare = [&](const plab_v2_Server& other, const dds_sample_info_t& info)
     {
         if (why || !info.valid_data || info.instance_state != DDS_IST_ALIVE || !wire::keeps_the_name(other, identity_)) return;
         why = "a server '" + identity_.name + "' runs already on host " + other.host + " (process " + std::to_string(other.process) +
@@ -99,7 +99,7 @@ std::optional<std::string> Front::look_for_rival()
 
 void Front::leave(dds_duration_t longest)
 {
-    plab_v1_Server key{};
+    plab_v2_Server key{};
     key.name = text(identity_.name);
     (void)status_.dispose(key);
     (void)dds_wait_for_acks(status_.entity().get(), longest);

@@ -49,17 +49,17 @@ private:
         : lock_(std::move(lock)), identity_(std::move(identity)), file_(std::move(file))
     {
     }
-    void refuse(const plab_v1_Request& request, const Standing& standing);
+    void refuse(const plab_v2_Request& request, const Standing& standing);
 
     wire::NameLock lock_;
     wire::Identity identity_;
     std::string file_;
     recording::Decoder decoder_;
-    std::unique_ptr<recording::Sample<plab_v1_Server>> recorded_ = std::make_unique<recording::Sample<plab_v1_Server>>();
-    wire::Writer<plab_v1_Server> status_;
-    wire::Reader<plab_v1_Server> others_;
-    wire::Reader<plab_v1_Request> requests_;
-    wire::Writer<plab_v1_Reply> replies_;
+    std::unique_ptr<recording::Sample<plab_v2_Server>> recorded_ = std::make_unique<recording::Sample<plab_v2_Server>>();
+    wire::Writer<plab_v2_Server> status_;
+    wire::Reader<plab_v2_Server> others_;
+    wire::Reader<plab_v2_Request> requests_;
+    wire::Writer<plab_v2_Reply> replies_;
     std::uint64_t refused_ = 0;
 };
 

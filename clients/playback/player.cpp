@@ -83,8 +83,8 @@ Player::Player(recording::Reader reader, Front front, const Pace& pace, const Op
       front_(std::move(front)),
       pace_(pace),
       loop_(options.loop),
-      frames_(recording::make_peek(wire::topic_of<plab_v1_Frame>())),
-      statuses_(recording::make_peek(wire::topic_of<plab_v1_Server>())),
+      frames_(recording::make_peek(wire::topic_of<plab_v2_Frame>())),
+      statuses_(recording::make_peek(wire::topic_of<plab_v2_Server>())),
       wanted_readers_(options.readers)
 {
     changes_.server = front_.name();
@@ -149,7 +149,7 @@ Player::~Player()
 
 std::uint32_t Player::readers() const
 {
-    const auto states = tracks_.find(wire::topic_of<plab_v1_Frame>().name);
+    const auto states = tracks_.find(wire::topic_of<plab_v2_Frame>().name);
     return states == tracks_.end() ? 0 : states->second->readers().now;
 }
 
@@ -255,8 +255,8 @@ std::uint64_t Player::run_at(std::uint64_t time) const
         const auto glance = peek.at((*kept)->data);
         return glance ? glance->run : 0;
     };
-    const std::uint64_t of_status = run(*statuses_, reader_.last_at(wire::topic_of<plab_v1_Server>().name, time));
-    const std::uint64_t of_frame = run(*frames_, reader_.last_at(wire::topic_of<plab_v1_Frame>().name, time));
+    const std::uint64_t of_status = run(*statuses_, reader_.last_at(wire::topic_of<plab_v2_Server>().name, time));
+    const std::uint64_t of_frame = run(*frames_, reader_.last_at(wire::topic_of<plab_v2_Frame>().name, time));
     return std::max(of_status, of_frame);
 }
 
@@ -275,8 +275,8 @@ void Player::tell_status(Clock::time_point now, bool at_once)
         return track == nullptr ? 0 : track->number_shift();
     };
     standing_.run_shift = changes_.run_shift;
-    standing_.event_shift = shift(wire::topic_of<plab_v1_Events>().name);
-    standing_.collision_shift = shift(wire::topic_of<plab_v1_Collisions>().name);
+    standing_.event_shift = shift(wire::topic_of<plab_v2_Events>().name);
+    standing_.collision_shift = shift(wire::topic_of<plab_v2_Collisions>().name);
     front_.send(standing_);
 }
 

@@ -9,32 +9,32 @@ namespace
 
 const std::string& states()
 {
-    static const std::string name = wire::topic_of<plab_v1_Frame>().name;
+    static const std::string name = wire::topic_of<plab_v2_Frame>().name;
     return name;
 }
 const std::string& status()
 {
-    static const std::string name = wire::topic_of<plab_v1_Server>().name;
+    static const std::string name = wire::topic_of<plab_v2_Server>().name;
     return name;
 }
 const std::string& scene()
 {
-    static const std::string name = wire::topic_of<plab_v1_Scene>().name;
+    static const std::string name = wire::topic_of<plab_v2_Scene>().name;
     return name;
 }
 const std::string& metrics()
 {
-    static const std::string name = wire::topic_of<plab_v1_Metrics>().name;
+    static const std::string name = wire::topic_of<plab_v2_Metrics>().name;
     return name;
 }
 const std::string& snapshots()
 {
-    static const std::string name = wire::topic_of<plab_v1_Snapshot>().name;
+    static const std::string name = wire::topic_of<plab_v2_Snapshot>().name;
     return name;
 }
 const std::string& gone()
 {
-    static const std::string name = wire::topic_of<plab_v1_Gone>().name;
+    static const std::string name = wire::topic_of<plab_v2_Gone>().name;
     return name;
 }
 

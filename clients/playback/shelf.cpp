@@ -12,13 +12,13 @@ namespace
 
 const std::array<const wire::Topic*, 5>& catalogue_topics()
 {
-    static const std::array<const wire::Topic*, 5> topics{&wire::topic_of<plab_v1_Object>(), &wire::topic_of<plab_v1_Shape>(),
-                                                          &wire::topic_of<plab_v1_Interaction>(), &wire::topic_of<plab_v1_Type>(),
-                                                          &wire::topic_of<plab_v1_Scene>()};
+    static const std::array<const wire::Topic*, 5> topics{&wire::topic_of<plab_v2_SceneObject>(), &wire::topic_of<plab_v2_Shape>(),
+                                                          &wire::topic_of<plab_v2_Interaction>(), &wire::topic_of<plab_v2_Type>(),
+                                                          &wire::topic_of<plab_v2_Scene>()};
     return topics;
 }
 
-const char* gone_topic() { return wire::topic_of<plab_v1_Gone>().name; }
+const char* gone_topic() { return wire::topic_of<plab_v2_Gone>().name; }
 
 }  // namespace
 
@@ -44,10 +44,10 @@ Result<Place> Shelf::put(const std::string& topic, recording::ByteView bytes)
 
 Result<std::set<Place>> Shelf::remove(recording::ByteView gone)
 {
-    recording::Sample<plab_v1_Gone> sample;
+    recording::Sample<plab_v2_Gone> sample;
     recording::Decoder decoder;
     if (auto decoded = decoder.decode(gone, sample); !decoded) return decoded.errors();
-    const std::string topic = sample->topic_name, key = sample->component;
+    const std::string topic = sample->topic_name, key = sample->component_id;
     std::set<Place> out;
     for (auto entry = entries_.begin(); entry != entries_.end();)
     {

@@ -19,35 +19,35 @@ void put_run(T& sample, const Changes& changes)
 {
     sample.run += changes.run_shift;
 }
-void put_run(plab_v1_Shape&, const Changes&) {}
-void put_run(plab_v1_Type&, const Changes&) {}
-void put_run(plab_v1_Scene& scene, const Changes& changes)
+void put_run(plab_v2_Shape&, const Changes&) {}
+void put_run(plab_v2_Type&, const Changes&) {}
+void put_run(plab_v2_Scene& scene, const Changes& changes)
 {
     scene.run += changes.run_shift;
-    scene.server = text(changes.server);
+    scene.server_name = text(changes.server);
 }
 
 template <class T>
 void put_key(T&, const std::string&)
 {
 }
-void put_key(plab_v1_Scene& scene, const std::string& key) { scene.server = text(key); }
-void put_key(plab_v1_Object& object, const std::string& key) { object.component = text(key); }
-void put_key(plab_v1_Shape& shape, const std::string& key) { shape.component = text(key); }
-void put_key(plab_v1_Interaction& interaction, const std::string& key) { interaction.component = text(key); }
-void put_key(plab_v1_Type& type, const std::string& key) { type.type_name = text(key); }
-void put_key(plab_v1_Image& image, const std::string& key) { image.camera = text(key); }
+void put_key(plab_v2_Scene& scene, const std::string& key) { scene.server_name = text(key); }
+void put_key(plab_v2_SceneObject& object, const std::string& key) { object.component_id = text(key); }
+void put_key(plab_v2_Shape& shape, const std::string& key) { shape.component_id = text(key); }
+void put_key(plab_v2_Interaction& interaction, const std::string& key) { interaction.component_id = text(key); }
+void put_key(plab_v2_Type& type, const std::string& key) { type.type_name = text(key); }
+void put_key(plab_v2_Image& image, const std::string& key) { image.camera = text(key); }
 
 template <class T>
-constexpr bool kHasKey = std::is_same_v<T, plab_v1_Scene> || std::is_same_v<T, plab_v1_Object> || std::is_same_v<T, plab_v1_Shape> ||
-                         std::is_same_v<T, plab_v1_Interaction> || std::is_same_v<T, plab_v1_Type> || std::is_same_v<T, plab_v1_Image>;
+constexpr bool kHasKey = std::is_same_v<T, plab_v2_Scene> || std::is_same_v<T, plab_v2_SceneObject> || std::is_same_v<T, plab_v2_Shape> ||
+                         std::is_same_v<T, plab_v2_Interaction> || std::is_same_v<T, plab_v2_Type> || std::is_same_v<T, plab_v2_Image>;
 
 template <class T>
 std::uint64_t entries_of(const T& sample)
 {
-    if constexpr (std::is_same_v<T, plab_v1_Hashes>)
+    if constexpr (std::is_same_v<T, plab_v2_Hashes>)
         return sample.values._length;
-    else if constexpr (std::is_same_v<T, plab_v1_Collisions> || std::is_same_v<T, plab_v1_Events>)
+    else if constexpr (std::is_same_v<T, plab_v2_Collisions> || std::is_same_v<T, plab_v2_Events>)
         return sample.entries._length;
     else
         return 1;
@@ -89,7 +89,7 @@ protected:
 private:
     T whole()
     {
-        if constexpr (std::is_same_v<T, plab_v1_Frame>)
+        if constexpr (std::is_same_v<T, plab_v2_Frame>)
             if (moved_only_) return whole_.with(*sample_);
         return *sample_;
     }
@@ -140,11 +140,11 @@ bool is_one_of(const wire::Topic& topic)
 Result<std::unique_ptr<Track>> make_track(const wire::Topic& topic, const wire::Entity& participant, const wire::Entity& publisher,
                                           bool moved_only)
 {
-    return make_one_of<plab_v1_Scene, plab_v1_Object, plab_v1_Shape, plab_v1_Interaction, plab_v1_Type, plab_v1_Frame, plab_v1_Collisions,
-                       plab_v1_Events, plab_v1_Metrics, plab_v1_Image, plab_v1_Journal, plab_v1_Hashes, plab_v1_Snapshot>(
+    return make_one_of<plab_v2_Scene, plab_v2_SceneObject, plab_v2_Shape, plab_v2_Interaction, plab_v2_Type, plab_v2_Frame, plab_v2_Collisions,
+                       plab_v2_Events, plab_v2_Metrics, plab_v2_Image, plab_v2_Journal, plab_v2_Hashes, plab_v2_Snapshot>(
         topic, {participant, publisher, moved_only});
 }
 
-bool is_played(const wire::Topic& topic) { return !is_one_of<plab_v1_Server, plab_v1_Request, plab_v1_Reply, plab_v1_Gone>(topic); }
+bool is_played(const wire::Topic& topic) { return !is_one_of<plab_v2_Server, plab_v2_Request, plab_v2_Reply, plab_v2_Gone>(topic); }
 
 }  // namespace plab::playback

@@ -75,18 +75,18 @@ recording::Metadata about(const link::ServerInfo& server, const Options& options
 
 Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::string>& names)
 {
-    const auto on_bus = [](const wire::Topic& t) { return !is_topic<plab_v1_Gone>(t); };
+    const auto on_bus = [](const wire::Topic& t) { return !is_topic<plab_v2_Gone>(t); };
     std::vector<const wire::Topic*> out;
     for (const wire::Topic& t : wire::topics())
     {
         const bool is_named = std::find(names.begin(), names.end(), t.name) != names.end();
-        if (on_bus(t) && (is_named || (names.empty() && !is_topic<plab_v1_Image>(t)))) out.push_back(&t);
+        if (on_bus(t) && (is_named || (names.empty() && !is_topic<plab_v2_Image>(t)))) out.push_back(&t);
     }
     for (const std::string& name : names)
         if (std::none_of(out.begin(), out.end(), [&](const wire::Topic* t) { return name == t->name; }))
             return reason("'" + name + "' is no topic of pLab's: plabctl topics lists them");
     // States last: who sees that they are read knows that the others are.
-    std::stable_partition(out.begin(), out.end(), [](const wire::Topic* t) { return !is_topic<plab_v1_Frame>(*t); });
+    std::stable_partition(out.begin(), out.end(), [](const wire::Topic* t) { return !is_topic<plab_v2_Frame>(*t); });
     return out;
 }
 
@@ -102,7 +102,7 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const link::Session& session, c
     auto topics = choose_topics(options.topics);
     if (!topics) return topics.errors();
     // Without plab/server nobody would see the server go.
-    const wire::Topic* const presence = &wire::topic_of<plab_v1_Server>();
+    const wire::Topic* const presence = &wire::topic_of<plab_v2_Server>();
     if (std::find(topics->begin(), topics->end(), presence) == topics->end()) topics->insert(topics->begin(), presence);
     auto tape = Tape::open(options.tape, about(server, options));
     if (!tape) return tape.errors();
@@ -189,7 +189,7 @@ void Recorder::look_at(Arrived& sample)
         ++broken_;
         return;
     }
-    if (is_topic<plab_v1_Server>(*track.topic)) note_server(*glance);
+    if (is_topic<plab_v2_Server>(*track.topic)) note_server(*glance);
     if (state_ != State::Goes) return;
     const std::uint64_t log_time = glance->time && glance->run > 0 ? timeline_.at(glance->run, *glance->time) : timeline_.now();
     run_ = std::max(run_, glance->run);
@@ -197,7 +197,7 @@ void Recorder::look_at(Arrived& sample)
     track.last_log_time = log_time;
     const auto stamp_ns = static_cast<std::uint64_t>(glance->stamp_ns > 0 ? glance->stamp_ns : sample.written_ns);
     if (!is_left_out(track, *glance)) keep(track, *glance, {track.topic, log_time, stamp_ns, std::move(sample.data)});
-    const bool tells_time = is_topic<plab_v1_Frame>(*track.topic) || is_topic<plab_v1_Server>(*track.topic);
+    const bool tells_time = is_topic<plab_v2_Frame>(*track.topic) || is_topic<plab_v2_Server>(*track.topic);
     if (options_.until && tells_time && *glance->time >= *options_.until - kSameTime) state_ = State::Done;
 }
 
@@ -215,7 +215,7 @@ void Recorder::keep(const Track& track, const recording::Glance& glance, Message
 void Recorder::look_at_gone(const Arrived& sample)
 {
     const wire::Topic& topic = *sample.track->topic;
-    if (is_topic<plab_v1_Server>(topic))
+    if (is_topic<plab_v2_Server>(topic))
     {
         state_ = State::Gone;
         partings_.forget();
@@ -223,7 +223,7 @@ void Recorder::look_at_gone(const Arrived& sample)
     }
     const std::string key = recording::key_of_gone(sample.data);
     // Metrics and replies have no instances that a scene could lose.
-    if (key.empty() || is_topic<plab_v1_Reply>(topic)) return;
+    if (key.empty() || is_topic<plab_v2_Reply>(topic)) return;
     partings_.add({topic.name, key, run_, timeline_.now(), static_cast<std::uint64_t>(sample.written_ns)}, Clock::now());
 }
 
@@ -245,7 +245,7 @@ bool Recorder::is_left_out(const Track& track, const recording::Glance& glance)
     const bool is_asked_for =
         options_.topics.empty() || std::find(options_.topics.begin(), options_.topics.end(), track.topic->name) != options_.topics.end();
     if (!is_asked_for) return true;
-    if (!options_.state_rate || !is_topic<plab_v1_Frame>(*track.topic)) return false;
+    if (!options_.state_rate || !is_topic<plab_v2_Frame>(*track.topic)) return false;
     if (!next_frame_ || next_frame_->first != glance.run) next_frame_ = {glance.run, *glance.time};
     if (*glance.time < next_frame_->second - kSameTime) return true;
     // On a grid of its own: a frame that is late does not make all that follow late.
@@ -258,12 +258,12 @@ void Recorder::write(const std::vector<Parting>& partings)
 {
     for (const Parting& p : partings)
     {
-        plab_v1_Gone gone{};
+        plab_v2_Gone gone{};
         std::string topic = p.topic, key = p.key;
-        gone.run = p.run, gone.topic_name = topic.data(), gone.component = key.data();
+        gone.run = p.run, gone.topic_name = topic.data(), gone.component_id = key.data();
         const auto bytes = encoder_.encode(gone);
         if (!bytes) continue;  // two texts and a number are always a sample
-        (void)tape_->put({&wire::topic_of<plab_v1_Gone>(), p.log_time, p.publish_time, recording::Bytes(bytes->begin(), bytes->end())});
+        (void)tape_->put({&wire::topic_of<plab_v2_Gone>(), p.log_time, p.publish_time, recording::Bytes(bytes->begin(), bytes->end())});
     }
 }
 

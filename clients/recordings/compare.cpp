@@ -9,13 +9,13 @@ namespace plab::recordings
 namespace
 {
 
-double dot(const plab_v1_Rotation& p, const plab_v1_Rotation& q) { return p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z; }
+double dot(const plab_v2_Rotation& p, const plab_v2_Rotation& q) { return p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z; }
 
-std::array<ComponentPair, 13> pairs_of(const plab_v1_BodyState& a, const plab_v1_BodyState& b)
+std::array<ComponentPair, 13> pairs_of(const plab_v2_BodyState& a, const plab_v2_BodyState& b)
 {
     const double sign = dot(a.orientation, b.orientation) < 0 ? -1 : 1;
-    const plab_v1_Rotation& p = a.orientation;
-    const plab_v1_Rotation q{sign * b.orientation.w, sign * b.orientation.x, sign * b.orientation.y, sign * b.orientation.z};
+    const plab_v2_Rotation& p = a.orientation;
+    const plab_v2_Rotation q{sign * b.orientation.w, sign * b.orientation.x, sign * b.orientation.y, sign * b.orientation.z};
     return {{{"position.x", a.position.x, b.position.x},
              {"position.y", a.position.y, b.position.y},
              {"position.z", a.position.z, b.position.z},
@@ -58,7 +58,7 @@ bool Comparison::Side::next()
 {
     while (const Entry* entry = stream.next())
     {
-        const auto* frame = entry->as<plab_v1_Frame>();
+        const auto* frame = entry->as<plab_v2_Frame>();
         if (frame == nullptr) continue;
         ++frames;
         runs.note(*entry);
@@ -112,8 +112,8 @@ void Comparison::note_missing()
             const auto there = other.handle_of(id, handle);
             if (!there || (other.merged.find_body(*there) == nullptr && other.merged.find_shaft(*there) == nullptr)) out.insert(id);
         };
-        for (const plab_v1_BodyState& body : side.merged.bodies()) note_one(body.handle);
-        for (const plab_v1_ShaftState& shaft : side.merged.shafts()) note_one(shaft.handle);
+        for (const plab_v2_BodyState& body : side.merged.bodies()) note_one(body.handle);
+        for (const plab_v2_ShaftState& shaft : side.merged.shafts()) note_one(shaft.handle);
     };
     note(a_, b_, only_a_), note(b_, a_, only_b_);
 }
@@ -125,7 +125,7 @@ void Comparison::for_each(const std::function<void(const ComparedObject&)>& use)
     partners_of_ = runs;
     std::size_t found = 0;
     ComparedObject object;
-    for (const plab_v1_BodyState& body : a_.merged.bodies())
+    for (const plab_v2_BodyState& body : a_.merged.bodies())
     {
         const Partner& partner = partner_of(body.handle);
         object.body_a = &body, object.body_b = partner.handle ? b_.merged.find_body(*partner.handle) : nullptr;
@@ -135,7 +135,7 @@ void Comparison::for_each(const std::function<void(const ComparedObject&)>& use)
         ++found, use(object);
     }
     object.body_a = object.body_b = nullptr;
-    for (const plab_v1_ShaftState& shaft : a_.merged.shafts())
+    for (const plab_v2_ShaftState& shaft : a_.merged.shafts())
     {
         const Partner& partner = partner_of(shaft.handle);
         object.shaft_a = &shaft, object.shaft_b = partner.handle ? b_.merged.find_shaft(*partner.handle) : nullptr;

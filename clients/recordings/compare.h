@@ -36,10 +36,10 @@ double size_of(std::span<const ComponentPair> pairs);
 struct ComparedObject
 {
     std::string id;
-    const plab_v1_BodyState* body_a = nullptr;
-    const plab_v1_BodyState* body_b = nullptr;
-    const plab_v1_ShaftState* shaft_a = nullptr;
-    const plab_v1_ShaftState* shaft_b = nullptr;
+    const plab_v2_BodyState* body_a = nullptr;
+    const plab_v2_BodyState* body_b = nullptr;
+    const plab_v2_ShaftState* shaft_a = nullptr;
+    const plab_v2_ShaftState* shaft_b = nullptr;
     std::span<const ComponentPair> differences;  ///< all components, also those that are equal
 };
 

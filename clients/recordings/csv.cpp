@@ -39,9 +39,9 @@ CsvRow& CsvRow::none(int cells)
     return *this;
 }
 
-CsvRow& CsvRow::vector(const plab_v1_Vector& value) { return real(value.x).real(value.y).real(value.z); }
+CsvRow& CsvRow::vector(const plab_v2_Vector& value) { return real(value.x).real(value.y).real(value.z); }
 
-CsvRow& CsvRow::rotation(const plab_v1_Rotation& value) { return real(value.w).real(value.x).real(value.y).real(value.z); }
+CsvRow& CsvRow::rotation(const plab_v2_Rotation& value) { return real(value.w).real(value.x).real(value.y).real(value.z); }
 
 CsvRow& CsvRow::seconds(std::uint64_t nanoseconds)
 {

@@ -21,8 +21,8 @@ public:
     requires std::is_integral_v<T> CsvRow& whole(T value) { return put(std::to_string(value)); }
     CsvRow& none() { return put(""); }
     CsvRow& none(int cells);
-    CsvRow& vector(const plab_v1_Vector& value);
-    CsvRow& rotation(const plab_v1_Rotation& value);
+    CsvRow& vector(const plab_v2_Vector& value);
+    CsvRow& rotation(const plab_v2_Rotation& value);
     /// Nanoseconds as seconds, all nine digits.
     CsvRow& seconds(std::uint64_t nanoseconds);
     /// 16 hexadecimal digits.

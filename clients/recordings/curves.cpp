@@ -23,8 +23,8 @@ public:
 
     void note(const Entry& entry)
     {
-        if (const auto* frame = entry.as<plab_v1_Frame>()) note_frame(*frame, seconds(entry.log_time));
-        if (const auto* metrics = entry.as<plab_v1_Metrics>()) note_metrics(*metrics, seconds(entry.log_time));
+        if (const auto* frame = entry.as<plab_v2_Frame>()) note_frame(*frame, seconds(entry.log_time));
+        if (const auto* metrics = entry.as<plab_v2_Metrics>()) note_metrics(*metrics, seconds(entry.log_time));
     }
 
     std::vector<figures::Curve> take()
@@ -50,7 +50,7 @@ private:
         c.run = run, c.handle = log_->things().handle_of(run, c.quantity.id);
     }
 
-    void note_frame(const plab_v1_Frame& frame, double time)
+    void note_frame(const plab_v2_Frame& frame, double time)
     {
         merged_.note(frame);
         for (Course& c : courses_)
@@ -58,8 +58,8 @@ private:
             if (c.quantity.source != Quantity::Source::Object) continue;
             begin_run(c, frame.run);
             if (!c.handle) continue;
-            const plab_v1_BodyState* const body = merged_.find_body(*c.handle);
-            const plab_v1_ShaftState* const shaft = body == nullptr ? merged_.find_shaft(*c.handle) : nullptr;
+            const plab_v2_BodyState* const body = merged_.find_body(*c.handle);
+            const plab_v2_ShaftState* const shaft = body == nullptr ? merged_.find_shaft(*c.handle) : nullptr;
             if (const auto value = body != nullptr    ? value_of(c.quantity, *body)
                                    : shaft != nullptr ? value_of(c.quantity, *shaft)
                                                       : std::nullopt)
@@ -67,7 +67,7 @@ private:
         }
     }
 
-    void note_metrics(const plab_v1_Metrics& metrics, double time)
+    void note_metrics(const plab_v2_Metrics& metrics, double time)
     {
         for (Course& c : courses_)
         {
@@ -90,14 +90,14 @@ std::string words_of(const Swap& swap) { return swap.component + ": " + (swap.fr
 /// Several of one kind in a step are one mark.
 void add_events(const Entry& entry, bool all, std::vector<Moment>& out)
 {
-    const auto* events = entry.as<plab_v1_Events>();
+    const auto* events = entry.as<plab_v2_Events>();
     if (events == nullptr) return;
     for (std::uint32_t i = 0; i < events->entries._length; ++i)
     {
-        const plab_v1_EventInfo& e = events->entries._buffer[i];
+        const plab_v2_EventInfo& e = events->entries._buffer[i];
         const bool is_info = std::string_view(e.severity) == "info";
         if (is_info && !all) continue;
-        const std::string words = std::string(e.kind) + ": " + e.component + " " + e.message;
+        const std::string words = std::string(e.kind) + ": " + e.component_id + " " + e.message;
         const double at = seconds(entry.log_time);
         if (!out.empty() && out.back().at == at && out.back().words == words) continue;
         out.push_back({at, is_info ? Moment::Kind::Notice : Moment::Kind::Alarm, words});

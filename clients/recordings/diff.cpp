@@ -31,7 +31,7 @@ public:
         {
             const Entry* const entry = stream_.next();
             if (entry == nullptr) return {};
-            const auto* hashes = entry->as<plab_v1_Hashes>();
+            const auto* hashes = entry->as<plab_v2_Hashes>();
             if (hashes == nullptr) continue;
             runs_.note(*entry);
             values_.assign(hashes->values._buffer, hashes->values._buffer + hashes->values._length);
@@ -78,7 +78,7 @@ void compare_hashes(const Log& log_a, const Log& log_b, Difference& out)
     out.runs_a = a.runs(), out.runs_b = b.runs();
 }
 
-double angle_between(const plab_v1_Rotation& p, const plab_v1_Rotation& q)
+double angle_between(const plab_v2_Rotation& p, const plab_v2_Rotation& q)
 {
     // From the length of the chord: exact for small angles, where the arc cosine of a product is not.
     const double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;
@@ -86,7 +86,7 @@ double angle_between(const plab_v1_Rotation& p, const plab_v1_Rotation& q)
     return 4 * std::asin(std::min(1.0, 0.5 * std::sqrt(w * w + x * x + y * y + z * z)));
 }
 
-double distance(const plab_v1_Vector& p, const plab_v1_Vector& q) { return std::hypot(p.x - q.x, p.y - q.y, p.z - q.z); }
+double distance(const plab_v2_Vector& p, const plab_v2_Vector& q) { return std::hypot(p.x - q.x, p.y - q.y, p.z - q.z); }
 
 class GrowthTable
 {
@@ -114,7 +114,7 @@ public:
     }
 
 private:
-    static void note_final(Growth& growth, const plab_v1_BodyState& a, const plab_v1_BodyState& b)
+    static void note_final(Growth& growth, const plab_v2_BodyState& a, const plab_v2_BodyState& b)
     {
         growth.position = distance(a.position, b.position), growth.orientation = angle_between(a.orientation, b.orientation);
         growth.velocity = distance(a.linear_velocity, b.linear_velocity);

@@ -74,7 +74,7 @@ Result<std::vector<std::string>> tables_asked_for(const Log& log, const ExportOp
     if (topics->size() > 1 && !is_folder(options.out))
         return reason("several tables go to a folder: name one topic, or a folder that exists or ends with '/'");
     if (!topics->empty()) return topics;
-    if (!is_folder(options.out)) return asked_for(log, {wire::topic_of<plab_v1_Frame>().name});
+    if (!is_folder(options.out)) return asked_for(log, {wire::topic_of<plab_v2_Frame>().name});
     for (const std::string& topic : topics_in(log))
         if (find_table(topic) != nullptr) topics->push_back(topic);
     return topics;
@@ -160,8 +160,8 @@ private:
 std::vector<std::string> all_but_large(const Log& log)
 {
     std::vector<std::string> out = topics_in(log);
-    std::erase(out, wire::topic_of<plab_v1_Image>().name);
-    std::erase(out, wire::topic_of<plab_v1_Snapshot>().name);
+    std::erase(out, wire::topic_of<plab_v2_Image>().name);
+    std::erase(out, wire::topic_of<plab_v2_Snapshot>().name);
     return out;
 }
 

@@ -25,13 +25,13 @@ public:
     void note(const Entry& entry)
     {
         if (const auto place = place_of(entry)) note_run(place->run);
-        if (const auto* events = entry.as<plab_v1_Events>())
+        if (const auto* events = entry.as<plab_v2_Events>())
         {
             note_gap(*events, event_numbers_, entry.channel->topic);
             for (std::uint32_t i = 0; i < events->entries._length; ++i)
                 if (options_->filter.wants(events->entries._buffer[i])) add(lines_->event(*events, i));
         }
-        if (const auto* collisions = entry.as<plab_v1_Collisions>())
+        if (const auto* collisions = entry.as<plab_v2_Collisions>())
         {
             note_gap(*collisions, collision_numbers_, entry.channel->topic);
             for (std::uint32_t i = 0; i < collisions->entries._length; ++i)
@@ -84,16 +84,16 @@ public:
         {
             for (const char* id : ids) std::erase(objects_, id);
         };
-        if (const auto* events = entry.as<plab_v1_Events>())
+        if (const auto* events = entry.as<plab_v2_Events>())
             for (std::uint32_t i = 0; i < events->entries._length; ++i)
             {
-                const plab_v1_EventInfo& e = events->entries._buffer[i];
-                note_kind(e.kind), note_ids({e.component, e.a, e.b});
+                const plab_v2_EventInfo& e = events->entries._buffer[i];
+                note_kind(e.kind), note_ids({e.component_id, e.a, e.b});
             }
-        if (const auto* collisions = entry.as<plab_v1_Collisions>())
+        if (const auto* collisions = entry.as<plab_v2_Collisions>())
             for (std::uint32_t i = 0; i < collisions->entries._length; ++i)
             {
-                const plab_v1_CollisionInfo& c = collisions->entries._buffer[i];
+                const plab_v2_CollisionInfo& c = collisions->entries._buffer[i];
                 note_kind(std::string("collision.") + c.kind), note_ids({c.detector, c.a, c.b});
             }
     }

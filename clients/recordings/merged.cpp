@@ -28,7 +28,7 @@ const State* find(const Places& places, std::span<const State> states, std::uint
 
 }  // namespace
 
-void Merged::note(const plab_v1_Frame& frame)
+void Merged::note(const plab_v2_Frame& frame)
 {
     now_ = &whole_.with(frame);
     // Within a revision rows keep their places; new ones come behind them.
@@ -39,7 +39,7 @@ void Merged::note(const plab_v1_Frame& frame)
     bodies_ = places_of(bodies()), shafts_ = places_of(shafts());
 }
 
-const plab_v1_BodyState* Merged::find_body(std::uint32_t handle) const { return find(bodies_, bodies(), handle); }
-const plab_v1_ShaftState* Merged::find_shaft(std::uint32_t handle) const { return find(shafts_, shafts(), handle); }
+const plab_v2_BodyState* Merged::find_body(std::uint32_t handle) const { return find(bodies_, bodies(), handle); }
+const plab_v2_ShaftState* Merged::find_shaft(std::uint32_t handle) const { return find(shafts_, shafts(), handle); }
 
 }  // namespace plab::recordings

@@ -15,21 +15,21 @@ class Merged
 {
 public:
     /// The next frame; it may name only who moved.
-    void note(const plab_v1_Frame& frame);
+    void note(const plab_v2_Frame& frame);
 
     /// Valid until the next frame is noted.
-    const plab_v1_Frame& now() const { return *now_; }
-    std::span<const plab_v1_BodyState> bodies() const { return {now_->bodies._buffer, now_->bodies._length}; }
-    std::span<const plab_v1_ShaftState> shafts() const { return {now_->shafts._buffer, now_->shafts._length}; }
+    const plab_v2_Frame& now() const { return *now_; }
+    std::span<const plab_v2_BodyState> bodies() const { return {now_->bodies._buffer, now_->bodies._length}; }
+    std::span<const plab_v2_ShaftState> shafts() const { return {now_->shafts._buffer, now_->shafts._length}; }
     /// Null: no frame of this run and revision has named it.
-    const plab_v1_BodyState* find_body(std::uint32_t handle) const;
-    const plab_v1_ShaftState* find_shaft(std::uint32_t handle) const;
+    const plab_v2_BodyState* find_body(std::uint32_t handle) const;
+    const plab_v2_ShaftState* find_shaft(std::uint32_t handle) const;
 
 private:
     using Places = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // handle, place in the frame; sorted
 
     recording::WholeFrame whole_;
-    const plab_v1_Frame* now_ = nullptr;
+    const plab_v2_Frame* now_ = nullptr;
     Places bodies_, shafts_;
     std::uint64_t run_ = 0, revision_ = 0;  ///< that the places are of
 };

@@ -125,21 +125,21 @@ Error unknown(const std::string& text, const Things& things)
                   "; of the scene there are " + names_of(kSceneFields));
 }
 
-double component_of(const std::string& component, const plab_v1_Vector& v)
+double component_of(const std::string& component, const plab_v2_Vector& v)
 {
     if (component == "norm") return norm(v);
     return component == "x" ? v.x : (component == "y" ? v.y : v.z);
 }
 
-double component_of(const std::string& component, const plab_v1_Rotation& q)
+double component_of(const std::string& component, const plab_v2_Rotation& q)
 {
     if (component == "w") return q.w;
     return component == "x" ? q.x : (component == "y" ? q.y : q.z);
 }
 
-std::optional<double> scene_value(const Quantity& q, const plab_v1_Metrics& m)
+std::optional<double> scene_value(const Quantity& q, const plab_v2_Metrics& m)
 {
-    const plab_v1_Energy& e = m.ledger;
+    const plab_v2_EnergyLedger& e = m.ledger;
     if (q.what == "momentum") return component_of(q.component, m.momentum);
     if (q.what == "angular_momentum") return component_of(q.component, m.angular_momentum);
     const std::array<std::pair<std::string_view, double>, 11> values{{{"energy.kinetic", e.kinetic},
@@ -158,14 +158,14 @@ std::optional<double> scene_value(const Quantity& q, const plab_v1_Metrics& m)
     return {};
 }
 
-const plab_v1_InteractionMetrics* find(const plab_v1_Metrics& m, const std::string& id)
+const plab_v2_InteractionMetrics* find(const plab_v2_Metrics& m, const std::string& id)
 {
     for (std::uint32_t i = 0; i < m.interactions._length; ++i)
-        if (id == m.interactions._buffer[i].component) return &m.interactions._buffer[i];
+        if (id == m.interactions._buffer[i].component_id) return &m.interactions._buffer[i];
     return nullptr;
 }
 
-const plab_v1_Parameter* find_output(const plab_v1_InteractionMetrics& m, const std::string& name)
+const plab_v2_Parameter* find_output(const plab_v2_InteractionMetrics& m, const std::string& name)
 {
     for (std::uint32_t i = 0; i < m.outputs._length; ++i)
         if (name == m.outputs._buffer[i].name) return &m.outputs._buffer[i];
@@ -187,14 +187,14 @@ std::vector<double> numbers_in(std::string_view text)
 }
 
 /// Of a vector its length, unless a component is named.
-std::optional<double> output_value(const Quantity& q, const plab_v1_Parameter& output)
+std::optional<double> output_value(const Quantity& q, const plab_v2_Parameter& output)
 {
     const std::string_view text = output.text;
     if (text == "true" || text == "false") return text == "true" ? 1.0 : 0.0;
     const std::vector<double> numbers = numbers_in(text);
     if (numbers.size() == 3)
     {
-        const plab_v1_Vector v{numbers[0], numbers[1], numbers[2]};
+        const plab_v2_Vector v{numbers[0], numbers[1], numbers[2]};
         return component_of(q.component.empty() ? "norm" : q.component, v);
     }
     return numbers.size() == 1 && q.component.empty() ? std::optional(numbers[0]) : std::nullopt;
@@ -202,7 +202,7 @@ std::optional<double> output_value(const Quantity& q, const plab_v1_Parameter& o
 
 }  // namespace
 
-double norm(const plab_v1_Vector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+double norm(const plab_v2_Vector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
 std::string Quantity::name() const { return id + (id.empty() ? "" : ".") + what + (component.empty() ? "" : ".") + component; }
 
@@ -233,7 +233,7 @@ Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Thin
     return unknown(text, things);
 }
 
-std::optional<double> value_of(const Quantity& q, const plab_v1_BodyState& b)
+std::optional<double> value_of(const Quantity& q, const plab_v2_BodyState& b)
 {
     if (q.what == "position") return component_of(q.component, b.position);
     if (q.what == "orientation") return component_of(q.component, b.orientation);
@@ -242,31 +242,31 @@ std::optional<double> value_of(const Quantity& q, const plab_v1_BodyState& b)
     return q.what == "speed" ? std::optional(norm(b.linear_velocity)) : std::nullopt;
 }
 
-std::optional<double> value_of(const Quantity& q, const plab_v1_ShaftState& s)
+std::optional<double> value_of(const Quantity& q, const plab_v2_ShaftState& s)
 {
     if (q.what == "angle") return s.angle;
     return q.what == "speed" ? std::optional(s.speed) : std::nullopt;
 }
 
-std::optional<double> value_of(const Quantity& q, const plab_v1_Metrics& m)
+std::optional<double> value_of(const Quantity& q, const plab_v2_Metrics& m)
 {
     // The first sample of a run comes before its first step: nothing was measured.
     const bool is_measured = q.what == "cost" || q.what == "step_cost" || q.what == "real_time_factor";
     if (is_measured && m.step_ns == 0) return {};
     if (q.source == Source::Scene) return scene_value(q, m);
-    const plab_v1_InteractionMetrics* const i = find(m, q.id);
+    const plab_v2_InteractionMetrics* const i = find(m, q.id);
     if (i == nullptr) return {};
     if (q.what == "cost") return i->cost_ns;
     if (q.what == "error") return i->error;
     if (q.what == "work") return i->work;
-    const plab_v1_Parameter* const output = find_output(*i, q.what);
+    const plab_v2_Parameter* const output = find_output(*i, q.what);
     return output == nullptr ? std::nullopt : output_value(q, *output);
 }
 
-std::string unit_in(const Quantity& q, const plab_v1_Metrics& m)
+std::string unit_in(const Quantity& q, const plab_v2_Metrics& m)
 {
-    const plab_v1_InteractionMetrics* const i = find(m, q.id);
-    const plab_v1_Parameter* const output = i == nullptr ? nullptr : find_output(*i, q.what);
+    const plab_v2_InteractionMetrics* const i = find(m, q.id);
+    const plab_v2_Parameter* const output = i == nullptr ? nullptr : find_output(*i, q.what);
     return output == nullptr ? "" : output->unit;
 }
 

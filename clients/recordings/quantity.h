@@ -38,13 +38,13 @@ struct Quantity
 Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Things& things);
 
 /// Nothing: the sample does not have it.
-std::optional<double> value_of(const Quantity& quantity, const plab_v1_BodyState& body);
-std::optional<double> value_of(const Quantity& quantity, const plab_v1_ShaftState& shaft);
-std::optional<double> value_of(const Quantity& quantity, const plab_v1_Metrics& metrics);
+std::optional<double> value_of(const Quantity& quantity, const plab_v2_BodyState& body);
+std::optional<double> value_of(const Quantity& quantity, const plab_v2_ShaftState& shaft);
+std::optional<double> value_of(const Quantity& quantity, const plab_v2_Metrics& metrics);
 /// Of an output of an interaction; "" if there is none.
-std::string unit_in(const Quantity& quantity, const plab_v1_Metrics& metrics);
+std::string unit_in(const Quantity& quantity, const plab_v2_Metrics& metrics);
 
 /// sqrt(x^2 + y^2 + z^2)
-double norm(const plab_v1_Vector& v);
+double norm(const plab_v2_Vector& v);
 
 }  // namespace plab::recordings

@@ -47,7 +47,7 @@ void add_table(Page& page, const Row& columns, const std::vector<Row>& rows, std
     if (all > rows.size()) page.paragraph("The first " + std::to_string(rows.size()) + " of " + std::to_string(all) + ".");
 }
 
-std::string joined(const plab_v1_Operation& o)
+std::string joined(const plab_v2_Operation& o)
 {
     std::string out;
     for (std::uint32_t i = 0; i < o.values._length; ++i)
@@ -55,10 +55,10 @@ std::string joined(const plab_v1_Operation& o)
     return out;
 }
 
-Row row_of(const plab_v1_EventInfo& e, std::int64_t step, double log_time)
+Row row_of(const plab_v2_EventInfo& e, std::int64_t step, double log_time)
 {
     const std::string who =
-        std::string(e.component) + (*e.a != 0 ? std::string(" ") + e.a : "") + (*e.b != 0 ? std::string(" ") + e.b : "");
+        std::string(e.component_id) + (*e.a != 0 ? std::string(" ") + e.a : "") + (*e.b != 0 ? std::string(" ") + e.b : "");
     return {moment(log_time), whole(step), text(e.severity), text(e.kind), text(who), text(e.message)};
 }
 
@@ -114,10 +114,10 @@ void add_requests(Page& page, const Log& log)
     Stream stream = log.stream({"plab/journal"});
     while (const Entry* entry = stream.next())
     {
-        const auto* journal = entry->as<plab_v1_Journal>();
+        const auto* journal = entry->as<plab_v2_Journal>();
         for (std::uint32_t i = 0; journal != nullptr && i < journal->operations._length; ++i)
         {
-            const plab_v1_Operation& o = journal->operations._buffer[i];
+            const plab_v2_Operation& o = journal->operations._buffer[i];
             if (++all <= kMostRows)
                 rows.push_back({moment(seconds(entry->log_time)), whole(journal->step), text(o.verb), text(o.target), text(o.argument),
                                 text(joined(o)), text(journal->origin)});
@@ -142,9 +142,9 @@ void add_events(Page& page, const Log& log, const Summary& summary)
     Stream stream = log.stream({"plab/events"});
     while (const Entry* entry = stream.next())
     {
-        const auto* events = entry->as<plab_v1_Events>();
+        const auto* events = entry->as<plab_v2_Events>();
         for (std::uint32_t i = 0; events != nullptr && i < events->entries._length; ++i)
-            if (const plab_v1_EventInfo& e = events->entries._buffer[i]; std::string_view(e.severity) != "info" && ++all <= kMostRows)
+            if (const plab_v2_EventInfo& e = events->entries._buffer[i]; std::string_view(e.severity) != "info" && ++all <= kMostRows)
                 rows.push_back(row_of(e, events->step, seconds(entry->log_time)));
     }
     if (rows.empty()) return;

@@ -26,12 +26,12 @@ constexpr bool has_run = requires(const T& sample)
 };
 
 /// "reset", "load scenes/a.xml": the operation that begins a run.
-std::string cause_in(const plab_v1_Journal& journal)
+std::string cause_in(const plab_v2_Journal& journal)
 {
     constexpr std::array<std::string_view, 4> begins{"reset", "load", "restore", "rewind"};
     for (std::uint32_t i = 0; i < journal.operations._length; ++i)
     {
-        const plab_v1_Operation& o = journal.operations._buffer[i];
+        const plab_v2_Operation& o = journal.operations._buffer[i];
         if (std::find(begins.begin(), begins.end(), o.verb) == begins.end()) continue;
         const std::string_view what = *o.argument != 0 ? o.argument : o.target;
         return std::string(o.verb) + (what.empty() ? "" : " ") + std::string(what);
@@ -72,7 +72,7 @@ void Runs::note(const Entry& entry)
     if (!place) return;
     Run& run = at(place->run, entry.log_time);
     run.end = std::max(run.end, entry.log_time);
-    if (const auto* journal = entry.as<plab_v1_Journal>(); journal != nullptr && run.cause.empty()) run.cause = cause_in(*journal);
+    if (const auto* journal = entry.as<plab_v2_Journal>(); journal != nullptr && run.cause.empty()) run.cause = cause_in(*journal);
     if (!place->step || !place->time) return;
     if (!run.has_steps) run.first_step = *place->step, run.first_time = *place->time;
     run.last_step = run.has_steps ? std::max(run.last_step, *place->step) : *place->step;

@@ -19,7 +19,7 @@ constexpr int kMostNesting = 16;  // sequences in sequences
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Words ("plab::v1::Frame" is one), numbers and single signs; comments are left out.
+/// Words ("plab::v2::Frame" is one), numbers and single signs; comments are left out.
 std::vector<std::string> tokens_of(std::string_view text)
 {
     std::vector<std::string> out;

@@ -9,7 +9,7 @@
 namespace plab::recordings
 {
 
-/// The type `name` ("plab::v1::Frame") that an IDL text declares. What is understood: modules, structs, enums, typedefs,
+/// The type `name` ("plab::v2::Frame") that an IDL text declares. What is understood: modules, structs, enums, typedefs,
 /// sequences, arrays, bounds, annotations. An error says what is not.
 Result<link::DynamicTypePtr> type_in(std::string_view idl, const std::string& name);
 

@@ -11,7 +11,7 @@ namespace
 class Collector
 {
 public:
-    void note(const plab_v1_Metrics& metrics, double time)
+    void note(const plab_v2_Metrics& metrics, double time)
     {
         for (std::uint32_t i = 0; i < metrics.interactions._length; ++i) note(metrics.interactions._buffer[i], metrics, time);
     }
@@ -31,15 +31,15 @@ private:
         std::uint64_t measured = 0;  ///< samples of the last segment that have a cost
     };
 
-    void note(const plab_v1_InteractionMetrics& m, const plab_v1_Metrics& all, double time)
+    void note(const plab_v2_InteractionMetrics& m, const plab_v2_Metrics& all, double time)
     {
-        Course& course = courses_[m.component];
+        Course& course = courses_[m.component_id];
         const bool is_new_run = course.segments.empty() || course.segments.back().run != all.run;
         if (is_new_run || course.segments.back().algorithm != m.requested)
         {
             Segment& segment = course.segments.emplace_back();
             course.measured = 0;
-            segment.component = m.component, segment.algorithm = m.requested, segment.run = all.run, segment.begin = time;
+            segment.component = m.component_id, segment.algorithm = m.requested, segment.run = all.run, segment.begin = time;
         }
         if (is_new_run) course.last_work = m.work;
         Segment& now = course.segments.back();
@@ -63,7 +63,7 @@ std::vector<Segment> segments_of(const Log& log)
     Collector collector;
     Stream stream = log.stream({"plab/metrics"});
     while (const Entry* entry = stream.next())
-        if (const auto* metrics = entry->as<plab_v1_Metrics>()) collector.note(*metrics, seconds(entry->log_time));
+        if (const auto* metrics = entry->as<plab_v2_Metrics>()) collector.note(*metrics, seconds(entry->log_time));
     return collector.take();
 }
 

@@ -25,10 +25,10 @@ void Troubles::merge(const Troubles& other)
 struct Stream::Samples
 {
     recording::Decoder decoder;
-    std::tuple<Sample<plab_v1_Server>, Sample<plab_v1_Scene>, Sample<plab_v1_Object>, Sample<plab_v1_Shape>, Sample<plab_v1_Interaction>,
-               Sample<plab_v1_Type>, Sample<plab_v1_Frame>, Sample<plab_v1_Collisions>, Sample<plab_v1_Events>, Sample<plab_v1_Metrics>,
-               Sample<plab_v1_Request>, Sample<plab_v1_Reply>, Sample<plab_v1_Image>, Sample<plab_v1_Journal>, Sample<plab_v1_Hashes>,
-               Sample<plab_v1_Snapshot>, Sample<plab_v1_Gone>>
+    std::tuple<Sample<plab_v2_Server>, Sample<plab_v2_Scene>, Sample<plab_v2_SceneObject>, Sample<plab_v2_Shape>, Sample<plab_v2_Interaction>,
+               Sample<plab_v2_Type>, Sample<plab_v2_Frame>, Sample<plab_v2_Collisions>, Sample<plab_v2_Events>, Sample<plab_v2_Metrics>,
+               Sample<plab_v2_Request>, Sample<plab_v2_Reply>, Sample<plab_v2_Image>, Sample<plab_v2_Journal>, Sample<plab_v2_Hashes>,
+               Sample<plab_v2_Snapshot>, Sample<plab_v2_Gone>>
         all;
 };
 
@@ -51,11 +51,11 @@ const std::map<std::string_view, Stream::Decode>& Stream::table()
     static const auto made = []
     {
         std::map<std::string_view, Decode> out;
-        enter<plab_v1_Server>(out), enter<plab_v1_Scene>(out), enter<plab_v1_Object>(out), enter<plab_v1_Shape>(out);
-        enter<plab_v1_Interaction>(out), enter<plab_v1_Type>(out), enter<plab_v1_Frame>(out), enter<plab_v1_Collisions>(out);
-        enter<plab_v1_Events>(out), enter<plab_v1_Metrics>(out), enter<plab_v1_Request>(out), enter<plab_v1_Reply>(out);
-        enter<plab_v1_Image>(out), enter<plab_v1_Journal>(out), enter<plab_v1_Hashes>(out), enter<plab_v1_Snapshot>(out),
-            enter<plab_v1_Gone>(out);
+        enter<plab_v2_Server>(out), enter<plab_v2_Scene>(out), enter<plab_v2_SceneObject>(out), enter<plab_v2_Shape>(out);
+        enter<plab_v2_Interaction>(out), enter<plab_v2_Type>(out), enter<plab_v2_Frame>(out), enter<plab_v2_Collisions>(out);
+        enter<plab_v2_Events>(out), enter<plab_v2_Metrics>(out), enter<plab_v2_Request>(out), enter<plab_v2_Reply>(out);
+        enter<plab_v2_Image>(out), enter<plab_v2_Journal>(out), enter<plab_v2_Hashes>(out), enter<plab_v2_Snapshot>(out),
+            enter<plab_v2_Gone>(out);
         return out;
     }();
     return made;

@@ -2,7 +2,7 @@
 ///
 ///   Stream stream(reader, {.topics = {"plab/states"}});
 ///   while (const Entry* entry = stream.next())
-///       if (const auto* frame = entry->as<plab_v1_Frame>()) use(*frame);
+///       if (const auto* frame = entry->as<plab_v2_Frame>()) use(*frame);
 ///
 /// Memory: what the reader holds open, and one sample of each type.
 #pragma once
@@ -20,10 +20,10 @@ namespace plab::recordings
 
 /// The sample, of a topic of ours; nothing for what others write, or another version of the wire.
 using Content =
-    std::variant<std::monostate, const plab_v1_Server*, const plab_v1_Scene*, const plab_v1_Object*, const plab_v1_Shape*,
-                 const plab_v1_Interaction*, const plab_v1_Type*, const plab_v1_Frame*, const plab_v1_Collisions*, const plab_v1_Events*,
-                 const plab_v1_Metrics*, const plab_v1_Request*, const plab_v1_Reply*, const plab_v1_Image*, const plab_v1_Journal*,
-                 const plab_v1_Hashes*, const plab_v1_Snapshot*, const plab_v1_Gone*>;
+    std::variant<std::monostate, const plab_v2_Server*, const plab_v2_Scene*, const plab_v2_SceneObject*, const plab_v2_Shape*,
+                 const plab_v2_Interaction*, const plab_v2_Type*, const plab_v2_Frame*, const plab_v2_Collisions*, const plab_v2_Events*,
+                 const plab_v2_Metrics*, const plab_v2_Request*, const plab_v2_Reply*, const plab_v2_Image*, const plab_v2_Journal*,
+                 const plab_v2_Hashes*, const plab_v2_Snapshot*, const plab_v2_Gone*>;
 
 /// One message; valid until the stream goes on.
 struct Entry

@@ -25,11 +25,11 @@ std::uint64_t whole_number(const recording::Pairs& pairs, const std::string& key
 std::optional<std::pair<std::uint64_t, std::uint64_t>> numbers_of(const Entry& entry)
 {
     using Numbers = std::pair<std::uint64_t, std::uint64_t>;
-    if (const auto* f = entry.as<plab_v1_Frame>()) return Numbers{f->sequence_number, 1};
-    if (const auto* e = entry.as<plab_v1_Events>()) return Numbers{e->sequence_number, e->entries._length};
-    if (const auto* c = entry.as<plab_v1_Collisions>()) return Numbers{c->sequence_number, c->entries._length};
-    if (const auto* j = entry.as<plab_v1_Journal>()) return Numbers{j->sequence_number, 1};
-    if (const auto* h = entry.as<plab_v1_Hashes>()) return Numbers{h->sequence_number, h->values._length};
+    if (const auto* f = entry.as<plab_v2_Frame>()) return Numbers{f->sequence_number, 1};
+    if (const auto* e = entry.as<plab_v2_Events>()) return Numbers{e->sequence_number, e->entries._length};
+    if (const auto* c = entry.as<plab_v2_Collisions>()) return Numbers{c->sequence_number, c->entries._length};
+    if (const auto* j = entry.as<plab_v2_Journal>()) return Numbers{j->sequence_number, 1};
+    if (const auto* h = entry.as<plab_v2_Hashes>()) return Numbers{h->sequence_number, h->values._length};
     return {};
 }
 
@@ -44,13 +44,13 @@ public:
         note_topic(entry);
         runs_.note(entry);
         swaps_.note(entry);
-        if (const auto* frame = entry.as<plab_v1_Frame>()) note_frame(*frame);
-        if (const auto* events = entry.as<plab_v1_Events>()) note_events(*events);
-        if (const auto* collisions = entry.as<plab_v1_Collisions>()) note_collisions(*collisions);
-        if (entry.as<plab_v1_Journal>() != nullptr) ++out_.requests;
-        if (const auto* s = entry.as<plab_v1_Snapshot>())
+        if (const auto* frame = entry.as<plab_v2_Frame>()) note_frame(*frame);
+        if (const auto* events = entry.as<plab_v2_Events>()) note_events(*events);
+        if (const auto* collisions = entry.as<plab_v2_Collisions>()) note_collisions(*collisions);
+        if (entry.as<plab_v2_Journal>() != nullptr) ++out_.requests;
+        if (const auto* s = entry.as<plab_v2_Snapshot>())
             out_.snapshots.push_back({s->run, s->step, s->time, s->name, s->cause, s->data._length});
-        if (const auto* server = entry.as<plab_v1_Server>()) note_server(*server);
+        if (const auto* server = entry.as<plab_v2_Server>()) note_server(*server);
     }
 
     Summary take()
@@ -96,21 +96,21 @@ private:
         const auto missing = topic.numbers.note(kOneWriter, numbers->first, numbers->second);
         s.missing += missing.count, s.gaps += missing.count > 0 ? 1 : 0;
     }
-    void note_frame(const plab_v1_Frame& frame)
+    void note_frame(const plab_v2_Frame& frame)
     {
         out_.bodies = std::max<std::uint64_t>(out_.bodies, frame.bodies._length);
         out_.shafts = std::max<std::uint64_t>(out_.shafts, frame.shafts._length);
     }
-    void note_events(const plab_v1_Events& events)
+    void note_events(const plab_v2_Events& events)
     {
         for (std::uint32_t i = 0; i < events.entries._length; ++i)
             ++events_[{events.entries._buffer[i].kind, events.entries._buffer[i].severity}];
     }
-    void note_collisions(const plab_v1_Collisions& collisions)
+    void note_collisions(const plab_v2_Collisions& collisions)
     {
         for (std::uint32_t i = 0; i < collisions.entries._length; ++i) ++collisions_[collisions.entries._buffer[i].kind];
     }
-    void note_server(const plab_v1_Server& server)
+    void note_server(const plab_v2_Server& server)
     {
         for (std::uint32_t i = 0; i < server.dropped._length; ++i)
             out_.dropped[server.dropped._buffer[i].topic] = server.dropped._buffer[i].samples;
@@ -159,7 +159,7 @@ double TopicSummary::rate() const { return last > first ? static_cast<double>(me
 double Summary::state_bytes_per_object_second() const
 {
     for (const TopicSummary& topic : topics)
-        if (topic.name == wire::topic_of<plab_v1_Frame>().name) return per_object_second(*this, topic.bytes);
+        if (topic.name == wire::topic_of<plab_v2_Frame>().name) return per_object_second(*this, topic.bytes);
     return 0;
 }
 

@@ -16,12 +16,12 @@ bool is_same(const Change& change, const Swap& swap)
 
 void Swaps::note(const Entry& entry)
 {
-    const auto* journal = entry.as<plab_v1_Journal>();
+    const auto* journal = entry.as<plab_v2_Journal>();
     if (journal == nullptr) return;
     has_journal_ = true;
     for (std::uint32_t i = 0; i < journal->operations._length; ++i)
     {
-        const plab_v1_Operation& o = journal->operations._buffer[i];
+        const plab_v2_Operation& o = journal->operations._buffer[i];
         if (std::string_view(o.verb) != "swap") continue;
         swaps_.push_back({journal->run, journal->step, journal->time, entry.log_time, o.target, "", o.argument, journal->origin});
     }

@@ -33,13 +33,13 @@ template <class Values>
 std::string joined(const Values& values)
 {
     std::string out;
-    for (const plab_v1_NamedText& v : items(values)) out += (out.empty() ? "" : "; ") + std::string(v.name) + "=" + v.text;
+    for (const plab_v2_NamedText& v : items(values)) out += (out.empty() ? "" : "; ") + std::string(v.name) + "=" + v.text;
     return out;
 }
-std::string joined(const dds_sequence_plab_v1_Parameter& values)
+std::string joined(const dds_sequence_plab_v2_Parameter& values)
 {
     std::string out;
-    for (const plab_v1_Parameter& v : items(values)) out += (out.empty() ? "" : "; ") + std::string(v.name) + "=" + v.text;
+    for (const plab_v2_Parameter& v : items(values)) out += (out.empty() ? "" : "; ") + std::string(v.name) + "=" + v.text;
     return out;
 }
 
@@ -53,14 +53,14 @@ constexpr std::string_view kStates =
 void add_states(const Entry& entry, const Things& things, CsvRow& rows)
 {
     constexpr int kBodyCells = 13, kShaftCells = 2;
-    const auto* frame = entry.as<plab_v1_Frame>();
+    const auto* frame = entry.as<plab_v2_Frame>();
     if (frame == nullptr) return;
-    for (const plab_v1_BodyState& b : items(frame->bodies))
+    for (const plab_v2_BodyState& b : items(frame->bodies))
     {
         begin_row(rows, entry).text(things.name_of(frame->run, b.handle)).text("body");
         rows.vector(b.position).rotation(b.orientation).vector(b.linear_velocity).vector(b.angular_velocity).none(kShaftCells).end();
     }
-    for (const plab_v1_ShaftState& s : items(frame->shafts))
+    for (const plab_v2_ShaftState& s : items(frame->shafts))
     {
         begin_row(rows, entry).text(things.name_of(frame->run, s.handle)).text("shaft");
         rows.none(kBodyCells).real(s.angle).real(s.speed).end();
@@ -75,10 +75,10 @@ constexpr std::string_view kCollisions =
 
 void add_collisions(const Entry& entry, const Things&, CsvRow& rows)
 {
-    const auto* collisions = entry.as<plab_v1_Collisions>();
+    const auto* collisions = entry.as<plab_v2_Collisions>();
     if (collisions == nullptr) return;
     std::uint64_t number = collisions->sequence_number;
-    for (const plab_v1_CollisionInfo& c : items(collisions->entries))
+    for (const plab_v2_CollisionInfo& c : items(collisions->entries))
     {
         begin_row(rows, entry, c.time).whole(number++).text(c.kind).text(c.detector).text(c.a).text(c.b);
         rows.vector(c.position).vector(c.normal).vector(c.impulse).real(c.depth).end();
@@ -89,16 +89,16 @@ constexpr std::string_view kEvents = "number,kind,severity,component,a,b,message
 
 void add_events(const Entry& entry, const Things&, CsvRow& rows)
 {
-    const auto* events = entry.as<plab_v1_Events>();
+    const auto* events = entry.as<plab_v2_Events>();
     if (events == nullptr) return;
     std::uint64_t number = events->sequence_number;
-    for (const plab_v1_EventInfo& e : items(events->entries))
+    for (const plab_v2_EventInfo& e : items(events->entries))
     {
         CsvRow values;
         for (const double v : items(e.values)) values.real(v);
         std::string list = values.take();
         std::replace(list.begin(), list.end(), ',', ' ');
-        begin_row(rows, entry, e.time).whole(number++).text(e.kind).text(e.severity).text(e.component).text(e.a).text(e.b);
+        begin_row(rows, entry, e.time).whole(number++).text(e.kind).text(e.severity).text(e.component_id).text(e.a).text(e.b);
         rows.text(e.message).text(list).end();
     }
 }
@@ -115,14 +115,14 @@ constexpr std::string_view kMetrics =
 void add_metrics(const Entry& entry, const Things&, CsvRow& rows)
 {
     constexpr int kOfInteraction = 8, kOfScene = 16;
-    const auto* m = entry.as<plab_v1_Metrics>();
+    const auto* m = entry.as<plab_v2_Metrics>();
     if (m == nullptr) return;
     begin_row(rows, entry).none(kOfInteraction).real(m->step_ns).real(m->real_time_factor).real(m->ledger.kinetic).real(m->ledger.stored);
     rows.real(m->ledger.work).real(m->ledger.of_requests).real(m->ledger.unexplained).vector(m->momentum).vector(m->angular_momentum);
     rows.real(m->residual).real(m->deepest).whole(m->contacts).end();
-    for (const plab_v1_InteractionMetrics& i : items(m->interactions))
+    for (const plab_v2_InteractionMetrics& i : items(m->interactions))
     {
-        begin_row(rows, entry).text(i.component).text(i.requested).text(i.resolved).real(i.cost_ns).real(i.error).real(i.work);
+        begin_row(rows, entry).text(i.component_id).text(i.requested).text(i.resolved).real(i.cost_ns).real(i.error).real(i.work);
         rows.whole(i.quarantined ? 1 : 0).text(joined(i.outputs)).none(kOfScene).end();
     }
 }
@@ -133,7 +133,7 @@ constexpr std::string_view kServer =
 
 void add_server(const Entry& entry, const Things&, CsvRow& rows)
 {
-    const auto* s = entry.as<plab_v1_Server>();
+    const auto* s = entry.as<plab_v2_Server>();
     if (s == nullptr) return;
     begin_row(rows, entry).text(s->name).whole(s->paused ? 1 : 0).real(s->rate_asked).real(s->rate_reached).real(s->slipped);
     rows.text(s->overload).real(s->states_per_second).whole(s->requests_done).whole(s->requests_refused);
@@ -148,9 +148,9 @@ constexpr std::string_view kObjects =
 
 void add_objects(const Entry& entry, const Things&, CsvRow& rows)
 {
-    const auto* o = entry.as<plab_v1_Object>();
+    const auto* o = entry.as<plab_v2_SceneObject>();
     if (o == nullptr) return;
-    begin_row(rows, entry).text(o->component).text(o->name).text(o->type_name).text(o->shape_of).text(o->motion).real(o->mass);
+    begin_row(rows, entry).text(o->component_id).text(o->name).text(o->type_name).text(o->shape_of).text(o->motion).real(o->mass);
     rows.whole(o->handle).vector(o->position).rotation(o->orientation).whole(o->quarantined ? 1 : 0).text(joined(o->parameters)).end();
 }
 
@@ -158,12 +158,12 @@ constexpr std::string_view kInteractions = "interaction,name,type,family,since_s
 
 void add_interactions(const Entry& entry, const Things&, CsvRow& rows)
 {
-    const auto* i = entry.as<plab_v1_Interaction>();
+    const auto* i = entry.as<plab_v2_Interaction>();
     if (i == nullptr) return;
     std::string participants;
-    for (const plab_v1_Participants& p : items(i->roles))
+    for (const plab_v2_Participants& p : items(i->roles))
         for (const char* member : items(p.members)) participants += (participants.empty() ? "" : "; ") + std::string(p.role) + "=" + member;
-    begin_row(rows, entry).text(i->component).text(i->name).text(i->type_name).text(i->family).whole(i->since);
+    begin_row(rows, entry).text(i->component_id).text(i->name).text(i->type_name).text(i->family).whole(i->since);
     rows.text(participants).whole(i->quarantined ? 1 : 0).text(joined(i->parameters)).end();
 }
 
@@ -173,11 +173,11 @@ constexpr std::string_view kJournal = "number,origin,client,request,verb,target,
 
 void add_journal(const Entry& entry, const Things&, CsvRow& rows)
 {
-    const auto* j = entry.as<plab_v1_Journal>();
+    const auto* j = entry.as<plab_v2_Journal>();
     if (j == nullptr) return;
     std::string client;
     for (const std::uint8_t byte : j->client) client += "0123456789abcdef"[byte >> 4], client += "0123456789abcdef"[byte & 15];
-    for (const plab_v1_Operation& o : items(j->operations))
+    for (const plab_v2_Operation& o : items(j->operations))
     {
         begin_row(rows, entry).whole(j->sequence_number).text(j->origin).text(client).whole(j->number);
         rows.text(o.verb).text(o.target).text(o.argument).text(joined(o.values)).end();
@@ -186,7 +186,7 @@ void add_journal(const Entry& entry, const Things&, CsvRow& rows)
 
 void add_hashes(const Entry& entry, const Things&, CsvRow& rows)
 {
-    const auto* h = entry.as<plab_v1_Hashes>();
+    const auto* h = entry.as<plab_v2_Hashes>();
     if (h == nullptr) return;
     std::int64_t step = h->step;
     for (const std::uint64_t hash : items(h->values))
@@ -197,7 +197,7 @@ constexpr std::string_view kSnapshots = "name,cause,state_hash,data_bytes,bluepr
 
 void add_snapshots(const Entry& entry, const Things&, CsvRow& rows)
 {
-    const auto* s = entry.as<plab_v1_Snapshot>();
+    const auto* s = entry.as<plab_v2_Snapshot>();
     if (s == nullptr) return;
     begin_row(rows, entry).text(s->name).text(s->cause).hexadecimal(s->state_hash).whole(s->data._length);
     rows.whole(std::string_view(s->blueprint).size()).end();

@@ -8,18 +8,18 @@ namespace plab::recordings
 
 void Things::note(const Entry& entry)
 {
-    if (const auto* o = entry.as<plab_v1_Object>())
-        objects_[{o->run, o->handle}] = {o->component, std::string_view(o->shape_of) == "shaft", o->motion};
-    else if (const auto* i = entry.as<plab_v1_Interaction>())
+    if (const auto* o = entry.as<plab_v2_SceneObject>())
+        objects_[{o->run, o->handle}] = {o->component_id, std::string_view(o->shape_of) == "shaft", o->motion};
+    else if (const auto* i = entry.as<plab_v2_Interaction>())
         note(*i, entry.log_time);
 }
 
-void Things::note(const plab_v1_Interaction& interaction, std::uint64_t log_time)
+void Things::note(const plab_v2_Interaction& interaction, std::uint64_t log_time)
 {
-    Algorithm& now = algorithms_[interaction.component];
+    Algorithm& now = algorithms_[interaction.component_id];
     // A new run has the algorithms that its scene names: that is no swap.
     if (now.run == interaction.run && !now.type.empty() && now.type != interaction.type_name)
-        changes_.push_back({interaction.run, interaction.since, log_time, interaction.component, now.type, interaction.type_name});
+        changes_.push_back({interaction.run, interaction.since, log_time, interaction.component_id, now.type, interaction.type_name});
     now = {interaction.run, interaction.type_name};
 }
 

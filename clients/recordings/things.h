@@ -53,7 +53,7 @@ private:
         std::uint64_t run = 0;
         std::string type;
     };
-    void note(const plab_v1_Interaction& interaction, std::uint64_t log_time);
+    void note(const plab_v2_Interaction& interaction, std::uint64_t log_time);
 
     std::map<std::pair<std::uint64_t, std::uint32_t>, Thing> objects_;  ///< by run and handle
     std::map<std::string, Algorithm> algorithms_;                       ///< newest, by interaction

@@ -31,7 +31,7 @@ bool is_topic(const recording::Found& found)
 
 std::optional<link::Metrics> metrics_of(recording::ByteView bytes)
 {
-    recording::Sample<plab_v1_Metrics> sample;
+    recording::Sample<plab_v2_Metrics> sample;
     recording::Decoder decoder;
     if (!decoder.decode(bytes, sample)) return {};
     return link::metrics_of(*sample);
@@ -40,9 +40,9 @@ std::optional<link::Metrics> metrics_of(recording::ByteView bytes)
 /// The last ones until `time`, or the first ones; none: there are none.
 std::optional<link::Metrics> metrics_at(const recording::Reader& reader, std::uint64_t time)
 {
-    const auto last = reader.last_at(name_of<plab_v1_Metrics>(), time);
+    const auto last = reader.last_at(name_of<plab_v2_Metrics>(), time);
     if (last && *last) return metrics_of((*last)->data);
-    recording::Cursor cursor = reader.messages({{name_of<plab_v1_Metrics>()}});
+    recording::Cursor cursor = reader.messages({{name_of<plab_v2_Metrics>()}});
     const auto first = cursor.next();
     return first && *first ? metrics_of((*first)->message.data) : std::nullopt;
 }
@@ -53,8 +53,8 @@ Result<std::unique_ptr<Source>> FileSource::open(const std::string& file, std::o
 {
     auto reader = recording::open_recording(file);
     if (!reader) return reader.errors();
-    if (reader->channels_of({name_of<plab_v1_Object>()}).empty())
-        return reason(file + ": has no " + name_of<plab_v1_Object>() + ": there is nothing to draw");
+    if (reader->channels_of({name_of<plab_v2_SceneObject>()}).empty())
+        return reason(file + ": has no " + name_of<plab_v2_SceneObject>() + ": there is nothing to draw");
     std::unique_ptr<FileSource> out(new FileSource(reader.take()));
     out->start(from);
     return std::unique_ptr<Source>(std::move(out));
@@ -63,12 +63,12 @@ Result<std::unique_ptr<Source>> FileSource::open(const std::string& file, std::o
 /// Far into a file nobody wants to read all that was before. Time and time line differ by a constant within a run.
 void FileSource::start(std::optional<double> from)
 {
-    catalogue_.emplace(reader_.messages({{name_of<plab_v1_Scene>(), name_of<plab_v1_Object>(), name_of<plab_v1_Shape>(),
-                                          name_of<plab_v1_Interaction>(), name_of<plab_v1_Gone>()}}));
-    for (const wire::Topic* topic : {&wire::topic_of<plab_v1_Scene>(), &wire::topic_of<plab_v1_Object>(),
-                                     &wire::topic_of<plab_v1_Interaction>(), &wire::topic_of<plab_v1_Gone>()})
+    catalogue_.emplace(reader_.messages({{name_of<plab_v2_Scene>(), name_of<plab_v2_SceneObject>(), name_of<plab_v2_Shape>(),
+                                          name_of<plab_v2_Interaction>(), name_of<plab_v2_Gone>()}}));
+    for (const wire::Topic* topic : {&wire::topic_of<plab_v2_Scene>(), &wire::topic_of<plab_v2_SceneObject>(),
+                                     &wire::topic_of<plab_v2_Interaction>(), &wire::topic_of<plab_v2_Gone>()})
         peeks_.emplace(topic->name, recording::make_peek(*topic));
-    const std::vector<std::string> states{name_of<plab_v1_Frame>()};
+    const std::vector<std::string> states{name_of<plab_v2_Frame>()};
     frames_.emplace(reader_.messages({states}));
     const auto first = next_frame();
     const std::uint64_t log_time = first ? first->message.log_time : 0;
@@ -92,7 +92,7 @@ std::uint64_t FileSource::frame_that_leads_to(std::uint64_t first, std::uint64_t
     const auto about = reader_.metadata("plab");
     const bool moved_only = about && about->values.contains("states") && about->values.at("states") == "moved";
     if (moved_only) return first + (ahead > kBack ? ahead - kBack : 0);
-    const auto before = reader_.last_at(name_of<plab_v1_Frame>(), first + ahead);
+    const auto before = reader_.last_at(name_of<plab_v2_Frame>(), first + ahead);
     return before && *before ? (*before)->message.log_time : first;
 }
 
@@ -189,16 +189,16 @@ void FileSource::apply(const recording::Found& found)
         ++broken_;
         return false;
     };
-    recording::Sample<plab_v1_Scene> scene;
-    recording::Sample<plab_v1_Object> object;
-    recording::Sample<plab_v1_Shape> shape;
-    recording::Sample<plab_v1_Interaction> interaction;
-    recording::Sample<plab_v1_Gone> gone;
+    recording::Sample<plab_v2_Scene> scene;
+    recording::Sample<plab_v2_SceneObject> object;
+    recording::Sample<plab_v2_Shape> shape;
+    recording::Sample<plab_v2_Interaction> interaction;
+    recording::Sample<plab_v2_Gone> gone;
     if (decoded(scene)) now_.scene = link::scene_of(*scene);
-    if (decoded(object)) now_.objects.insert_or_assign(object->component, link::object_of(*object));
-    if (decoded(shape)) now_.shapes.insert_or_assign(shape->component, link::shape_of(*shape));
-    if (decoded(interaction)) now_.interactions.insert_or_assign(interaction->component, link::interaction_of(*interaction));
-    if (decoded(gone)) erase(gone->topic_name, gone->component);
+    if (decoded(object)) now_.objects.insert_or_assign(object->component_id, link::object_of(*object));
+    if (decoded(shape)) now_.shapes.insert_or_assign(shape->component_id, link::shape_of(*shape));
+    if (decoded(interaction)) now_.interactions.insert_or_assign(interaction->component_id, link::interaction_of(*interaction));
+    if (decoded(gone)) erase(gone->topic_name, gone->component_id);
 }
 
 void FileSource::erase(const std::string& topic, const std::string& id)
@@ -210,9 +210,9 @@ void FileSource::erase(const std::string& topic, const std::string& id)
         else
             things.erase(id);
     };
-    if (topic == name_of<plab_v1_Object>()) erase_from(now_.objects);
-    if (topic == name_of<plab_v1_Shape>()) erase_from(now_.shapes);
-    if (topic == name_of<plab_v1_Interaction>()) erase_from(now_.interactions);
+    if (topic == name_of<plab_v2_SceneObject>()) erase_from(now_.objects);
+    if (topic == name_of<plab_v2_Shape>()) erase_from(now_.shapes);
+    if (topic == name_of<plab_v2_Interaction>()) erase_from(now_.interactions);
 }
 
 /// The scene as it is shown from now on; costs decide which captions there are, so it gets the last ones, or the first.
@@ -226,9 +226,9 @@ void FileSource::show(std::uint64_t time)
 
 std::optional<link::ServerInfo> FileSource::server() const
 {
-    const auto last = reader_.last_at(name_of<plab_v1_Server>(), std::numeric_limits<std::uint64_t>::max());
+    const auto last = reader_.last_at(name_of<plab_v2_Server>(), std::numeric_limits<std::uint64_t>::max());
     if (!last || !*last) return {};
-    recording::Sample<plab_v1_Server> sample;
+    recording::Sample<plab_v2_Server> sample;
     recording::Decoder decoder;
     if (!decoder.decode((*last)->data, sample)) return {};
     return link::server_of(*sample);

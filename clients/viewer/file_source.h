@@ -47,7 +47,7 @@ private:
     Ahead ahead_;
     std::map<std::string, std::unique_ptr<recording::Peek>> peeks_;
     recording::Decoder decoder_;
-    recording::Sample<plab_v1_Frame> frame_;
+    recording::Sample<plab_v2_Frame> frame_;
     recording::WholeFrame whole_;
     link::Snapshot now_;
     bool is_changed_ = true, any_ = false;

@@ -32,13 +32,13 @@ std::vector<T> blend_rows(const std::vector<T>& a, const std::vector<T>& b, Blen
 
 }  // namespace
 
-State state_of(const plab_v1_Frame& frame)
+State state_of(const plab_v2_Frame& frame)
 {
     State out{frame.run, frame.revision, frame.step, frame.time, {}, {}};
     out.bodies.reserve(frame.bodies._length);
     for (std::uint32_t i = 0; i < frame.bodies._length; ++i)
     {
-        const plab_v1_BodyState& b = frame.bodies._buffer[i];
+        const plab_v2_BodyState& b = frame.bodies._buffer[i];
         const auto& [w, x, y, z] = b.orientation;
         out.bodies.push_back({b.handle, {{b.position.x, b.position.y, b.position.z}, {w, x, y, z}}});
     }

@@ -34,7 +34,7 @@ struct State
     std::vector<Shaft> shafts;  ///< by handle
 };
 
-State state_of(const plab_v1_Frame& frame);
+State state_of(const plab_v2_Frame& frame);
 
 /// From a (at 0) to b (at 1) by the shorter way, at a constant rate of turning.
 Quat slerp(const Quat& a, const Quat& b, double share);

@@ -22,9 +22,9 @@ std::string why_not(const Pairs& about)
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), format);
     if (error != std::errc() || end != text.data() + text.size() || format < 1)
         return text.empty() ? "does not say of which format it is; " + reads : "is of the unknown format '" + text + "'; " + reads;
-    if (format <= kFormat) return {};
-    return "is of format " + text + ", " + reads + ": a newer pLab" + (version.empty() ? "" : ", " + version + ",") +
-           " wrote it, and one like that reads it";
+    if (format >= kOldestFormat && format <= kFormat) return {};
+    return "is of format " + text + ", " + reads + ": " + (format > kFormat ? "a newer" : "an older") + " pLab" +
+           (version.empty() ? "" : ", " + version + ",") + " wrote it, and one like that reads it";
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace
 
 std::string text(const char* s) { return s == nullptr ? "" : s; }
 
-Glance glance(const plab_v1_Server& s)
+Glance glance(const plab_v2_Server& s)
 {
     Glance out;
     out.run = s.run, out.time = s.time, out.step = s.step, out.key = text(s.name), out.started_ns = s.started_ns;
@@ -27,8 +27,8 @@ Glance glance_of_entries(const T& sample)
     if (sample.entries._length > 0) out.time = sample.entries._buffer[0].time;
     return out;
 }
-Glance glance(const plab_v1_Collisions& c) { return glance_of_entries(c); }
-Glance glance(const plab_v1_Events& e) { return glance_of_entries(e); }
+Glance glance(const plab_v2_Collisions& c) { return glance_of_entries(c); }
+Glance glance(const plab_v2_Events& e) { return glance_of_entries(e); }
 
 template <class T>
 Glance glance_of_time(const T& sample)
@@ -37,34 +37,34 @@ Glance glance_of_time(const T& sample)
     out.run = sample.run, out.time = sample.time, out.step = sample.step;
     return out;
 }
-Glance glance(const plab_v1_Metrics& m) { return glance_of_time(m); }
-Glance glance(const plab_v1_Reply& r) { return glance_of_time(r); }
-Glance glance(const plab_v1_Frame& f)
+Glance glance(const plab_v2_Metrics& m) { return glance_of_time(m); }
+Glance glance(const plab_v2_Reply& r) { return glance_of_time(r); }
+Glance glance(const plab_v2_Frame& f)
 {
     Glance out = glance_of_time(f);
     out.stamp_ns = f.stamp_ns, out.first = f.sequence_number, out.entries = 1;
     return out;
 }
-Glance glance(const plab_v1_Image& i)
+Glance glance(const plab_v2_Image& i)
 {
     Glance out = glance_of_time(i);
     out.key = text(i.camera);
     return out;
 }
-Glance glance(const plab_v1_Journal& j)
+Glance glance(const plab_v2_Journal& j)
 {
     Glance out = glance_of_time(j);
     out.first = j.sequence_number, out.entries = 1;
     return out;
 }
-Glance glance(const plab_v1_Snapshot& s)
+Glance glance(const plab_v2_Snapshot& s)
 {
     Glance out = glance_of_time(s);
     out.blueprint = text(s.blueprint);
     return out;
 }
 
-Glance glance(const plab_v1_Hashes& h)
+Glance glance(const plab_v2_Hashes& h)
 {
     Glance out;
     out.run = h.run, out.step = h.step, out.first = h.sequence_number, out.entries = h.values._length;
@@ -78,29 +78,29 @@ Glance glance_of_instance(const T& sample, const char* key)
     out.run = sample.run, out.key = text(key);
     return out;
 }
-Glance glance(const plab_v1_Scene& s) { return glance_of_instance(s, s.server); }
-Glance glance(const plab_v1_Object& o) { return glance_of_instance(o, o.component); }
-Glance glance(const plab_v1_Interaction& i)
+Glance glance(const plab_v2_Scene& s) { return glance_of_instance(s, s.server_name); }
+Glance glance(const plab_v2_SceneObject& o) { return glance_of_instance(o, o.component_id); }
+Glance glance(const plab_v2_Interaction& i)
 {
-    Glance out = glance_of_instance(i, i.component);
+    Glance out = glance_of_instance(i, i.component_id);
     out.step = i.since;
     return out;
 }
-Glance glance(const plab_v1_Gone& g) { return glance_of_instance(g, g.component); }
+Glance glance(const plab_v2_Gone& g) { return glance_of_instance(g, g.component_id); }
 
-Glance glance(const plab_v1_Shape& s)
+Glance glance(const plab_v2_Shape& s)
 {
     Glance out;
-    out.key = text(s.component);
+    out.key = text(s.component_id);
     return out;
 }
-Glance glance(const plab_v1_Type& t)
+Glance glance(const plab_v2_Type& t)
 {
     Glance out;
     out.key = text(t.type_name);
     return out;
 }
-Glance glance(const plab_v1_Request&) { return {}; }
+Glance glance(const plab_v2_Request&) { return {}; }
 
 template <class T>
 class PeekOf final : public Peek
@@ -130,9 +130,9 @@ std::unique_ptr<Peek> make_one_of(const wire::Topic& topic)
 
 std::unique_ptr<Peek> make_peek(const wire::Topic& topic)
 {
-    return make_one_of<plab_v1_Server, plab_v1_Scene, plab_v1_Object, plab_v1_Shape, plab_v1_Interaction, plab_v1_Type, plab_v1_Frame,
-                       plab_v1_Collisions, plab_v1_Events, plab_v1_Metrics, plab_v1_Request, plab_v1_Reply, plab_v1_Image, plab_v1_Journal,
-                       plab_v1_Hashes, plab_v1_Snapshot, plab_v1_Gone>(topic);
+    return make_one_of<plab_v2_Server, plab_v2_Scene, plab_v2_SceneObject, plab_v2_Shape, plab_v2_Interaction, plab_v2_Type, plab_v2_Frame,
+                       plab_v2_Collisions, plab_v2_Events, plab_v2_Metrics, plab_v2_Request, plab_v2_Reply, plab_v2_Image, plab_v2_Journal,
+                       plab_v2_Hashes, plab_v2_Snapshot, plab_v2_Gone>(topic);
 }
 
 std::string key_of_gone(ByteView bytes)

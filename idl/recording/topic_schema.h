@@ -11,7 +11,7 @@
 namespace plab::recording
 {
 
-/// `type_name` ("plab::v1::Frame") and what it is made of, out of idl/plab.idl: self-contained OMG IDL without comments.
+/// `type_name` ("plab::v2::Frame") and what it is made of, out of idl/plab.idl: self-contained OMG IDL without comments.
 Result<std::string> idl_of(std::string_view type_name);
 /// As above, out of any IDL whose declarations stand in one scope of modules ("module a { module b { ... }; };").
 Result<std::string> select_idl(std::string_view idl, std::string_view type_name);

@@ -34,7 +34,7 @@ void show(Sequence& out, std::vector<Row>& rows)
 
 }  // namespace
 
-const plab_v1_Frame& WholeFrame::with(const plab_v1_Frame& frame)
+const plab_v2_Frame& WholeFrame::with(const plab_v2_Frame& frame)
 {
     if (frame.run != run_ || frame.revision != revision_) bodies_.clear(), shafts_.clear();
     run_ = frame.run, revision_ = frame.revision;

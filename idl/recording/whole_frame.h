@@ -20,15 +20,15 @@ class WholeFrame
 public:
     /// `frame` with all that was named before in its run and revision, in the order of the first frame that named it.
     /// Valid until the next call.
-    const plab_v1_Frame& with(const plab_v1_Frame& frame);
+    const plab_v2_Frame& with(const plab_v2_Frame& frame);
     /// The next frame is not the one that follows the last one.
     void forget() { run_ = 0; }
 
 private:
     std::uint64_t run_ = 0, revision_ = 0;  ///< no run has number 0
-    std::vector<plab_v1_BodyState> bodies_;
-    std::vector<plab_v1_ShaftState> shafts_;
-    plab_v1_Frame out_{};
+    std::vector<plab_v2_BodyState> bodies_;
+    std::vector<plab_v2_ShaftState> shafts_;
+    plab_v2_Frame out_{};
 };
 
 }  // namespace plab::recording

@@ -65,7 +65,7 @@ void Shelf<T, Key, Sample>::dispose_key(const std::string& id, Trouble& trouble)
 
 Result<void> Catalogue::open(const wire::Entity& participant, const wire::Entity& publisher)
 {
-    auto scene = wire::Writer<plab_v1_Scene>::make(participant, publisher);
+    auto scene = wire::Writer<plab_v2_Scene>::make(participant, publisher);
     if (!scene) return scene.errors();
     scene_ = scene.take();
     if (auto opened = objects_.open(participant, publisher); !opened) return opened;
@@ -95,7 +95,7 @@ void Catalogue::apply(const publish::CatalogueChange& change, Trouble& trouble)
     }
     for (const model::TypeSummary& type : change.types) types_.put(type.name, type.name, type, trouble);
     // Last: who waits for a new run finds its parts there.
-    (void)trouble.check(wire::topic_of<plab_v1_Scene>().name, scene_.write(scene_sample_.of(server_, change.scene)));
+    (void)trouble.check(wire::topic_of<plab_v2_Scene>().name, scene_.write(scene_sample_.of(server_, change.scene)));
 }
 
 void Catalogue::dispose_what_is_gone(const publish::CatalogueChange& change, Trouble& trouble)
@@ -121,9 +121,9 @@ void Catalogue::dispose_all(Trouble& trouble)
     dispose_what_is_gone(nothing, trouble);
     types_.dispose_all_but(
         std::vector<std::string>{}, [](const std::string& s) -> std::string_view { return s; }, trouble);
-    plab_v1_Scene key{};
-    key.server = wire::text(server_);
-    (void)trouble.check(wire::topic_of<plab_v1_Scene>().name, scene_.dispose(key));
+    plab_v2_Scene key{};
+    key.server_name = wire::text(server_);
+    (void)trouble.check(wire::topic_of<plab_v2_Scene>().name, scene_.dispose(key));
 }
 
 bool Catalogue::has_type_below(std::string_view prefix) const { return interactions_.has_type_below(prefix); }

@@ -53,12 +53,12 @@ private:
     void dispose_what_is_gone(const publish::CatalogueChange& change, Trouble& trouble);
 
     std::string server_;
-    wire::Writer<plab_v1_Scene> scene_;
+    wire::Writer<plab_v2_Scene> scene_;
     wire::SceneSample scene_sample_;
-    Shelf<plab_v1_Object, &plab_v1_Object::component, wire::ObjectSample> objects_;
-    Shelf<plab_v1_Shape, &plab_v1_Shape::component, wire::ShapeSample> shapes_;
-    Shelf<plab_v1_Interaction, &plab_v1_Interaction::component, wire::InteractionSample> interactions_;
-    Shelf<plab_v1_Type, &plab_v1_Type::type_name, wire::TypeSample> types_;
+    Shelf<plab_v2_SceneObject, &plab_v2_SceneObject::component_id, wire::ObjectSample> objects_;
+    Shelf<plab_v2_Shape, &plab_v2_Shape::component_id, wire::ShapeSample> shapes_;
+    Shelf<plab_v2_Interaction, &plab_v2_Interaction::component_id, wire::InteractionSample> interactions_;
+    Shelf<plab_v2_Type, &plab_v2_Type::type_name, wire::TypeSample> types_;
 };
 
 }  // namespace plab::bus

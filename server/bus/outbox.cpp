@@ -14,7 +14,7 @@ void Outbox::send(const publish::Answer& answer, bool repeated, Clock::time_poin
     if (failed_.size() < kMost)
         failed_.push_back({answer, repeated, now});
     else
-        (void)trouble_->check(wire::topic_of<plab_v1_Reply>().name, code);
+        (void)trouble_->check(wire::topic_of<plab_v2_Reply>().name, code);
 }
 
 void Outbox::retry(Clock::time_point now)
@@ -25,7 +25,7 @@ void Outbox::retry(Clock::time_point now)
                       const dds_return_t code = write_(f.answer, f.repeated);
                       if (code == DDS_RETCODE_OK) return true;
                       if (now - f.since < kPatience) return false;
-                      return !trouble_->check(wire::topic_of<plab_v1_Reply>().name, code);
+                      return !trouble_->check(wire::topic_of<plab_v2_Reply>().name, code);
                   });
 }
 

@@ -13,9 +13,9 @@ constexpr std::chrono::seconds kHeartbeat(1);
 
 Result<void> Presence::open(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber)
 {
-    auto writer = wire::Writer<plab_v1_Server>::make(participant, publisher);
+    auto writer = wire::Writer<plab_v2_Server>::make(participant, publisher);
     if (!writer) return writer.errors();
-    auto reader = wire::Reader<plab_v1_Server>::make(participant, subscriber);
+    auto reader = wire::Reader<plab_v2_Server>::make(participant, subscriber);
     if (!reader) return reader.errors();
     writer_ = writer.take(), reader_ = reader.take();
     return {};
@@ -37,7 +37,7 @@ void Presence::send(Clock::time_point now, std::span<const wire::Dropped> droppe
     }
     if (!status_ || (!is_new && now - written_ < kHeartbeat)) return;
     written_ = now;
-    (void)trouble.check(wire::topic_of<plab_v1_Server>().name, writer_.write(sample_.of(identity_, *status_, dropped)));
+    (void)trouble.check(wire::topic_of<plab_v2_Server>().name, writer_.write(sample_.of(identity_, *status_, dropped)));
 }
 
 Presence::Clock::duration Presence::due_in(Clock::time_point now) const
@@ -49,7 +49,7 @@ Presence::Clock::duration Presence::due_in(Clock::time_point now) const
 std::optional<std::string> Presence::look_for_rival()
 {
     std::optional<std::string> why;
-    const auto compare = [&](const plab_v1_Server& other, const dds_sample_info_t& info)
+    const auto compare = [&](const plab_v2_Server& other, const dds_sample_info_t& info)
     {
         if (why || !info.valid_data || info.instance_state != DDS_IST_ALIVE || !wire::keeps_the_name(other, identity_)) return;
         why = "a server '" + identity_.name + "' runs already on host " + other.host + " (process " + std::to_string(other.process) +
@@ -61,9 +61,9 @@ std::optional<std::string> Presence::look_for_rival()
 
 void Presence::dispose(Trouble& trouble)
 {
-    plab_v1_Server key{};
+    plab_v2_Server key{};
     key.name = wire::text(identity_.name);
-    if (status_) (void)trouble.check(wire::topic_of<plab_v1_Server>().name, writer_.dispose(key));
+    if (status_) (void)trouble.check(wire::topic_of<plab_v2_Server>().name, writer_.dispose(key));
 }
 
 }  // namespace plab::bus

@@ -33,8 +33,8 @@ public:
 private:
     wire::Identity identity_;
     publish::Ring<publish::Status> ring_{4};
-    wire::Writer<plab_v1_Server> writer_;
-    wire::Reader<plab_v1_Server> reader_;
+    wire::Writer<plab_v2_Server> writer_;
+    wire::Reader<plab_v2_Server> reader_;
     wire::ServerSample sample_;
     std::optional<publish::Status> status_;
     Clock::time_point written_{};

@@ -37,7 +37,7 @@ private:
     std::string wrong_;
 };
 
-publish::OperationText read_operation(const plab_v1_Operation& operation, TextReader& reader)
+publish::OperationText read_operation(const plab_v2_Operation& operation, TextReader& reader)
 {
     publish::OperationText out;
     out.verb = reader.copy(operation.verb, "a verb");
@@ -53,7 +53,7 @@ publish::OperationText read_operation(const plab_v1_Operation& operation, TextRe
     return out;
 }
 
-std::string wrong_outside(const plab_v1_Request& request)
+std::string wrong_outside(const plab_v2_Request& request)
 {
     const publish::ClientId client = client_of(request);
     if (std::all_of(client.begin(), client.end(), [](std::uint8_t byte) { return byte == 0; }))
@@ -118,7 +118,7 @@ bool is_utf8(std::string_view text)
     return true;
 }
 
-publish::ClientId client_of(const plab_v1_Request& request)
+publish::ClientId client_of(const plab_v2_Request& request)
 {
     publish::ClientId client;
     static_assert(sizeof(request.client) == std::tuple_size_v<publish::ClientId>);
@@ -145,7 +145,7 @@ bool is_shutdown(const publish::RequestText& request)
     return only.verb == "shutdown" && only.target.empty() && only.argument.empty() && only.blueprint.empty() && only.values.empty();
 }
 
-Result<publish::RequestText> read_request(const plab_v1_Request& request)
+Result<publish::RequestText> read_request(const plab_v2_Request& request)
 {
     if (std::string wrong = wrong_outside(request); !wrong.empty()) return reason(std::move(wrong));
     TextReader reader;

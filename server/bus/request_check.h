@@ -14,7 +14,7 @@ namespace plab::bus
 bool is_utf8(std::string_view text);
 
 /// Who asks, and with which number.
-publish::ClientId client_of(const plab_v1_Request& request);
+publish::ClientId client_of(const plab_v2_Request& request);
 
 /// What the limit on the text of all waiting requests counts: each text costs 32 bytes more than it has, about what it
 /// takes to keep it, so that the limit bounds the number of empty ones too.
@@ -25,6 +25,6 @@ bool is_shutdown(const publish::RequestText& request);
 
 /// The request with its text copied, or the first thing that is wrong with it. Reads no more of an oversized request
 /// than the limit.
-Result<publish::RequestText> read_request(const plab_v1_Request& request);
+Result<publish::RequestText> read_request(const plab_v2_Request& request);
 
 }  // namespace plab::bus

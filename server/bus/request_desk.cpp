@@ -19,9 +19,9 @@ RequestDesk::RequestDesk(Trouble& trouble)
 Result<void> RequestDesk::open(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber)
 {
     // The writer first: who has found the reader and asks at once has a writer to hear from.
-    auto writer = wire::Writer<plab_v1_Reply>::make(participant, publisher);
+    auto writer = wire::Writer<plab_v2_Reply>::make(participant, publisher);
     if (!writer) return writer.errors();
-    auto reader = wire::Reader<plab_v1_Request>::make(participant, subscriber);
+    auto reader = wire::Reader<plab_v2_Request>::make(participant, subscriber);
     if (!reader) return reader.errors();
     writer_ = writer.take(), reader_ = reader.take();
     return {};
@@ -47,17 +47,17 @@ RequestDesk::Received RequestDesk::receive(Clock::time_point now)
 {
     constexpr dds_return_t kMostAtATime = 256;
     Received received;
-    const auto handle = [&](const plab_v1_Request& request, const dds_sample_info_t& info)
+    const auto handle = [&](const plab_v2_Request& request, const dds_sample_info_t& info)
     {
         if (info.valid_data) receive_one(request, now, received.any_new);
     };
     const dds_return_t n = reader_.take(handle, kMostAtATime);
-    (void)trouble_->check(wire::topic_of<plab_v1_Request>().name, n < 0 ? n : DDS_RETCODE_OK);
+    (void)trouble_->check(wire::topic_of<plab_v2_Request>().name, n < 0 ? n : DDS_RETCODE_OK);
     received.more = n >= kMostAtATime;
     return received;
 }
 
-void RequestDesk::receive_one(const plab_v1_Request& request, Clock::time_point now, bool& any_new)
+void RequestDesk::receive_one(const plab_v2_Request& request, Clock::time_point now, bool& any_new)
 {
     auto text = read_request(request);
     const std::optional<Error> wrong = text ? std::nullopt : std::optional<Error>(text.error());

@@ -37,7 +37,7 @@ public:
     dds_entity_t writer() const { return writer_.entity().get(); }
 
 private:
-    void receive_one(const plab_v1_Request& request, Clock::time_point now, bool& any_new);
+    void receive_one(const plab_v2_Request& request, Clock::time_point now, bool& any_new);
 
     Trouble* trouble_;
     RequestBook book_;
@@ -46,8 +46,8 @@ private:
     publish::Ring<publish::Answer> answers_;
     publish::Answer answer_;
     wire::ReplySample sample_;
-    wire::Writer<plab_v1_Reply> writer_;
-    wire::Reader<plab_v1_Request> reader_;
+    wire::Writer<plab_v2_Reply> writer_;
+    wire::Reader<plab_v2_Request> reader_;
     Outbox outbox_;
 };
 

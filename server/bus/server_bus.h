@@ -77,14 +77,14 @@ private:
 
     publish::Ring<publish::CatalogueChange> changes_;
     std::atomic<std::size_t> changes_waiting_{0};
-    Stream<plab_v1_Frame, wire::FrameSample, publish::Frame> states_{8};
-    Stream<plab_v1_Collisions, wire::CollisionsSample, publish::Batch<publish::CollisionRecord>> collisions_{1024};
-    Stream<plab_v1_Events, wire::EventsSample, publish::Batch<publish::EventRecord>> events_{1024};
-    Stream<plab_v1_Metrics, wire::MetricsSample, publish::Metrics> metrics_{4};
-    Stream<plab_v1_Image, wire::ImageSample, publish::Image> images_{2};
-    Stream<plab_v1_Journal, wire::JournalSample, publish::JournalRecord> journal_{1024};
-    Stream<plab_v1_Hashes, wire::HashesSample, publish::HashRecord> hashes_{1024};
-    Stream<plab_v1_Snapshot, wire::SnapshotSample, publish::SnapshotRecord> snapshots_{2};
+    Stream<plab_v2_Frame, wire::FrameSample, publish::Frame> states_{8};
+    Stream<plab_v2_Collisions, wire::CollisionsSample, publish::Batch<publish::CollisionRecord>> collisions_{1024};
+    Stream<plab_v2_Events, wire::EventsSample, publish::Batch<publish::EventRecord>> events_{1024};
+    Stream<plab_v2_Metrics, wire::MetricsSample, publish::Metrics> metrics_{4};
+    Stream<plab_v2_Image, wire::ImageSample, publish::Image> images_{2};
+    Stream<plab_v2_Journal, wire::JournalSample, publish::JournalRecord> journal_{1024};
+    Stream<plab_v2_Hashes, wire::HashesSample, publish::HashRecord> hashes_{1024};
+    Stream<plab_v2_Snapshot, wire::SnapshotSample, publish::SnapshotRecord> snapshots_{2};
     publish::HashBatch hash_batch_;  ///< step thread's
 
     Catalogue catalogue_;

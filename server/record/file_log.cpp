@@ -9,17 +9,17 @@ namespace plab::record
 namespace
 {
 
-Vec3 vector_of(const plab_v1_Vector& v) { return {v.x, v.y, v.z}; }
-Quat rotation_of(const plab_v1_Rotation& q) { return {q.w, q.x, q.y, q.z}; }
+Vec3 vector_of(const plab_v2_Vector& v) { return {v.x, v.y, v.z}; }
+Quat rotation_of(const plab_v2_Rotation& q) { return {q.w, q.x, q.y, q.z}; }
 
-publish::OperationText operation_of(const plab_v1_Operation& op)
+publish::OperationText operation_of(const plab_v2_Operation& op)
 {
     publish::OperationText out{op.verb, op.target, op.argument, op.blueprint, {}};
     for (std::uint32_t i = 0; i < op.values._length; ++i) out.values.emplace_back(op.values._buffer[i].name, op.values._buffer[i].text);
     return out;
 }
 
-publish::JournalRecord journal_of(const plab_v1_Journal& j)
+publish::JournalRecord journal_of(const plab_v2_Journal& j)
 {
     publish::JournalRecord out;
     out.run = j.run, out.revision = j.revision, out.number = j.sequence_number, out.step = j.step, out.time = j.time;
@@ -37,7 +37,7 @@ const char* cause_of(std::string_view cause)
     return "";
 }
 
-void merge(const plab_v1_Frame& f, publish::Frame& out)
+void merge(const plab_v2_Frame& f, publish::Frame& out)
 {
     out.run = f.run, out.revision = f.revision, out.number = f.sequence_number;
     out.step = f.step, out.time = f.time, out.stamp_ns = f.stamp_ns;
@@ -51,13 +51,13 @@ void merge(const plab_v1_Frame& f, publish::Frame& out)
     };
     for (std::uint32_t i = 0; i < f.bodies._length; ++i)
     {
-        const plab_v1_BodyState& b = f.bodies._buffer[i];
+        const plab_v2_BodyState& b = f.bodies._buffer[i];
         put(out.bodies, publish::BodyState{b.handle, vector_of(b.position), rotation_of(b.orientation), vector_of(b.linear_velocity),
                                            vector_of(b.angular_velocity)});
     }
     for (std::uint32_t i = 0; i < f.shafts._length; ++i)
     {
-        const plab_v1_ShaftState& s = f.shafts._buffer[i];
+        const plab_v2_ShaftState& s = f.shafts._buffer[i];
         put(out.shafts, publish::ShaftState{s.handle, s.angle, s.speed});
     }
 }
@@ -99,8 +99,8 @@ recording::Query FileLog::query_of(const char* topic, std::uint64_t run) const
 
 Result<void> FileLog::list_snapshots()
 {
-    return each<plab_v1_Snapshot>({.topics = {wire::topic_of<plab_v1_Snapshot>().name}},
-                                  [&](const plab_v1_Snapshot& s, std::uint64_t log_time)
+    return each<plab_v2_Snapshot>({.topics = {wire::topic_of<plab_v2_Snapshot>().name}},
+                                  [&](const plab_v2_Snapshot& s, std::uint64_t log_time)
                                   {
                                       begin_of_run_.try_emplace(s.run, log_time);
                                       snapshots_.push_back({s.run, s.step, s.time, s.name, s.cause, log_time});
@@ -112,10 +112,10 @@ Result<publish::SnapshotRecord> FileLog::read(const RecordedSnapshot& snapshot)
 {
     std::optional<publish::SnapshotRecord> out;
     recording::Query query;
-    query.topics = {wire::topic_of<plab_v1_Snapshot>().name};
+    query.topics = {wire::topic_of<plab_v2_Snapshot>().name};
     query.from = query.to = snapshot.place;
-    auto done = each<plab_v1_Snapshot>(query,
-                                       [&](const plab_v1_Snapshot& s, std::uint64_t)
+    auto done = each<plab_v2_Snapshot>(query,
+                                       [&](const plab_v2_Snapshot& s, std::uint64_t)
                                        {
                                            if (s.run != snapshot.run || s.step != snapshot.step) return true;
                                            out.emplace();
@@ -133,8 +133,8 @@ Result<publish::SnapshotRecord> FileLog::read(const RecordedSnapshot& snapshot)
 Result<std::vector<publish::JournalRecord>> FileLog::journal(std::uint64_t run)
 {
     std::vector<publish::JournalRecord> out;
-    auto done = each<plab_v1_Journal>(query_of(wire::topic_of<plab_v1_Journal>().name, run),
-                                      [&](const plab_v1_Journal& j, std::uint64_t)
+    auto done = each<plab_v2_Journal>(query_of(wire::topic_of<plab_v2_Journal>().name, run),
+                                      [&](const plab_v2_Journal& j, std::uint64_t)
                                       {
                                           if (j.run == run) out.push_back(journal_of(j));
                                           return true;
@@ -147,7 +147,7 @@ Result<std::vector<publish::JournalRecord>> FileLog::journal(std::uint64_t run)
 Result<void> FileLog::begin_hashes(std::uint64_t run)
 {
     hash_run_ = run;
-    hashes_.emplace(reader_.messages(query_of(wire::topic_of<plab_v1_Hashes>().name, run)));
+    hashes_.emplace(reader_.messages(query_of(wire::topic_of<plab_v2_Hashes>().name, run)));
     return {};
 }
 
@@ -173,8 +173,8 @@ Result<std::optional<publish::Frame>> FileLog::frame(std::uint64_t run, Tick ste
     // Frames may name only what moved: all of the run's up to there make the one that is asked for.
     publish::Frame merged;
     bool there = false;
-    auto done = each<plab_v1_Frame>(query_of(wire::topic_of<plab_v1_Frame>().name, run),
-                                    [&](const plab_v1_Frame& f, std::uint64_t)
+    auto done = each<plab_v2_Frame>(query_of(wire::topic_of<plab_v2_Frame>().name, run),
+                                    [&](const plab_v2_Frame& f, std::uint64_t)
                                     {
                                         if (f.run != run) return true;
                                         // Of several after one step the last counts: a request may have changed states.
@@ -190,10 +190,10 @@ Result<std::optional<publish::Frame>> FileLog::frame(std::uint64_t run, Tick ste
 Result<std::vector<std::pair<std::uint32_t, std::string>>> FileLog::objects(std::uint64_t run)
 {
     std::map<std::uint32_t, std::string> names;
-    auto done = each<plab_v1_Object>({.topics = {wire::topic_of<plab_v1_Object>().name}},
-                                     [&](const plab_v1_Object& o, std::uint64_t)
+    auto done = each<plab_v2_SceneObject>({.topics = {wire::topic_of<plab_v2_SceneObject>().name}},
+                                     [&](const plab_v2_SceneObject& o, std::uint64_t)
                                      {
-                                         if (o.run == run) names[o.handle] = o.component;
+                                         if (o.run == run) names[o.handle] = o.component_id;
                                          return true;
                                      });
     if (!done) return done.errors();

@@ -44,7 +44,7 @@ private:
     std::map<std::uint64_t, std::uint64_t> begin_of_run_;  ///< log_time of its first snapshot
     std::optional<recording::Cursor> hashes_;
     std::uint64_t hash_run_ = 0;
-    recording::Sample<plab_v1_Hashes> hash_sample_;
+    recording::Sample<plab_v2_Hashes> hash_sample_;
 };
 
 }  // namespace plab::record

@@ -138,21 +138,21 @@ bool Recorder::wants(publish::Stream stream) const
     switch (stream)
     {
         case publish::Stream::States:
-            return topics_.has(wire::topic_of<plab_v1_Frame>().name);
+            return topics_.has(wire::topic_of<plab_v2_Frame>().name);
         case publish::Stream::Collisions:
-            return topics_.has(wire::topic_of<plab_v1_Collisions>().name);
+            return topics_.has(wire::topic_of<plab_v2_Collisions>().name);
         case publish::Stream::Events:
-            return topics_.has(wire::topic_of<plab_v1_Events>().name);
+            return topics_.has(wire::topic_of<plab_v2_Events>().name);
         case publish::Stream::Metrics:
-            return topics_.has(wire::topic_of<plab_v1_Metrics>().name);
+            return topics_.has(wire::topic_of<plab_v2_Metrics>().name);
         case publish::Stream::Images:
-            return topics_.has(wire::topic_of<plab_v1_Image>().name);
+            return topics_.has(wire::topic_of<plab_v2_Image>().name);
         case publish::Stream::Journal:
-            return topics_.has(wire::topic_of<plab_v1_Journal>().name);
+            return topics_.has(wire::topic_of<plab_v2_Journal>().name);
         case publish::Stream::Hashes:
-            return topics_.has(wire::topic_of<plab_v1_Hashes>().name);
+            return topics_.has(wire::topic_of<plab_v2_Hashes>().name);
         case publish::Stream::Snapshots:
-            return topics_.has(wire::topic_of<plab_v1_Snapshot>().name);
+            return topics_.has(wire::topic_of<plab_v2_Snapshot>().name);
     }
     return false;
 }

@@ -22,7 +22,7 @@ TopicWriter::TopicWriter(recording::Writer& writer, wire::Identity identity, std
 
 bool TopicWriter::has(const char* topic) const
 {
-    if (topics_.empty()) return std::strcmp(topic, wire::topic_of<plab_v1_Image>().name) != 0;
+    if (topics_.empty()) return std::strcmp(topic, wire::topic_of<plab_v2_Image>().name) != 0;
     return std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
 }
 
@@ -101,9 +101,9 @@ void TopicWriter::put_body(const publish::CatalogueChange& change, const Stamp& 
     put_gone(change, stamp, run);
     write(scene_.of(identity_.name, change.scene), stamp);
     const auto component = [](const auto& entry) -> const std::string& { return entry.component; };
-    put_entries<plab_v1_Object>(object_, change.objects, component, stamp);
-    put_entries<plab_v1_Shape>(shape_, change.shapes, component, stamp);
-    put_entries<plab_v1_Interaction>(interaction_, change.interactions, component, stamp);
+    put_entries<plab_v2_SceneObject>(object_, change.objects, component, stamp);
+    put_entries<plab_v2_Shape>(shape_, change.shapes, component, stamp);
+    put_entries<plab_v2_Interaction>(interaction_, change.interactions, component, stamp);
     for (const model::TypeSummary& type : change.types) write(type_.of(type), stamp);
 }
 
@@ -123,7 +123,7 @@ void TopicWriter::put_gone(const publish::CatalogueChange& change, const Stamp& 
 
 void TopicWriter::say_gone(const std::string& topic, const std::string& key, const Stamp& stamp, std::uint64_t run)
 {
-    write(plab_v1_Gone{run, wire::text(topic), wire::text(key)}, stamp);
+    write(plab_v2_Gone{run, wire::text(topic), wire::text(key)}, stamp);
 }
 
 }  // namespace plab::record

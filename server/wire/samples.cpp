@@ -77,19 +77,19 @@ void convert_texts(std::vector<char*>& out, const std::vector<std::string>& text
     convert_each(out, texts, [](const std::string& s) { return text(s); });
 }
 
-void convert_parameters(std::vector<plab_v1_Parameter>& out, const std::vector<publish::Parameter>& parameters)
+void convert_parameters(std::vector<plab_v2_Parameter>& out, const std::vector<publish::Parameter>& parameters)
 {
     convert_each(out, parameters,
                  [](const publish::Parameter& p) {
-                     return plab_v1_Parameter{text(p.name), text(p.text), text(p.unit), text(p.kind)};
+                     return plab_v2_Parameter{text(p.name), text(p.text), text(p.unit), text(p.kind)};
                  });
 }
 
-plab_v1_StepOutcome outcome(const simulation::StepOutcome& o) { return {o.energy, vector(o.momentum), o.error, o.cost_ns}; }
+plab_v2_StepOutcome outcome(const simulation::StepOutcome& o) { return {o.energy, vector(o.momentum), o.error, o.cost_ns}; }
 
 }  // namespace
 
-const plab_v1_Server& ServerSample::of(const Identity& identity, const publish::Status& status, std::span<const Dropped> dropped)
+const plab_v2_Server& ServerSample::of(const Identity& identity, const publish::Status& status, std::span<const Dropped> dropped)
 {
     dropped_.clear();
     for (const Dropped& d : dropped) dropped_.push_back({text(d.topic), d.samples});
@@ -106,7 +106,7 @@ const plab_v1_Server& ServerSample::of(const Identity& identity, const publish::
     view(wire_.dropped, dropped_);
     convert_each(snapshots_, status.snapshots,
                  [](const publish::KeptSnapshot& k) {
-                     return plab_v1_KeptSnapshot{text(k.name), k.run, k.step, k.time, k.bytes};
+                     return plab_v2_KeptSnapshot{text(k.name), k.run, k.step, k.time, k.bytes};
                  });
     view(wire_.snapshots, snapshots_);
     const publish::RecordingStatus& r = status.recording;
@@ -115,23 +115,23 @@ const plab_v1_Server& ServerSample::of(const Identity& identity, const publish::
     return wire_;
 }
 
-const plab_v1_Scene& SceneSample::of(const std::string& server, const publish::SceneEntry& scene)
+const plab_v2_Scene& SceneSample::of(const std::string& server, const publish::SceneEntry& scene)
 {
     convert_each(cameras_, scene.cameras,
                  [](const model::Camera& c) {
-                     return plab_v1_View{text(c.name), vector(c.position), vector(c.look_at), vector(c.up), c.field_of_view};
+                     return plab_v2_View{text(c.name), vector(c.position), vector(c.look_at), vector(c.up), c.field_of_view};
                  });
-    wire_.server = text(server), wire_.run = scene.run, wire_.file = text(scene.file), wire_.title = text(scene.title);
+    wire_.server_name = text(server), wire_.run = scene.run, wire_.file = text(scene.file), wire_.title = text(scene.title);
     wire_.dt = scene.dt, wire_.seed = scene.seed, wire_.objects = scene.objects, wire_.interactions = scene.interactions;
     view(wire_.cameras, cameras_);
     return wire_;
 }
 
-const plab_v1_Object& ObjectSample::of(const publish::ObjectEntry& object)
+const plab_v2_SceneObject& ObjectSample::of(const publish::ObjectEntry& object)
 {
     convert_texts(shapes_, object.shapes);
     convert_parameters(parameters_, object.parameters);
-    wire_.component = text(object.component), wire_.name = text(object.name), wire_.type_name = text(object.type);
+    wire_.component_id = text(object.component), wire_.name = text(object.name), wire_.type_name = text(object.type);
     wire_.handle = object.handle, wire_.run = object.run;
     wire_.shape_of = text(object.is_shaft ? "shaft" : "body"), wire_.motion = text(word(object.motion));
     wire_.mass = object.mass, wire_.position = vector(object.pose.p), wire_.orientation = rotation(object.pose.q);
@@ -141,27 +141,27 @@ const plab_v1_Object& ObjectSample::of(const publish::ObjectEntry& object)
     return wire_;
 }
 
-const plab_v1_Shape& ShapeSample::of(const publish::ShapeEntry& shape)
+const plab_v2_Shape& ShapeSample::of(const publish::ShapeEntry& shape)
 {
     const Geometry& g = shape.geometry;
-    wire_.component = text(shape.component), wire_.type_name = text(shape.type), wire_.form = text(word(g.kind));
+    wire_.component_id = text(shape.component), wire_.type_name = text(shape.type), wire_.form = text(word(g.kind));
     wire_.position = vector(g.pose.p), wire_.orientation = rotation(g.pose.q), wire_.size = vector(g.size);
     view(wire_.vertices, g.vertices);
     view(wire_.triangles, g.triangles);
     return wire_;
 }
 
-const plab_v1_Interaction& InteractionSample::of(const publish::InteractionEntry& interaction)
+const plab_v2_Interaction& InteractionSample::of(const publish::InteractionEntry& interaction)
 {
     members_.resize(std::max(members_.size(), interaction.roles.size()));
     roles_.clear();
     for (std::size_t i = 0; i < interaction.roles.size(); ++i)
     {
         convert_texts(members_[i], interaction.roles[i].members);
-        view(roles_.emplace_back(plab_v1_Participants{text(interaction.roles[i].role), {}}).members, members_[i]);
+        view(roles_.emplace_back(plab_v2_Participants{text(interaction.roles[i].role), {}}).members, members_[i]);
     }
     convert_parameters(parameters_, interaction.parameters);
-    wire_.component = text(interaction.component), wire_.name = text(interaction.name);
+    wire_.component_id = text(interaction.component), wire_.name = text(interaction.name);
     wire_.type_name = text(interaction.type), wire_.family = text(interaction.family);
     wire_.run = interaction.run, wire_.since = interaction.since, wire_.quarantined = interaction.quarantined;
     view(wire_.roles, roles_);
@@ -169,16 +169,16 @@ const plab_v1_Interaction& InteractionSample::of(const publish::InteractionEntry
     return wire_;
 }
 
-const plab_v1_Type& TypeSample::of(const model::TypeSummary& type)
+const plab_v2_Type& TypeSample::of(const model::TypeSummary& type)
 {
     convert_each(roles_, type.roles,
                  [](const model::RoleSummary& r) {
-                     return plab_v1_RoleInfo{text(r.name), text(r.accepts), r.least, r.most, text(r.doc)};
+                     return plab_v2_RoleInfo{text(r.name), text(r.accepts), r.least, r.most, text(r.doc)};
                  });
     convert_each(fields_, type.fields,
                  [](const model::FieldSummary& f)
                  {
-                     return plab_v1_FieldInfo{text(f.name),     text(f.kind), text(f.value_type), text(f.unit),
+                     return plab_v2_FieldInfo{text(f.name),     text(f.kind), text(f.value_type), text(f.unit),
                                               text(f.fallback), f.required,   text(f.rule),       text(f.doc)};
                  });
     wire_.type_name = text(type.name), wire_.family = text(type.family), wire_.doc = text(type.doc);
@@ -190,7 +190,7 @@ const plab_v1_Type& TypeSample::of(const model::TypeSummary& type)
     return wire_;
 }
 
-const plab_v1_Frame& FrameSample::of(const publish::Frame& frame)
+const plab_v2_Frame& FrameSample::of(const publish::Frame& frame)
 {
     wire_.run = frame.run, wire_.revision = frame.revision, wire_.sequence_number = frame.number;
     wire_.step = frame.step, wire_.time = frame.time, wire_.stamp_ns = frame.stamp_ns;
@@ -199,12 +199,12 @@ const plab_v1_Frame& FrameSample::of(const publish::Frame& frame)
     return wire_;
 }
 
-const plab_v1_Collisions& CollisionsSample::of(const publish::Batch<publish::CollisionRecord>& batch)
+const plab_v2_Collisions& CollisionsSample::of(const publish::Batch<publish::CollisionRecord>& batch)
 {
     convert_each(entries_, batch.entries,
                  [](const publish::CollisionRecord& c)
                  {
-                     return plab_v1_CollisionInfo{text(c.kind),       c.time,           text(c.detector),  text(c.a), text(c.b),
+                     return plab_v2_CollisionInfo{text(c.kind),       c.time,           text(c.detector),  text(c.a), text(c.b),
                                                   vector(c.position), vector(c.normal), vector(c.impulse), c.depth};
                  });
     wire_.run = batch.run, wire_.sequence_number = batch.first, wire_.step = batch.step;
@@ -212,12 +212,12 @@ const plab_v1_Collisions& CollisionsSample::of(const publish::Batch<publish::Col
     return wire_;
 }
 
-const plab_v1_Events& EventsSample::of(const publish::Batch<publish::EventRecord>& batch)
+const plab_v2_Events& EventsSample::of(const publish::Batch<publish::EventRecord>& batch)
 {
     convert_each(entries_, batch.entries,
                  [](const publish::EventRecord& e)
                  {
-                     plab_v1_EventInfo info{text(e.kind), text(word(e.severity)), e.time, text(e.component), text(e.a),
+                     plab_v2_EventInfo info{text(e.kind), text(word(e.severity)), e.time, text(e.component), text(e.a),
                                             text(e.b),    text(e.message),        {}};
                      view(info.values, e.values);
                      return info;
@@ -227,7 +227,7 @@ const plab_v1_Events& EventsSample::of(const publish::Batch<publish::EventRecord
     return wire_;
 }
 
-const plab_v1_Metrics& MetricsSample::of(const publish::Metrics& metrics)
+const plab_v2_Metrics& MetricsSample::of(const publish::Metrics& metrics)
 {
     outputs_.resize(std::max(outputs_.size(), metrics.interactions.size()));
     interactions_.clear();
@@ -247,7 +247,7 @@ const plab_v1_Metrics& MetricsSample::of(const publish::Metrics& metrics)
     return wire_;
 }
 
-const plab_v1_Image& ImageSample::of(const publish::Image& image)
+const plab_v2_Image& ImageSample::of(const publish::Image& image)
 {
     wire_.camera = text(image.camera), wire_.run = image.run, wire_.step = image.step, wire_.time = image.time;
     wire_.width = image.width, wire_.height = image.height, wire_.encoding = text("rgba8");
@@ -255,14 +255,14 @@ const plab_v1_Image& ImageSample::of(const publish::Image& image)
     return wire_;
 }
 
-const plab_v1_Journal& JournalSample::of(const publish::JournalRecord& entry)
+const plab_v2_Journal& JournalSample::of(const publish::JournalRecord& entry)
 {
     values_.resize(std::max(values_.size(), entry.operations.size()));
     operations_.clear();
     for (std::size_t i = 0; i < entry.operations.size(); ++i)
     {
         const publish::OperationText& op = entry.operations[i];
-        convert_each(values_[i], op.values, [](const auto& v) { return plab_v1_NamedText{text(v.first), text(v.second)}; });
+        convert_each(values_[i], op.values, [](const auto& v) { return plab_v2_NamedText{text(v.first), text(v.second)}; });
         operations_.push_back({text(op.verb), text(op.target), text(op.argument), text(op.blueprint), {}});
         view(operations_.back().values, values_[i]);
     }
@@ -273,14 +273,14 @@ const plab_v1_Journal& JournalSample::of(const publish::JournalRecord& entry)
     return wire_;
 }
 
-const plab_v1_Hashes& HashesSample::of(const publish::HashRecord& record)
+const plab_v2_Hashes& HashesSample::of(const publish::HashRecord& record)
 {
     wire_.run = record.run, wire_.sequence_number = record.first, wire_.step = record.step;
     view(wire_.values, record.hashes);
     return wire_;
 }
 
-const plab_v1_Snapshot& SnapshotSample::of(const publish::SnapshotRecord& snapshot)
+const plab_v2_Snapshot& SnapshotSample::of(const publish::SnapshotRecord& snapshot)
 {
     wire_.run = snapshot.run, wire_.revision = snapshot.revision, wire_.step = snapshot.step, wire_.time = snapshot.time;
     wire_.name = text(snapshot.name), wire_.cause = text(snapshot.cause), wire_.state_hash = snapshot.state_hash;
@@ -289,7 +289,7 @@ const plab_v1_Snapshot& SnapshotSample::of(const publish::SnapshotRecord& snapsh
     return wire_;
 }
 
-const plab_v1_Reply& ReplySample::of(const publish::Answer& answer, bool repeated)
+const plab_v2_Reply& ReplySample::of(const publish::Answer& answer, bool repeated)
 {
     const simulation::Reply& r = answer.reply;
     convert_each(texts_, r.errors, [](const Error& e) { return e.text(); });
@@ -301,7 +301,7 @@ const plab_v1_Reply& ReplySample::of(const publish::Answer& answer, bool repeate
         const simulation::SwapReport& s = r.swaps[i];
         convert_each(fields_[i], s.fields,
                      [](const simulation::FieldFate& f) {
-                         return plab_v1_FieldFate{text(f.field), text(simulation::name_of(f.fate))};
+                         return plab_v2_FieldFate{text(f.field), text(simulation::name_of(f.fate))};
                      });
         swaps_.push_back({text(s.id), text(s.from), text(s.to), {}, s.energy_before, outcome(s.with_old), outcome(s.with_new)});
         view(swaps_.back().fields, fields_[i]);

@@ -13,38 +13,38 @@ namespace plab::wire
 {
 
 // A frame's arrays go out as they are. Whoever changes one side meets these lines.
-static_assert(sizeof(Vec3) == sizeof(plab_v1_Vector) && alignof(Vec3) == alignof(plab_v1_Vector));
-static_assert(offsetof(Vec3, x) == offsetof(plab_v1_Vector, x) && offsetof(Vec3, y) == offsetof(plab_v1_Vector, y) &&
-              offsetof(Vec3, z) == offsetof(plab_v1_Vector, z));
-static_assert(sizeof(Quat) == sizeof(plab_v1_Rotation) && alignof(Quat) == alignof(plab_v1_Rotation));
-static_assert(offsetof(Quat, w) == offsetof(plab_v1_Rotation, w) && offsetof(Quat, x) == offsetof(plab_v1_Rotation, x) &&
-              offsetof(Quat, y) == offsetof(plab_v1_Rotation, y) && offsetof(Quat, z) == offsetof(plab_v1_Rotation, z));
-static_assert(sizeof(publish::BodyState) == sizeof(plab_v1_BodyState) && alignof(publish::BodyState) == alignof(plab_v1_BodyState));
-static_assert(offsetof(publish::BodyState, handle) == offsetof(plab_v1_BodyState, handle) &&
-              offsetof(publish::BodyState, position) == offsetof(plab_v1_BodyState, position) &&
-              offsetof(publish::BodyState, orientation) == offsetof(plab_v1_BodyState, orientation) &&
-              offsetof(publish::BodyState, linear_velocity) == offsetof(plab_v1_BodyState, linear_velocity) &&
-              offsetof(publish::BodyState, angular_velocity) == offsetof(plab_v1_BodyState, angular_velocity));
-static_assert(sizeof(publish::ShaftState) == sizeof(plab_v1_ShaftState) && alignof(publish::ShaftState) == alignof(plab_v1_ShaftState));
-static_assert(offsetof(publish::ShaftState, handle) == offsetof(plab_v1_ShaftState, handle) &&
-              offsetof(publish::ShaftState, angle) == offsetof(plab_v1_ShaftState, angle) &&
-              offsetof(publish::ShaftState, speed) == offsetof(plab_v1_ShaftState, speed));
+static_assert(sizeof(Vec3) == sizeof(plab_v2_Vector) && alignof(Vec3) == alignof(plab_v2_Vector));
+static_assert(offsetof(Vec3, x) == offsetof(plab_v2_Vector, x) && offsetof(Vec3, y) == offsetof(plab_v2_Vector, y) &&
+              offsetof(Vec3, z) == offsetof(plab_v2_Vector, z));
+static_assert(sizeof(Quat) == sizeof(plab_v2_Rotation) && alignof(Quat) == alignof(plab_v2_Rotation));
+static_assert(offsetof(Quat, w) == offsetof(plab_v2_Rotation, w) && offsetof(Quat, x) == offsetof(plab_v2_Rotation, x) &&
+              offsetof(Quat, y) == offsetof(plab_v2_Rotation, y) && offsetof(Quat, z) == offsetof(plab_v2_Rotation, z));
+static_assert(sizeof(publish::BodyState) == sizeof(plab_v2_BodyState) && alignof(publish::BodyState) == alignof(plab_v2_BodyState));
+static_assert(offsetof(publish::BodyState, handle) == offsetof(plab_v2_BodyState, handle) &&
+              offsetof(publish::BodyState, position) == offsetof(plab_v2_BodyState, position) &&
+              offsetof(publish::BodyState, orientation) == offsetof(plab_v2_BodyState, orientation) &&
+              offsetof(publish::BodyState, linear_velocity) == offsetof(plab_v2_BodyState, linear_velocity) &&
+              offsetof(publish::BodyState, angular_velocity) == offsetof(plab_v2_BodyState, angular_velocity));
+static_assert(sizeof(publish::ShaftState) == sizeof(plab_v2_ShaftState) && alignof(publish::ShaftState) == alignof(plab_v2_ShaftState));
+static_assert(offsetof(publish::ShaftState, handle) == offsetof(plab_v2_ShaftState, handle) &&
+              offsetof(publish::ShaftState, angle) == offsetof(plab_v2_ShaftState, angle) &&
+              offsetof(publish::ShaftState, speed) == offsetof(plab_v2_ShaftState, speed));
 
 template <class Host, class Wire>
 inline constexpr bool kSameLayout = std::is_same_v<Host, Wire>;
 template <>
-inline constexpr bool kSameLayout<Vec3, plab_v1_Vector> = true;
+inline constexpr bool kSameLayout<Vec3, plab_v2_Vector> = true;
 template <>
-inline constexpr bool kSameLayout<publish::BodyState, plab_v1_BodyState> = true;
+inline constexpr bool kSameLayout<publish::BodyState, plab_v2_BodyState> = true;
 template <>
-inline constexpr bool kSameLayout<publish::ShaftState, plab_v1_ShaftState> = true;
+inline constexpr bool kSameLayout<publish::ShaftState, plab_v2_ShaftState> = true;
 
 /// DDS only reads what it is given to write, though its types have no const.
 inline char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
 inline char* text(const char* s) { return const_cast<char*>(s); }
 
-inline plab_v1_Vector vector(const Vec3& v) { return {v.x, v.y, v.z}; }
-inline plab_v1_Rotation rotation(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
+inline plab_v2_Vector vector(const Vec3& v) { return {v.x, v.y, v.z}; }
+inline plab_v2_Rotation rotation(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
 
 /// Makes a sequence of the wire point to a vector's elements, which stay the vector's.
 template <class Sequence, class T>

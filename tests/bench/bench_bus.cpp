@@ -67,7 +67,7 @@ struct Seen
 int read_frames(const std::string& name, double seconds)
 {
     const link::Session session = session_of(name);
-    auto reader = must(session.reader<plab_v1_Frame>());
+    auto reader = must(session.reader<plab_v2_Frame>());
     (void)session.wait(reader, Seconds(5));
     std::vector<double> ages;
     std::uint64_t last = 0, missed = 0;
@@ -77,7 +77,7 @@ int read_frames(const std::string& name, double seconds)
     {
         if (!session.wait(reader, Seconds(0.2))) continue;
         (void)reader.take(
-            [&](const plab_v1_Frame& f, const dds_sample_info_t& info)
+            [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
             {
                 if (!info.valid_data) return;
                 ages.push_back(static_cast<double>(now_real_ns() - f.stamp_ns) * 1e-3);

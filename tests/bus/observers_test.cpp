@@ -31,7 +31,7 @@ TEST_CASE("the state hash without observers is that with five, one of them stopp
         observers.emplace_back(std::vector<std::string>{program("plabctl"), "--server", server.name(), "watch", "states", "--json"});
     observers.emplace_back(std::vector<std::string>{program("plab-log"), "--server", server.name()});
     link::Session session = server.session();
-    auto frames = session.reader<plab_v1_Frame>();
+    auto frames = session.reader<plab_v2_Frame>();
     REQUIRE(frames.ok());
     auto caller = link::Caller::make(session, Seconds(5));
     REQUIRE(caller.ok());
@@ -45,7 +45,7 @@ TEST_CASE("the state hash without observers is that with five, one of them stopp
     {
         (void)session.wait(*frames, Seconds(0.1));
         (void)frames->take(
-            [&](const plab_v1_Frame& f, const dds_sample_info_t& info)
+            [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
             {
                 if (!info.valid_data) return;
                 CHECK(f.step >= last_step);
@@ -65,8 +65,8 @@ TEST_CASE("collisions and events arrive numbered, without gaps, with the data of
 {
     Server server(kScene, {"--paused", "--rate", "max", "--until", "8"});
     link::Session session = server.session();
-    auto collisions = session.reader<plab_v1_Collisions>();
-    auto events = session.reader<plab_v1_Events>();
+    auto collisions = session.reader<plab_v2_Collisions>();
+    auto events = session.reader<plab_v2_Events>();
     auto caller = link::Caller::make(session, Seconds(5));
     REQUIRE(caller.ok());
     for (int i = 0; i < 100 && (collisions->writers() == 0 || events->writers() == 0); ++i) std::this_thread::sleep_for(Milliseconds(10));
@@ -77,14 +77,14 @@ TEST_CASE("collisions and events arrive numbered, without gaps, with the data of
     std::map<std::string, int> kinds;
     std::uint64_t next = 1;
     (void)collisions->take(
-        [&](const plab_v1_Collisions& batch, const dds_sample_info_t& info)
+        [&](const plab_v2_Collisions& batch, const dds_sample_info_t& info)
         {
             if (!info.valid_data) return;
             CHECK(batch.sequence_number == next);
             next += batch.entries._length;
             for (std::uint32_t i = 0; i < batch.entries._length; ++i)
             {
-                const plab_v1_CollisionInfo& c = batch.entries._buffer[i];
+                const plab_v2_CollisionInfo& c = batch.entries._buffer[i];
                 ++kinds[c.kind];
                 CHECK(std::string(c.detector) == "contact");
                 if (std::string(c.kind) != "impact") continue;
@@ -99,7 +99,7 @@ TEST_CASE("collisions and events arrive numbered, without gaps, with the data of
     CHECK(kinds["end"] == 1);
     std::vector<std::string> seen;
     (void)events->take(
-        [&](const plab_v1_Events& batch, const dds_sample_info_t& info)
+        [&](const plab_v2_Events& batch, const dds_sample_info_t& info)
         {
             for (std::uint32_t i = 0; info.valid_data && i < batch.entries._length; ++i) seen.emplace_back(batch.entries._buffer[i].kind);
         });
@@ -112,15 +112,15 @@ TEST_CASE("a late observer of a paused server sees the scene and one frame")
 {
     Server server(kScene, {"--paused"});
     link::Session session = server.session();
-    auto frames = session.reader<plab_v1_Frame>();
+    auto frames = session.reader<plab_v2_Frame>();
     REQUIRE(frames.ok());
     REQUIRE(session.wait(*frames, Seconds(5)));
     std::uint32_t bodies = 0, shafts = 0;
-    (void)frames->take([&](const plab_v1_Frame& f, const dds_sample_info_t&) { bodies = f.bodies._length, shafts = f.shafts._length; });
+    (void)frames->take([&](const plab_v2_Frame& f, const dds_sample_info_t&) { bodies = f.bodies._length, shafts = f.shafts._length; });
     CHECK(bodies == 2);
     CHECK(shafts == 6);
     // So does a second one, though the first is still there and nothing has moved.
-    auto second = session.reader<plab_v1_Frame>();
+    auto second = session.reader<plab_v2_Frame>();
     REQUIRE(second.ok());
     CHECK(session.wait(*second, Seconds(5)));
     const link::Catalogue known = catalogue(session);

@@ -34,14 +34,14 @@ Place place_of(const std::string& server)
     options.server = server;
     const auto session = link::Session::find(options, Seconds(5));
     REQUIRE_MESSAGE(session.ok(), session.error().text());
-    auto reader = session->reader<plab_v1_Snapshot>();
+    auto reader = session->reader<plab_v2_Snapshot>();
     REQUIRE(reader.ok());
     Place out;
     for (int i = 0; i < 50 && out.step < 0; ++i)
     {
         (void)session->wait(*reader, Seconds(0.1));
         (void)reader->take(
-            [&](const plab_v1_Snapshot& s, const dds_sample_info_t& info)
+            [&](const plab_v2_Snapshot& s, const dds_sample_info_t& info)
             {
                 if (info.valid_data) out = {s.step, s.state_hash};
             });

@@ -155,8 +155,8 @@ TEST_CASE("a logger hears of everything that happened, and a server that is a pl
     std::istringstream lines(log.output());
     for (std::string line; std::getline(lines, line);) told += has(line, "\"kind\"") ? 1u : 0u;
     recording::Decoder decoder;
-    recording::Sample<plab_v1_Events> events;
-    recording::Sample<plab_v1_Collisions> collisions;
+    recording::Sample<plab_v2_Events> events;
+    recording::Sample<plab_v2_Collisions> collisions;
     for (const auto& bytes : messages_of(recorded(), "plab/events"))
         if (decoder.decode(bytes, events)) happened += events->entries._length;
     for (const auto& bytes : messages_of(recorded(), "plab/collisions"))

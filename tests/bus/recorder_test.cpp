@@ -69,7 +69,7 @@ Content read_whole(const std::string& file, bool may_have_gaps = false)
     std::int64_t step = -1;
     std::uint64_t sample = 0;
     recording::Decoder decoder;
-    recording::Sample<plab_v1_Frame> frame;
+    recording::Sample<plab_v2_Frame> frame;
     recording::Cursor messages = reader->messages();
     for (auto next = messages.next();; next = messages.next(), ++out.messages)
     {
@@ -81,7 +81,7 @@ Content read_whole(const std::string& file, bool may_have_gaps = false)
         std::uint32_t& number = numbers[channel->topic];
         REQUIRE((may_have_gaps ? message.sequence >= number : message.sequence == number));
         number = message.sequence + 1;
-        if (channel->topic != std::string(wire::topic_of<plab_v1_Frame>().name)) continue;
+        if (channel->topic != std::string(wire::topic_of<plab_v2_Frame>().name)) continue;
         REQUIRE(decoder.decode(message.data, frame));
         REQUIRE(frame->sequence_number > sample);
         REQUIRE(frame->step >= step);  // whoever comes gets the present step's once more
@@ -98,10 +98,10 @@ std::int64_t wall_ns()
 class Witness
 {
 public:
-    void take(wire::Reader<plab_v1_Frame>& frames)
+    void take(wire::Reader<plab_v2_Frame>& frames)
     {
         frames.take(
-            [&](const plab_v1_Frame& frame, const dds_sample_info_t& info)
+            [&](const plab_v2_Frame& frame, const dds_sample_info_t& info)
             {
                 if (info.valid_data) seen_.emplace_back(wall_ns(), frame.stamp_ns);
             });
@@ -144,7 +144,7 @@ TEST_CASE(
     std::mt19937 random(11);
     std::vector<double> ages;
     const link::Session session = server.session();
-    auto frames = session.reader<plab_v1_Frame>();
+    auto frames = session.reader<plab_v2_Frame>();
     REQUIRE(frames.ok());
     for (int i = 0; i < kKills; ++i)
     {

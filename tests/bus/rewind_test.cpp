@@ -19,8 +19,8 @@ std::string journal_of(const std::string& file)
     REQUIRE_MESSAGE(reader.ok(), reader.error().text());
     std::string out;
     recording::Decoder decoder;
-    recording::Sample<plab_v1_Journal> entry;
-    recording::Cursor cursor = reader->messages({{wire::topic_of<plab_v1_Journal>().name}});
+    recording::Sample<plab_v2_Journal> entry;
+    recording::Cursor cursor = reader->messages({{wire::topic_of<plab_v2_Journal>().name}});
     for (auto next = cursor.next(); next && *next; next = cursor.next())
     {
         REQUIRE(decoder.decode((*next)->message.data, entry));
@@ -67,7 +67,7 @@ private:
 Process ask_for(const Server& server, const std::vector<std::string>& words)
 {
     const link::Session session = server.session();
-    auto requests = session.reader<plab_v1_Request>();
+    auto requests = session.reader<plab_v2_Request>();
     REQUIRE(requests.ok());
     std::vector<std::string> command{program("plabctl"), "--server", server.name(), "--timeout", "30"};
     command.insert(command.end(), words.begin(), words.end());
@@ -76,7 +76,7 @@ Process ask_for(const Server& server, const std::vector<std::string>& words)
     for (int i = 0; i < 100 && asked < 4; ++i)
     {
         (void)session.wait(*requests, Seconds(0.05));
-        (void)requests->take([&](const plab_v1_Request& r, const dds_sample_info_t& info)
+        (void)requests->take([&](const plab_v2_Request& r, const dds_sample_info_t& info)
                              { asked += info.valid_data && r.at == 300 ? 1 : 0; });
     }
     REQUIRE_MESSAGE(asked >= 4, asks.errors());

@@ -71,7 +71,7 @@ bool has_hashes(const std::string& file)
 {
     if (!std::filesystem::exists(file)) return false;
     const auto reader = recording::Reader::open(file);
-    return reader && !reader->channels_of({wire::topic_of<plab_v1_Hashes>().name}).empty();
+    return reader && !reader->channels_of({wire::topic_of<plab_v2_Hashes>().name}).empty();
 }
 
 /// The scene at 1 kHz.
@@ -98,13 +98,13 @@ Newest newest_in(const std::string& file)
 {
     auto reader = recording::Reader::open(file);
     REQUIRE(reader);
-    recording::Sample<plab_v1_Hashes> hashes;
+    recording::Sample<plab_v2_Hashes> hashes;
     read_last(file, hashes);
     const std::int64_t hashed = hashes->step + hashes->values._length - 1;
     Newest out;
     recording::Decoder decoder;
-    recording::Sample<plab_v1_Frame> frame;
-    recording::Cursor frames = reader->messages({{wire::topic_of<plab_v1_Frame>().name}});
+    recording::Sample<plab_v2_Frame> frame;
+    recording::Cursor frames = reader->messages({{wire::topic_of<plab_v2_Frame>().name}});
     for (auto next = frames.next(); next && *next; next = frames.next())
     {
         REQUIRE(decoder.decode((*next)->message.data, frame));
@@ -136,7 +136,7 @@ TEST_CASE("a recorded run with swaps is the same run again, for one and for two 
 
     // The numbers in the file are the server's own, to the last digit.
     const auto json = nlohmann::json::parse(std::ifstream(end));
-    recording::Sample<plab_v1_Frame> frame;
+    recording::Sample<plab_v2_Frame> frame;
     read_last(file, frame);
     CHECK(frame->step == 1440);
     bool found = false;

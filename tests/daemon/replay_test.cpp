@@ -13,7 +13,7 @@ namespace plab::test
 namespace
 {
 
-const std::string kGolden = std::string(PLAB_SOURCE_DIR) + "/tests/daemon/golden/format_1.mcap";
+const std::string kGolden = std::string(PLAB_SOURCE_DIR) + "/tests/daemon/golden/format_2.mcap";
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -51,7 +51,7 @@ Edits without(const std::string& topic, int n, int& count)
 
 }  // namespace
 
-TEST_CASE("a recording of format 1 is read, and is the same run again")
+TEST_CASE("a recording of format 2 is read, and is the same run again")
 {
     REQUIRE(std::filesystem::file_size(kGolden) < 100'000);
     auto reader = recording::open_recording(kGolden);
@@ -62,7 +62,7 @@ TEST_CASE("a recording of format 1 is read, and is the same run again")
     CHECK(topics == std::set<std::string>{"plab/collisions", "plab/events", "plab/hashes", "plab/interactions", "plab/journal",
                                           "plab/metrics", "plab/objects", "plab/scene", "plab/server", "plab/shapes", "plab/snapshots",
                                           "plab/states", "plab/types"});
-    recording::Sample<plab_v1_Frame> frame;
+    recording::Sample<plab_v2_Frame> frame;
     const auto last = reader->last_at("plab/states", ~std::uint64_t{0});
     REQUIRE(last);
     REQUIRE(*last);
@@ -84,8 +84,8 @@ TEST_CASE("a recording of format 1 is read, and is the same run again")
 
 TEST_CASE("a recording of a newer or of an unknown format is refused by every reader")
 {
-    const std::string file = with_format("2"), picture = scratch_file("format.svg"), page = scratch_file("format.html");
-    const std::string why = "is of format 2, this build reads format 1: a newer pLab";
+    const std::string file = with_format("3"), picture = scratch_file("format.svg"), page = scratch_file("format.html");
+    const std::string why = "is of format 3, this build reads format 2: a newer pLab";
     const std::string plabctl = program("plabctl");
     const std::vector<std::vector<std::string>> readers{{program("plabd"), "--replay", file},
                                                         {plabctl, "info", file},
@@ -105,15 +105,27 @@ TEST_CASE("a recording of a newer or of an unknown format is refused by every re
     for (const std::string unknown : {"0", "1.5", "one", "-1"})
         CHECK(has(plabd({"--replay", with_format(unknown)}).errors, "is of the unknown format '" + unknown + "'"));
     CHECK(has(plabd({"--replay", with_format("")}).errors, "does not say of which format it is"));
-    CHECK(plabd({"--replay", with_format("1")}).code == 0);
+    CHECK(plabd({"--replay", with_format("2")}).code == 0);
+}
+
+TEST_CASE("a recording of format 1, whose types are plab::v1, is refused with the pLab that reads it")
+{
+    const std::string old = std::string(PLAB_SOURCE_DIR) + "/tests/daemon/golden/format_1.mcap";
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{program("plabd"), "--replay", old}, {program("plabctl"), "info", old}})
+    {
+        const Outcome refused = run(command);
+        CHECK(refused.code == 1);
+        CHECK_MESSAGE(has(refused.errors, "is of format 1, this build reads format 2: an older pLab, "), refused.errors);
+    }
 }
 
 TEST_CASE("a journal with another value: step, object, column and both values are told")
 {
     const auto change = [](const std::string& topic, recording::Bytes& data)
     {
-        (void)edit<plab_v1_Journal>(topic, data,
-                                    [](plab_v1_Journal& j)
+        (void)edit<plab_v2_Journal>(topic, data,
+                                    [](plab_v2_Journal& j)
                                     {
                                         if (std::string(j.operations._buffer[0].verb) == "swap")
                                             put_text(j.operations._buffer[0].argument, "Response/Impulse");
@@ -135,14 +147,14 @@ TEST_CASE("one bit of a hash in the file, with and without a state beside it")
 {
     const auto flip = [](const std::string& topic, recording::Bytes& data)
     {
-        (void)edit<plab_v1_Hashes>(topic, data,
-                                   [](plab_v1_Hashes& h)
+        (void)edit<plab_v2_Hashes>(topic, data,
+                                   [](plab_v2_Hashes& h)
                                    {
                                        const std::int64_t at = 100 - h.step;
                                        if (at >= 0 && at < h.values._length) h.values._buffer[at] ^= 1;
                                    });
-        (void)edit<plab_v1_Frame>(topic, data,
-                                  [](plab_v1_Frame& f)
+        (void)edit<plab_v2_Frame>(topic, data,
+                                  [](plab_v2_Frame& f)
                                   {
                                       if (f.step == 100) f.bodies._buffer[0].position.x += 1e-12;
                                   });
@@ -156,8 +168,8 @@ TEST_CASE("one bit of a hash in the file, with and without a state beside it")
     // A hash alone, behind the last snapshot.
     const auto alone = [](const std::string& topic, recording::Bytes& data)
     {
-        (void)edit<plab_v1_Hashes>(topic, data,
-                                   [](plab_v1_Hashes& h)
+        (void)edit<plab_v2_Hashes>(topic, data,
+                                   [](plab_v2_Hashes& h)
                                    {
                                        const std::int64_t at = 141 - h.step;
                                        if (at >= 0 && at < h.values._length) h.values._buffer[at] ^= 1;

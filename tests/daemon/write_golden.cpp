@@ -11,13 +11,13 @@ namespace
 
 bool forget_host(const std::string& topic, plab::recording::Bytes& data)
 {
-    const auto change = [](plab_v1_Server& s)
+    const auto change = [](plab_v2_Server& s)
     {
         plab::test::put_text(s.host, "here");
         plab::test::put_text(s.recording.file, "golden.mcap");
         s.process = 1;
     };
-    return topic != plab::wire::topic_of<plab_v1_Server>().name || plab::test::edit<plab_v1_Server>(topic, data, change);
+    return topic != plab::wire::topic_of<plab_v2_Server>().name || plab::test::edit<plab_v2_Server>(topic, data, change);
 }
 
 }  // namespace

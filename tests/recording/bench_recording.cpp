@@ -79,8 +79,8 @@ void write_frames(const std::string& path, const Setting& setting, const std::st
         samples.emplace_back(bytes.begin(), bytes.end());
     }
     Writer writer = must(Writer::create(path, options_of(setting), Overwrite::Yes));
-    const auto schema = must(writer.add_schema(must(schema_of<plab_v1_Frame>())));
-    const auto channel = must(writer.add_channel(channel_of<plab_v1_Frame>(schema)));
+    const auto schema = must(writer.add_schema(must(schema_of<plab_v2_Frame>())));
+    const auto channel = must(writer.add_channel(channel_of<plab_v2_Frame>(schema)));
     const double begin = cpu();
     Clock::time_point now{};
     std::uint64_t time = 0;
@@ -125,7 +125,7 @@ void encode_frames()
     test::WalkingFrames frames(1000, 1000, 1e-3);
     Encoder encoder;
     Decoder decoder;
-    Sample<plab_v1_Frame> back;
+    Sample<plab_v2_Frame> back;
     constexpr int kCount = 300;
     double encoding = 0, decoding = 0;
     for (int i = 0; i < kCount; ++i)
@@ -151,8 +151,8 @@ void read_large(const std::string& folder)
     Encoder encoder;
     {
         Writer writer = must(Writer::create(path, options_of({"zstd", Compression::Zstd, 1}), Overwrite::Yes));
-        const auto schema = must(writer.add_schema(must(schema_of<plab_v1_Frame>())));
-        const auto channel = must(writer.add_channel(channel_of<plab_v1_Frame>(schema)));
+        const auto schema = must(writer.add_schema(must(schema_of<plab_v2_Frame>())));
+        const auto channel = must(writer.add_channel(channel_of<plab_v2_Frame>(schema)));
         Clock::time_point now{};
         while (writer.file_size() < 1'000'000'000)
         {

@@ -86,7 +86,7 @@ Result<void> write(const std::string& path, const std::string& compression)
     options.compression = compression_of(compression == "none" ? "" : compression).value_or(Compression::None);
     auto writer = Writer::create(path, options, Overwrite::Yes);
     if (!writer) return writer.errors();
-    if (auto done = writer->add_metadata({"plab", {{"format", "1"}, {"server", "pair"}}}); !done) return done;
+    if (auto done = writer->add_metadata({"plab", {{"format", "2"}, {"server", "pair"}}}); !done) return done;
 
     std::mt19937_64 random(1);
     Clock::time_point now{};

@@ -35,8 +35,8 @@ private:
         WriterOptions options;
         options.compression = Compression::Lz4;
         auto writer = Writer::create(path, options, Overwrite::Yes).take();
-        const auto schema = writer.add_schema(*schema_of<plab_v1_Frame>()).take();
-        const auto states = writer.add_channel(channel_of<plab_v1_Frame>(schema)).take();
+        const auto schema = writer.add_schema(*schema_of<plab_v2_Frame>()).take();
+        const auto states = writer.add_channel(channel_of<plab_v2_Frame>(schema)).take();
         const auto rare = writer.add_channel({0, 0, "rare", "text", {}}).take();
         plab::test::WalkingFrames frames(1000, 1000, 1e-3);
         Encoder encoder;
@@ -65,7 +65,7 @@ TEST_CASE("opening a file of 1 GB and going to any time in it take less than a s
 {
     const LargeFile file;
     Decoder decoder;
-    Sample<plab_v1_Frame> frame;
+    Sample<plab_v2_Frame> frame;
     for (int i = 0; i < 10; ++i)
     {
         const std::uint64_t time = file.end / 10 * static_cast<std::uint64_t>(i) + kMillisecond / 2;

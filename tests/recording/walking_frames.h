@@ -22,7 +22,7 @@ public:
     }
 
     /// The next frame; its memory is this object's.
-    const plab_v1_Frame& next()
+    const plab_v2_Frame& next()
     {
         for (std::size_t i = 0; i < moving_; ++i) walk(bodies_[i]);
         frame_.run = 1;
@@ -38,29 +38,29 @@ public:
 
 private:
     double normal() { return normal_(random_); }
-    void drift(plab_v1_Vector& v)
+    void drift(plab_v2_Vector& v)
     {
         const double keep = std::exp(-dt_), kick = std::sqrt(1 - keep * keep);
         v = {keep * v.x + kick * normal(), keep * v.y + kick * normal(), keep * v.z + kick * normal()};
     }
-    void walk(plab_v1_BodyState& b)
+    void walk(plab_v2_BodyState& b)
     {
         drift(b.linear_velocity);
         drift(b.angular_velocity);
-        const plab_v1_Vector &v = b.linear_velocity, &w = b.angular_velocity;
+        const plab_v2_Vector &v = b.linear_velocity, &w = b.angular_velocity;
         b.position = {b.position.x + dt_ * v.x, b.position.y + dt_ * v.y, b.position.z + dt_ * v.z};
-        const plab_v1_Rotation q = b.orientation;
+        const plab_v2_Rotation q = b.orientation;
         const double h = dt_ / 2;
-        const plab_v1_Rotation r{q.w - h * (w.x * q.x + w.y * q.y + w.z * q.z), q.x + h * (w.x * q.w + w.y * q.z - w.z * q.y),
+        const plab_v2_Rotation r{q.w - h * (w.x * q.x + w.y * q.y + w.z * q.z), q.x + h * (w.x * q.w + w.y * q.z - w.z * q.y),
                                  q.y + h * (w.y * q.w + w.z * q.x - w.x * q.z), q.z + h * (w.z * q.w + w.x * q.y - w.y * q.x)};
         const double n = 1 / std::sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
         b.orientation = {n * r.w, n * r.x, n * r.y, n * r.z};
     }
 
-    std::vector<plab_v1_BodyState> bodies_;
+    std::vector<plab_v2_BodyState> bodies_;
     std::size_t moving_;
     double dt_;
-    plab_v1_Frame frame_{};
+    plab_v2_Frame frame_{};
     std::mt19937_64 random_{1};
     std::normal_distribution<double> normal_{0, 1};
 };

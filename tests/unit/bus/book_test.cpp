@@ -34,9 +34,9 @@ std::string why(const RequestBook::Decision& decision) { return decision.answer.
 /// A request with one operation and one value, whose texts are the caller's.
 struct RawRequest
 {
-    plab_v1_NamedText value{wire::text("name"), wire::text("1")};
-    plab_v1_Operation operation{wire::text("set"), wire::text("ball"), wire::text(""), wire::text(""), {1, 1, &value, false}};
-    plab_v1_Request wire{{1}, 1, -1, -1, {1, 1, &operation, false}};
+    plab_v2_NamedText value{wire::text("name"), wire::text("1")};
+    plab_v2_Operation operation{wire::text("set"), wire::text("ball"), wire::text(""), wire::text(""), {1, 1, &value, false}};
+    plab_v2_Request wire{{1}, 1, -1, -1, {1, 1, &operation, false}};
 
     std::string refusal() const
     {
@@ -250,8 +250,8 @@ TEST_CASE("the form of a request is checked")
     none.wire.operations._length = 0;
     CHECK(none.refusal() == "the request has no operation");
     RawRequest many;
-    const std::vector<plab_v1_Operation> operations(wire::kMostOperations + 1, many.operation);
-    many.wire.operations = {257, 257, const_cast<plab_v1_Operation*>(operations.data()), false};
+    const std::vector<plab_v2_Operation> operations(wire::kMostOperations + 1, many.operation);
+    many.wire.operations = {257, 257, const_cast<plab_v2_Operation*>(operations.data()), false};
     CHECK(many.refusal() == "the request has 257 operations: at most 256 may be asked for at once");
     many.wire.operations._length = 256;
     CHECK(many.refusal().empty());
@@ -269,14 +269,14 @@ TEST_CASE("the text of a request is limited, and so is the number of its values"
     r.operation.blueprint = wire::text(above);
     CHECK(r.refusal() == "the request has more than 4194304 bytes of text");
     RawRequest empties;
-    const std::vector<plab_v1_NamedText> values(wire::kMostValues + 1, {wire::text(""), wire::text("")});
-    empties.operation.values = {257, 257, const_cast<plab_v1_NamedText*>(values.data()), false};
+    const std::vector<plab_v2_NamedText> values(wire::kMostValues + 1, {wire::text(""), wire::text("")});
+    empties.operation.values = {257, 257, const_cast<plab_v2_NamedText*>(values.data()), false};
     CHECK(empties.refusal() == "operation 1 has 257 values: at most 256 may be given at once");
     empties.operation.values._length = 256;
     CHECK(empties.refusal().empty());
     RawRequest second;
-    plab_v1_Operation two[] = {second.operation, second.operation};
-    two[1].values = {257, 257, const_cast<plab_v1_NamedText*>(values.data()), false};
+    plab_v2_Operation two[] = {second.operation, second.operation};
+    two[1].values = {257, 257, const_cast<plab_v2_NamedText*>(values.data()), false};
     second.wire.operations = {2, 2, two, false};
     CHECK(second.refusal() == "operation 2 has 257 values: at most 256 may be given at once");
 }

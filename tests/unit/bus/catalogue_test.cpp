@@ -83,12 +83,12 @@ private:
     Ids ids_;
     std::size_t disposed_ = 0, dead_ = 0;
 };
-using LiveObjects = Alive<plab_v1_Object, &plab_v1_Object::component>;
-using LiveShapes = Alive<plab_v1_Shape, &plab_v1_Shape::component>;
-using LiveInteractions = Alive<plab_v1_Interaction, &plab_v1_Interaction::component>;
-using LiveTypes = Alive<plab_v1_Type, &plab_v1_Type::type_name>;
-using LiveScenes = Alive<plab_v1_Scene, &plab_v1_Scene::server>;
-using LiveServers = Alive<plab_v1_Server, &plab_v1_Server::name>;
+using LiveObjects = Alive<plab_v2_SceneObject, &plab_v2_SceneObject::component_id>;
+using LiveShapes = Alive<plab_v2_Shape, &plab_v2_Shape::component_id>;
+using LiveInteractions = Alive<plab_v2_Interaction, &plab_v2_Interaction::component_id>;
+using LiveTypes = Alive<plab_v2_Type, &plab_v2_Type::type_name>;
+using LiveScenes = Alive<plab_v2_Scene, &plab_v2_Scene::server_name>;
+using LiveServers = Alive<plab_v2_Server, &plab_v2_Server::name>;
 
 }  // namespace
 
@@ -115,14 +115,14 @@ TEST_CASE("catalogue samples carry what was recorded")
 {
     TestBus bus;
     const link::Session session = bus.session();
-    auto shapes = reader_of<plab_v1_Shape>(session);
-    auto interactions = reader_of<plab_v1_Interaction>(session);
-    auto scenes = reader_of<plab_v1_Scene>(session);
+    auto shapes = reader_of<plab_v2_Shape>(session);
+    auto interactions = reader_of<plab_v2_Interaction>(session);
+    auto scenes = reader_of<plab_v2_Scene>(session);
     REQUIRE(bus->catalogue(everything()));
     REQUIRE(session.wait(scenes, 5s));  // written last
     REQUIRE(session.wait(shapes, 5s));
     (void)shapes.take(
-        [&](const plab_v1_Shape& s, const dds_sample_info_t&)
+        [&](const plab_v2_Shape& s, const dds_sample_info_t&)
         {
             CHECK(std::string(s.form) == "mesh");
             REQUIRE(s.vertices._length == 4);
@@ -132,7 +132,7 @@ TEST_CASE("catalogue samples carry what was recorded")
         });
     REQUIRE(session.wait(interactions, 5s));
     (void)interactions.take(
-        [&](const plab_v1_Interaction& i, const dds_sample_info_t&)
+        [&](const plab_v2_Interaction& i, const dds_sample_info_t&)
         {
             REQUIRE(i.roles._length == 2);
             REQUIRE(i.roles._buffer[1].members._length == 2);
@@ -140,7 +140,7 @@ TEST_CASE("catalogue samples carry what was recorded")
             CHECK(std::string(i.roles._buffer[0].role) == "driver");
         });
     (void)scenes.take(
-        [&](const plab_v1_Scene& s, const dds_sample_info_t&)
+        [&](const plab_v2_Scene& s, const dds_sample_info_t&)
         {
             REQUIRE(s.cameras._length == 1);
             CHECK(std::string(s.cameras._buffer[0].name) == "front");
@@ -200,12 +200,12 @@ TEST_CASE("the server says that it is there at least once a second")
 {
     TestBus bus;
     const link::Session session = bus.session();
-    auto reader = reader_of<plab_v1_Server>(session);
+    auto reader = reader_of<plab_v2_Server>(session);
     publish::Status status;
     status.scene_file = "s.xml", status.step = 12, status.slipping = true;
     bus->status(status);
     int samples = 0;
-    const auto count = [&](const plab_v1_Server& s, const dds_sample_info_t& info)
+    const auto count = [&](const plab_v2_Server& s, const dds_sample_info_t& info)
     {
         if (!info.valid_data) return;
         ++samples;

@@ -8,9 +8,9 @@ using namespace plab::test;
 namespace
 {
 
-plab_v1_Server server_sample(const std::string& name, const std::string& host, std::int32_t process, std::int64_t started)
+plab_v2_Server server_sample(const std::string& name, const std::string& host, std::int32_t process, std::int64_t started)
 {
-    plab_v1_Server s{};
+    plab_v2_Server s{};
     s.name = wire::text(name), s.host = wire::text(host), s.process = process, s.started_ns = started;
     return s;
 }
@@ -65,7 +65,7 @@ TEST_CASE("a server that meets an older one of its name from elsewhere says that
 {
     TestBus bus;
     const link::Session elsewhere = bus.session();
-    auto writer = elsewhere.writer<plab_v1_Server>();
+    auto writer = elsewhere.writer<plab_v2_Server>();
     REQUIRE(writer.ok());
     REQUIRE(eventually([&] { return writer->readers() > 0; }));
     bus->status({});

@@ -53,7 +53,7 @@ TEST_CASE("a reader that is stopped holds up neither the step thread nor other r
     MESSAGE("handing over, reader stopped: median " << at(stopped, 0.5) << " us, 99 % " << at(stopped, 0.99) << " us");
     CHECK(at(stopped, 0.99) < 20000);  // who waited for it would wait for seconds
 
-    auto other = reader_of<plab_v1_Frame>(session);
+    auto other = reader_of<plab_v2_Frame>(session);
     REQUIRE(eventually([&] { return other.writers() > 0; }));
     std::this_thread::sleep_for(50ms);
     std::uint64_t last = 0;
@@ -61,7 +61,7 @@ TEST_CASE("a reader that is stopped holds up neither the step thread nor other r
         [&]
         {
             push_frame(*bus.operator->(), ++number, 1);
-            (void)other.take([&](const plab_v1_Frame& f, const dds_sample_info_t&) { last = f.sequence_number; });
+            (void)other.take([&](const plab_v2_Frame& f, const dds_sample_info_t&) { last = f.sequence_number; });
             return last > 0;
         });
     CHECK(arrived);

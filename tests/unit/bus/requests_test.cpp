@@ -56,15 +56,15 @@ std::pair<std::uint64_t, link::Reply> reply(link::Caller& caller, std::chrono::m
 class Rogue
 {
 public:
-    explicit Rogue(const link::Session& session) : replies_(reader_of<plab_v1_Reply>(session))
+    explicit Rogue(const link::Session& session) : replies_(reader_of<plab_v2_Reply>(session))
     {
-        auto writer = session.writer<plab_v1_Request>();
+        auto writer = session.writer<plab_v2_Request>();
         REQUIRE(writer.ok());
         writer_ = writer.take();
         REQUIRE(eventually([&] { return writer_.readers() > 0 && replies_.writers() > 0; }));
     }
     /// The reason of the refusal that came; empty if none did.
-    std::string refused(const plab_v1_Request& request)
+    std::string refused(const plab_v2_Request& request)
     {
         REQUIRE(writer_.write(request) == DDS_RETCODE_OK);
         std::string why;
@@ -72,7 +72,7 @@ public:
             [&]
             {
                 (void)replies_.take(
-                    [&](const plab_v1_Reply& r, const dds_sample_info_t& info)
+                    [&](const plab_v2_Reply& r, const dds_sample_info_t& info)
                     {
                         if (info.valid_data && std::string(r.outcome) == "refused") why = r.reasons._buffer[0];
                     });
@@ -83,8 +83,8 @@ public:
     }
 
 private:
-    wire::Reader<plab_v1_Reply> replies_;
-    wire::Writer<plab_v1_Request> writer_;
+    wire::Reader<plab_v2_Reply> replies_;
+    wire::Writer<plab_v2_Request> writer_;
 };
 
 }  // namespace
@@ -206,11 +206,11 @@ TEST_CASE("garbage is refused with a reason, and never reaches the step loop")
     const link::Session session = bus.session();
     Rogue rogue(session);
     const std::string big(wire::kMostRequestBytes + 10, 'x'), latin = "b\xe4ll";
-    plab_v1_Operation operation{wire::text("pause"), nullptr, nullptr, nullptr, {}};
-    plab_v1_Request request{{9}, 1, -1, -1, {1, 1, &operation, false}};
+    plab_v2_Operation operation{wire::text("pause"), nullptr, nullptr, nullptr, {}};
+    plab_v2_Request request{{9}, 1, -1, -1, {1, 1, &operation, false}};
     const auto with = [&](auto&& change)
     {
-        plab_v1_Request changed = request;
+        plab_v2_Request changed = request;
         change(changed);
         ++request.number;
         return rogue.refused(changed);
@@ -338,8 +338,8 @@ TEST_CASE("whoever has the reply finds in the catalogue what the request did")
     TestBus bus;
     const link::Session session = bus.session();
     link::Caller caller = caller_of(session);
-    auto objects = reader_of<plab_v1_Object>(session);
-    const auto events = reader_of<plab_v1_Events>(session);
+    auto objects = reader_of<plab_v2_SceneObject>(session);
+    const auto events = reader_of<plab_v2_Events>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::Events); }));
     for (int i = 0; i < 20; ++i)
     {
@@ -360,7 +360,7 @@ TEST_CASE("whoever has the reply finds in the catalogue what the request did")
         REQUIRE(answered);
         const std::string last = "o" + std::to_string(i) + "-199";
         bool found = false;
-        (void)objects.take([&](const plab_v1_Object& o, const dds_sample_info_t&) { found = found || o.component == last; });
+        (void)objects.take([&](const plab_v2_SceneObject& o, const dds_sample_info_t&) { found = found || o.component_id == last; });
         REQUIRE(found);
     }
 }

@@ -13,10 +13,10 @@ namespace
 struct FrameLog
 {
     std::vector<std::uint64_t> numbers;
-    void take(wire::Reader<plab_v1_Frame>& reader)
+    void take(wire::Reader<plab_v2_Frame>& reader)
     {
         (void)reader.take(
-            [&](const plab_v1_Frame& frame, const dds_sample_info_t& info)
+            [&](const plab_v2_Frame& frame, const dds_sample_info_t& info)
             {
                 if (info.valid_data) numbers.push_back(frame.sequence_number);
             });
@@ -44,7 +44,7 @@ TEST_CASE("nothing is wanted until somebody reads it, and again once he is gone"
     std::this_thread::sleep_for(50ms);
     const int before = bus.wakes();
     {
-        const auto reader = reader_of<plab_v1_Frame>(session);
+        const auto reader = reader_of<plab_v2_Frame>(session);
         CHECK(eventually([&] { return bus->wants(publish::Stream::States); }));
         CHECK(eventually([&] { return bus.wakes() == before + 1; }));  // a paused server may show where it stands
         CHECK_FALSE(bus->wants(publish::Stream::Events));
@@ -56,13 +56,13 @@ TEST_CASE("a frame arrives as it was filled")
 {
     TestBus bus;
     const link::Session session = bus.session();
-    auto reader = reader_of<plab_v1_Frame>(session);
+    auto reader = reader_of<plab_v2_Frame>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::States); }));
     push_frame(*bus.operator->(), 9, 3);
     REQUIRE(session.wait(reader, 5s));
     int frames = 0;
     (void)reader.take(
-        [&](const plab_v1_Frame& f, const dds_sample_info_t&)
+        [&](const plab_v2_Frame& f, const dds_sample_info_t&)
         {
             ++frames;
             CHECK(f.run == 3);
@@ -72,7 +72,7 @@ TEST_CASE("a frame arrives as it was filled")
             CHECK(f.time == 2.25);
             CHECK(f.stamp_ns == 77);
             REQUIRE(f.bodies._length == 3);
-            const plab_v1_BodyState& b = f.bodies._buffer[2];
+            const plab_v2_BodyState& b = f.bodies._buffer[2];
             CHECK(b.handle == 2);
             CHECK(b.position.z == 4);
             CHECK(b.orientation.y == -0.5);
@@ -89,8 +89,8 @@ TEST_CASE("frames that come too fast are given up oldest first: numbers rise, ga
 {
     TestBus bus;
     const link::Session session = bus.session();
-    auto reader = reader_of<plab_v1_Frame>(session);
-    auto server = reader_of<plab_v1_Server>(session);
+    auto reader = reader_of<plab_v2_Frame>(session);
+    auto server = reader_of<plab_v2_Server>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::States); }));
     constexpr std::uint64_t kFrames = 3000;
     FrameLog log;
@@ -113,7 +113,7 @@ TEST_CASE("frames that come too fast are given up oldest first: numbers rise, ga
         [&]
         {
             (void)server.take(
-                [&](const plab_v1_Server& s, const dds_sample_info_t&)
+                [&](const plab_v2_Server& s, const dds_sample_info_t&)
                 {
                     for (std::uint32_t i = 0; i < s.dropped._length; ++i)
                         if (std::string(s.dropped._buffer[i].topic) == "plab/states") dropped = s.dropped._buffer[i].samples;
@@ -127,8 +127,8 @@ TEST_CASE("a reader that never takes holds nobody up")
 {
     TestBus bus;
     const link::Session session = bus.session();
-    const auto frames = reader_of<plab_v1_Frame>(session);
-    const auto events = reader_of<plab_v1_Events>(session);
+    const auto frames = reader_of<plab_v2_Frame>(session);
+    const auto events = reader_of<plab_v2_Events>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::States) && bus->wants(publish::Stream::Events); }));
     std::vector<double> us;
     for (std::uint64_t i = 1; i <= 2000; ++i)
@@ -151,7 +151,7 @@ TEST_CASE("events arrive with all their parts")
 {
     TestBus bus;
     const link::Session session = bus.session();
-    auto reader = reader_of<plab_v1_Events>(session);
+    auto reader = reader_of<plab_v2_Events>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::Events); }));
     publish::Batch<publish::EventRecord> batch;
     batch.run = 2, batch.first = 41, batch.step = 8;
@@ -160,7 +160,7 @@ TEST_CASE("events arrive with all their parts")
     bus->events(std::move(batch));
     REQUIRE(session.wait(reader, 5s));
     (void)reader.take(
-        [&](const plab_v1_Events& e, const dds_sample_info_t&)
+        [&](const plab_v2_Events& e, const dds_sample_info_t&)
         {
             CHECK(e.run == 2);
             CHECK(e.sequence_number == 41);
@@ -179,7 +179,7 @@ TEST_CASE("metrics arrive, each interaction with its own outputs")
 {
     TestBus bus;
     const link::Session session = bus.session();
-    auto reader = reader_of<plab_v1_Metrics>(session);
+    auto reader = reader_of<plab_v2_Metrics>(session);
     REQUIRE(eventually([&] { return bus->wants(publish::Stream::Metrics); }));
     publish::Metrics metrics;
     metrics.kinetic = 1, metrics.stored = 2, metrics.work = 3, metrics.of_requests = 4, metrics.unexplained = 5;
@@ -188,7 +188,7 @@ TEST_CASE("metrics arrive, each interaction with its own outputs")
     bus->metrics(std::move(metrics));
     REQUIRE(session.wait(reader, 5s));
     (void)reader.take(
-        [&](const plab_v1_Metrics& m, const dds_sample_info_t&)
+        [&](const plab_v2_Metrics& m, const dds_sample_info_t&)
         {
             CHECK(m.ledger.of_requests == 4);
             REQUIRE(m.interactions._length == 2);
@@ -203,8 +203,8 @@ TEST_CASE("collisions and images have a writer only while the scene can produce 
 {
     TestBus bus;
     const link::Session session = bus.session();
-    const auto collisions = reader_of<plab_v1_Collisions>(session);
-    auto images = reader_of<plab_v1_Image>(session);
+    const auto collisions = reader_of<plab_v2_Collisions>(session);
+    auto images = reader_of<plab_v2_Image>(session);
     REQUIRE(bus->catalogue(scene_with("Field/Gravity")));
     std::this_thread::sleep_for(100ms);
     CHECK(collisions.writers() == 0);
@@ -218,7 +218,7 @@ TEST_CASE("collisions and images have a writer only while the scene can produce 
     bus->image({"eye", 1, 2, 0.5, 2, 1, {1, 2, 3, 4, 5, 6, 7, 255}});
     REQUIRE(session.wait(images, 5s));
     (void)images.take(
-        [&](const plab_v1_Image& i, const dds_sample_info_t&)
+        [&](const plab_v2_Image& i, const dds_sample_info_t&)
         {
             CHECK(std::string(i.camera) == "eye");
             CHECK(std::string(i.encoding) == "rgba8");

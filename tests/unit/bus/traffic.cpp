@@ -66,7 +66,7 @@ int read(const std::string& name, double seconds)
 {
     auto session = link::Session::join({name, {domain(), ""}});
     if (!session) return fail(session.error());
-    auto reader = session->reader<plab_v1_Frame>();
+    auto reader = session->reader<plab_v2_Frame>();
     if (!reader) return fail(reader.error());
     const auto end = Clock::now() + std::chrono::duration<double>(seconds);
     std::uint64_t frames = 0, first = 0, last = 0;
@@ -77,7 +77,7 @@ int read(const std::string& name, double seconds)
     {
         if (!session->wait(*reader, link::Seconds(0.2))) continue;
         (void)reader->take(
-            [&](const plab_v1_Frame& f, const dds_sample_info_t& info)
+            [&](const plab_v2_Frame& f, const dds_sample_info_t& info)
             {
                 if (!info.valid_data) return;
                 if (frames++ == 0) first = f.sequence_number, began = Clock::now();
@@ -137,13 +137,13 @@ int write_raw(const std::string& name, std::size_t bodies, double rate, double s
 {
     auto session = link::Session::join({name, {domain(), ""}});
     if (!session) return fail(session.error());
-    auto writer = session->writer<plab_v1_Frame>();
+    auto writer = session->writer<plab_v2_Frame>();
     if (!writer) return fail(writer.error());
     const auto give_up = Clock::now() + 10s;
     while (writer->readers() == 0 && Clock::now() < give_up) std::this_thread::sleep_for(1ms);
-    std::vector<plab_v1_BodyState> states(bodies);
+    std::vector<plab_v2_BodyState> states(bodies);
     const auto count = static_cast<std::uint32_t>(bodies);
-    plab_v1_Frame frame{};
+    plab_v2_Frame frame{};
     frame.bodies = {count, count, states.data(), false};
     const double cpu = cpu_seconds();
     const auto begin = Clock::now(), end = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));

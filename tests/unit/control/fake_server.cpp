@@ -29,12 +29,12 @@ Sequence sequence(std::vector<T>& items)
     return {count, count, items.data(), false};
 }
 
-plab_v1_Parameter parameter(const char* name, const char* value, const char* unit, const char* kind)
+plab_v2_Parameter parameter(const char* name, const char* value, const char* unit, const char* kind)
 {
     return {text(name), text(value), text(unit), text(kind)};
 }
 
-plab_v1_FieldInfo field(const char* name, const char* unit, const char* fallback, const char* rule, const char* doc)
+plab_v2_FieldInfo field(const char* name, const char* unit, const char* fallback, const char* rule, const char* doc)
 {
     return {text(name), text("param"), text("real"), text(unit), text(fallback), false, text(rule), text(doc)};
 }
@@ -44,18 +44,18 @@ plab_v1_FieldInfo field(const char* name, const char* unit, const char* fallback
 struct FakeServer::Ends
 {
     wire::Entity participant, publisher, subscriber;
-    wire::Writer<plab_v1_Server> server;
-    wire::Writer<plab_v1_Scene> scene;
-    wire::Writer<plab_v1_Object> objects;
-    wire::Writer<plab_v1_Shape> shapes;
-    wire::Writer<plab_v1_Interaction> interactions;
-    wire::Writer<plab_v1_Type> types;
-    wire::Writer<plab_v1_Frame> states;
-    wire::Writer<plab_v1_Collisions> collisions;
-    wire::Writer<plab_v1_Events> events;
-    wire::Writer<plab_v1_Metrics> metrics;
-    wire::Writer<plab_v1_Reply> replies;
-    wire::Reader<plab_v1_Request> requests;
+    wire::Writer<plab_v2_Server> server;
+    wire::Writer<plab_v2_Scene> scene;
+    wire::Writer<plab_v2_SceneObject> objects;
+    wire::Writer<plab_v2_Shape> shapes;
+    wire::Writer<plab_v2_Interaction> interactions;
+    wire::Writer<plab_v2_Type> types;
+    wire::Writer<plab_v2_Frame> states;
+    wire::Writer<plab_v2_Collisions> collisions;
+    wire::Writer<plab_v2_Events> events;
+    wire::Writer<plab_v2_Metrics> metrics;
+    wire::Writer<plab_v2_Reply> replies;
+    wire::Reader<plab_v2_Request> requests;
 
     template <class T>
     void open(wire::Writer<T>& writer)
@@ -72,7 +72,7 @@ FakeServer::FakeServer(std::uint32_t domain, std::string name) : name_(std::move
     e.subscriber = need(wire::make_subscriber(e.participant, name_));
     e.open(e.server), e.open(e.scene), e.open(e.objects), e.open(e.shapes), e.open(e.interactions), e.open(e.types);
     e.open(e.states), e.open(e.collisions), e.open(e.events), e.open(e.metrics), e.open(e.replies);
-    e.requests = need(wire::Reader<plab_v1_Request>::make(e.participant, e.subscriber));
+    e.requests = need(wire::Reader<plab_v2_Request>::make(e.participant, e.subscriber));
     publish_catalogue();
     publish_types();
     publish_state();
@@ -97,7 +97,7 @@ void FakeServer::run()
     while (!stop_)
     {
         (void)ends_->requests.take(
-            [&](const plab_v1_Request& request, const dds_sample_info_t& info)
+            [&](const plab_v2_Request& request, const dds_sample_info_t& info)
             {
                 if (info.valid_data) answer(request);
             });
@@ -107,7 +107,7 @@ void FakeServer::run()
         publish_state();
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    plab_v1_Server gone{};
+    plab_v2_Server gone{};
     gone.name = text(name_);
     gone.version = gone.host = gone.scene_file = gone.overload = text("");
     (void)ends_->server.dispose(gone);
@@ -115,64 +115,64 @@ void FakeServer::run()
 
 void FakeServer::publish_catalogue()
 {
-    plab_v1_Scene scene{};
-    scene.server = text(name_), scene.run = 1, scene.file = text("scene.xml"), scene.title = text("Test");
+    plab_v2_Scene scene{};
+    scene.server_name = text(name_), scene.run = 1, scene.file = text("scene.xml"), scene.title = text("Test");
     scene.dt = kDt, scene.objects = 2, scene.interactions = 2;
     (void)ends_->scene.write(scene);
 
     std::vector<char*> shapes{text("balloon")};
-    std::vector<plab_v1_Parameter> parameters{parameter("mass", "0.02", "kg", "param")};
-    plab_v1_Object red{};
-    red.component = text("red"), red.name = text("red balloon"), red.type_name = text("State/RigidBody");
+    std::vector<plab_v2_Parameter> parameters{parameter("mass", "0.02", "kg", "param")};
+    plab_v2_SceneObject red{};
+    red.component_id = text("red"), red.name = text("red balloon"), red.type_name = text("State/RigidBody");
     red.handle = 7, red.run = 1, red.shape_of = text("body"), red.motion = text("dynamic"), red.mass = 0.02;
     red.position = {1.4, 0.3, 1}, red.orientation = {1, 0, 0, 0}, red.color = {0.9, 0.1, 0.1};
-    red.shapes = sequence<dds_sequence_string>(shapes), red.parameters = sequence<dds_sequence_plab_v1_Parameter>(parameters);
+    red.shapes = sequence<dds_sequence_string>(shapes), red.parameters = sequence<dds_sequence_plab_v2_Parameter>(parameters);
     (void)ends_->objects.write(red);
-    plab_v1_Object fan{};
-    fan.component = fan.name = text("a_fan_with_a_very_long_name"), fan.type_name = text("State/Shaft");
+    plab_v2_SceneObject fan{};
+    fan.component_id = fan.name = text("a_fan_with_a_very_long_name"), fan.type_name = text("State/Shaft");
     fan.handle = 9, fan.run = 1, fan.shape_of = text("shaft"), fan.motion = text("dynamic"), fan.mass = 0.005;
     fan.orientation = {1, 0, 0, 0}, fan.color = {-1, -1, -1};
     (void)ends_->objects.write(fan);
 
-    plab_v1_Shape balloon{};
-    balloon.component = text("balloon"), balloon.type_name = text("Shape/Sphere"), balloon.form = text("sphere");
+    plab_v2_Shape balloon{};
+    balloon.component_id = text("balloon"), balloon.type_name = text("Shape/Sphere"), balloon.form = text("sphere");
     balloon.orientation = {1, 0, 0, 0}, balloon.size = {0.15, 0, 0};
     (void)ends_->shapes.write(balloon);
 
     std::vector<char*> members{text("red"), text("a_fan_with_a_very_long_name")};
-    std::vector<plab_v1_Participants> roles{{text("between"), sequence<dds_sequence_string>(members)}};
-    plab_v1_Interaction contact{};
-    contact.component = contact.name = text("contact"), contact.type_name = text("CDetection/ODE"), contact.family = text("CDetection");
-    contact.run = 1, contact.roles = sequence<dds_sequence_plab_v1_Participants>(roles);
+    std::vector<plab_v2_Participants> roles{{text("between"), sequence<dds_sequence_string>(members)}};
+    plab_v2_Interaction contact{};
+    contact.component_id = contact.name = text("contact"), contact.type_name = text("CDetection/ODE"), contact.family = text("CDetection");
+    contact.run = 1, contact.roles = sequence<dds_sequence_plab_v2_Participants>(roles);
     (void)ends_->interactions.write(contact);
-    std::vector<plab_v1_Parameter> restitution{parameter("restitution", "0.8", "", "param"),
+    std::vector<plab_v2_Parameter> restitution{parameter("restitution", "0.8", "", "param"),
                                                parameter("code", "function f()\nend", "", "param")};
-    plab_v1_Interaction response{};
-    response.component = text("contact.response"), response.name = text("bounce\x1b[31m"), response.type_name = text("Response/Impulse");
+    plab_v2_Interaction response{};
+    response.component_id = text("contact.response"), response.name = text("bounce\x1b[31m"), response.type_name = text("Response/Impulse");
     response.family = text("Response"), response.run = 1, response.since = 600, response.quarantined = true;
-    response.parameters = sequence<dds_sequence_plab_v1_Parameter>(restitution);
+    response.parameters = sequence<dds_sequence_plab_v2_Parameter>(restitution);
     (void)ends_->interactions.write(response);
 }
 
 void FakeServer::publish_types()
 {
-    std::vector<plab_v1_FieldInfo> fields{field("restitution", "", "0.5", "must be from 0 to 1", "how much it bounces")};
-    plab_v1_RoleInfo role{text("between"), text("body"), 2, 4294967295u, text("who collides")};
+    std::vector<plab_v2_FieldInfo> fields{field("restitution", "", "0.5", "must be from 0 to 1", "how much it bounces")};
+    plab_v2_RoleInfo role{text("between"), text("body"), 2, 4294967295u, text("who collides")};
     for (const char* name : {"Response/Impulse", "Response/None", "State/RigidBody", "State/Shaft", "CDetection/ODE", "Shape/Sphere"})
     {
-        plab_v1_Type type{};
+        plab_v2_Type type{};
         const std::string family(name, std::strchr(name, '/'));
         type.type_name = text(name), type.family = text(family), type.doc = text("a type of the test"), type.plugin = text("test");
         type.is_loaded = true, type.accuracy = type.strengths = type.cost = type.limits = type.source = text("");
         type.roles = {1, 1, &role, false};
-        type.fields = sequence<dds_sequence_plab_v1_FieldInfo>(fields);
+        type.fields = sequence<dds_sequence_plab_v2_FieldInfo>(fields);
         (void)ends_->types.write(type);
     }
 }
 
 void FakeServer::publish_state()
 {
-    plab_v1_Server s{};
+    plab_v2_Server s{};
     s.name = text(name_), s.version = text("0.1.0"), s.host = text("here"), s.process = 42, s.scene_file = text("scene.xml");
     s.run = 1, s.revision = 3, s.step = step_, s.time = static_cast<double>(s.step) * kDt, s.dt = kDt, s.paused = paused_;
     s.rate_asked = 1, s.rate_reached = 0.998, s.overload = text(""), s.threads = 1;
@@ -183,22 +183,22 @@ void FakeServer::publish_state()
 
 void FakeServer::publish_metrics()
 {
-    std::vector<plab_v1_InteractionMetrics> interactions{
+    std::vector<plab_v2_InteractionMetrics> interactions{
         {text("contact"), text("CDetection/ODE"), text("CDetection/ODE"), 1234, 0, 0, false, {}},
         {text("contact.response"), text("Response/Impulse"), text("Response/Impulse"), 250, 1e-9, -0.5, true, {}}};
-    plab_v1_Metrics m{};
+    plab_v2_Metrics m{};
     m.run = 1, m.revision = 3, m.step = step_, m.step_ns = 8600, m.real_time_factor = 1;
     m.ledger = {5, 0.25, 1, 0, 1e-12};
-    m.interactions = sequence<dds_sequence_plab_v1_InteractionMetrics>(interactions);
+    m.interactions = sequence<dds_sequence_plab_v2_InteractionMetrics>(interactions);
     (void)ends_->metrics.write(m);
 }
 
 void FakeServer::publish_motion()
 {
     if (paused_) return;
-    plab_v1_BodyState red{7, {1.5, 0.25, 1}, {1, 0, 0, 0}, {0.3, 0, 0.4}, {0, 0, 0}};
-    plab_v1_ShaftState fan{9, 3.25, 40};
-    plab_v1_Frame frame{};
+    plab_v2_BodyState red{7, {1.5, 0.25, 1}, {1, 0, 0, 0}, {0.3, 0, 0.4}, {0, 0, 0}};
+    plab_v2_ShaftState fan{9, 3.25, 40};
+    plab_v2_Frame frame{};
     frame.run = 1, frame.revision = 3, frame.sequence_number = ++frames_, frame.step = step_;
     frame.time = static_cast<double>(frame.step) * kDt;
     frame.bodies = {1, 1, &red, false}, frame.shafts = {1, 1, &fan, false};
@@ -210,41 +210,41 @@ void FakeServer::publish_log()
 {
     number_ += skip_.exchange(0);
     const double time = static_cast<double>(step_) * kDt;
-    plab_v1_CollisionInfo hits[2]{};
-    for (plab_v1_CollisionInfo& hit : hits)
+    plab_v2_CollisionInfo hits[2]{};
+    for (plab_v2_CollisionInfo& hit : hits)
     {
         hit.kind = text("impact"), hit.time = time, hit.detector = text("contact");
         hit.a = text("red"), hit.b = text("green"), hit.normal = {0, 0, 1}, hit.impulse = {0, 0, 0.002};
     }
-    plab_v1_Collisions collisions{1, number_, step_, {2, 2, hits, false}};
+    plab_v2_Collisions collisions{1, number_, step_, {2, 2, hits, false}};
     (void)ends_->collisions.write(collisions);
-    plab_v1_EventInfo events[2]{};
-    for (plab_v1_EventInfo& event : events)
+    plab_v2_EventInfo events[2]{};
+    for (plab_v2_EventInfo& event : events)
     {
-        event.kind = text("script.print"), event.severity = text("warning"), event.time = time, event.component = text("wind");
+        event.kind = text("script.print"), event.severity = text("warning"), event.time = time, event.component_id = text("wind");
         event.a = event.b = text(""), event.message = text("it blows");
     }
-    events[1].component = text("clutch");
-    plab_v1_Events sample{1, number_, step_, {2, 2, events, false}};
+    events[1].component_id = text("clutch");
+    plab_v2_Events sample{1, number_, step_, {2, 2, events, false}};
     (void)ends_->events.write(sample);
     number_ += 2;
 }
 
-std::vector<std::string> FakeServer::objections(const plab_v1_Request& request) const
+std::vector<std::string> FakeServer::objections(const plab_v2_Request& request) const
 {
-    const plab_v1_Operation& first = request.operations._buffer[0];
+    const plab_v2_Operation& first = request.operations._buffer[0];
     const std::string target = first.target, blueprint = first.blueprint;
     if (target == "nobody") return {"no component 'nobody', did you mean 'red'?", "nothing was changed"};
     if (blueprint.find("<bad") != std::string::npos) return {std::string(first.argument) + ":3:5: <bad>: no such element"};
     return {};
 }
 
-void FakeServer::answer(const plab_v1_Request& request)
+void FakeServer::answer(const plab_v2_Request& request)
 {
     Asked asked{{}, request.at, request.revision};
     for (std::uint32_t i = 0; i < request.operations._length; ++i)
     {
-        const plab_v1_Operation& op = request.operations._buffer[i];
+        const plab_v2_Operation& op = request.operations._buffer[i];
         Asked::Part& part = asked.parts.emplace_back(Asked::Part{op.verb, op.target, op.argument, op.blueprint, {}});
         for (std::uint32_t v = 0; v < op.values._length; ++v)
             part.values.emplace_back(op.values._buffer[v].name, op.values._buffer[v].text);
@@ -262,19 +262,19 @@ void FakeServer::answer(const plab_v1_Request& request)
     if (verb == "shutdown") stop_ = true;
 }
 
-void FakeServer::reply(const plab_v1_Request& request, const std::vector<std::string>& reasons)
+void FakeServer::reply(const plab_v2_Request& request, const std::vector<std::string>& reasons)
 {
     std::vector<char*> texts;
     for (const std::string& why : reasons) texts.push_back(text(why));
-    std::vector<plab_v1_FieldFate> fates{
+    std::vector<plab_v2_FieldFate> fates{
         {text("restitution"), text("kept")}, {text("friction"), text("lost")}, {text("softness"), text("fresh")}};
-    plab_v1_SwapReport swap{};
-    const plab_v1_Operation& first = request.operations._buffer[0];
-    swap.component = first.target, swap.from_type = text("Response/Impulse"), swap.to_type = first.argument;
-    swap.fields = sequence<dds_sequence_plab_v1_FieldFate>(fates);
+    plab_v2_SwapReport swap{};
+    const plab_v2_Operation& first = request.operations._buffer[0];
+    swap.component_id = first.target, swap.from_type = text("Response/Impulse"), swap.to_type = first.argument;
+    swap.fields = sequence<dds_sequence_plab_v2_FieldFate>(fates);
     swap.energy_before = 5.125, swap.with_old = {5.25, {1, 0, 0}, 0.001, 8600}, swap.with_new = {5.5, {1, 0, 0.5}, 0.002, 17100};
     const bool is_late = request.at >= 0 && request.at < step_;
-    plab_v1_Reply r{};
+    plab_v2_Reply r{};
     std::memcpy(r.client, request.client, sizeof r.client);
     r.number = request.number, r.outcome = text(is_late ? "late" : reasons.empty() ? "done" : "refused");
     std::string late = "step " + std::to_string(request.at) + " has passed";

@@ -55,9 +55,9 @@ private:
     void publish_metrics();
     void publish_motion();
     void publish_log();
-    void answer(const plab_v1_Request& request);
-    std::vector<std::string> objections(const plab_v1_Request& request) const;
-    void reply(const plab_v1_Request& request, const std::vector<std::string>& reasons);
+    void answer(const plab_v2_Request& request);
+    std::vector<std::string> objections(const plab_v2_Request& request) const;
+    void reply(const plab_v2_Request& request, const std::vector<std::string>& reasons);
 
     std::string name_;
     std::unique_ptr<Ends> ends_;

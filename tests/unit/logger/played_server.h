@@ -23,18 +23,18 @@ public:
         REQUIRE(joined);
         participant_ = joined.take();
         publisher_ = wire::make_publisher(participant_, name_).take();
-        server_ = wire::Writer<plab_v1_Server>::make(participant_, publisher_).take();
-        events_ = wire::Writer<plab_v1_Events>::make(participant_, publisher_).take();
-        collisions_ = wire::Writer<plab_v1_Collisions>::make(participant_, publisher_).take();
-        metrics_ = wire::Writer<plab_v1_Metrics>::make(participant_, publisher_).take();
-        frames_ = wire::Writer<plab_v1_Frame>::make(participant_, publisher_).take();
+        server_ = wire::Writer<plab_v2_Server>::make(participant_, publisher_).take();
+        events_ = wire::Writer<plab_v2_Events>::make(participant_, publisher_).take();
+        collisions_ = wire::Writer<plab_v2_Collisions>::make(participant_, publisher_).take();
+        metrics_ = wire::Writer<plab_v2_Metrics>::make(participant_, publisher_).take();
+        frames_ = wire::Writer<plab_v2_Frame>::make(participant_, publisher_).take();
         tell_state();
     }
 
     const std::string& name() const { return name_; }
     void tell_state()
     {
-        plab_v1_Server s = state();
+        plab_v2_Server s = state();
         REQUIRE(server_.write(s) == 0);
     }
     /// As plabd does before it ends.
@@ -44,12 +44,12 @@ public:
     void event(const std::string& kind, const std::string& message, const std::string& severity = "info", double value = 0.5)
     {
         ++step_;
-        plab_v1_EventInfo e{};
+        plab_v2_EventInfo e{};
         e.kind = text(kind), e.message = text(message), e.severity = text(severity);
-        e.component = text("gears");
+        e.component_id = text("gears");
         e.time = now();
         e.values._length = e.values._maximum = 1, e.values._buffer = &value;
-        plab_v1_Events sample{};
+        plab_v2_Events sample{};
         sample.run = run_, sample.step = step_, sample.sequence_number = next_event_++;
         sample.entries._length = sample.entries._maximum = 1, sample.entries._buffer = &e;
         REQUIRE(events_.write(sample) == 0);
@@ -57,11 +57,11 @@ public:
     void collisions(const std::string& kind, std::uint32_t count)
     {
         ++step_;
-        plab_v1_CollisionInfo c{};
+        plab_v2_CollisionInfo c{};
         c.kind = text(kind), c.a = text("red"), c.b = text("blue"), c.detector = text("contact");
         c.time = now(), c.impulse = {0.3, 0, 0.4}, c.position = {1, 2, 3}, c.normal = {1, 0, 0};
-        std::vector<plab_v1_CollisionInfo> all(count, c);
-        plab_v1_Collisions sample{};
+        std::vector<plab_v2_CollisionInfo> all(count, c);
+        plab_v2_Collisions sample{};
         sample.run = run_, sample.step = step_, sample.sequence_number = next_collision_;
         sample.entries._length = sample.entries._maximum = count, sample.entries._buffer = all.data();
         next_collision_ += count;
@@ -69,18 +69,18 @@ public:
     }
     void metrics(double kinetic)
     {
-        plab_v1_Metrics m{};
+        plab_v2_Metrics m{};
         m.run = run_, m.step = step_, m.time = now(), m.ledger.kinetic = kinetic, m.real_time_factor = 1;
-        plab_v1_InteractionMetrics i{};
-        i.component = text("gears"), i.requested = text("A"), i.resolved = text("B"), i.cost_ns = 12, i.error = 1e-9;
+        plab_v2_InteractionMetrics i{};
+        i.component_id = text("gears"), i.requested = text("A"), i.resolved = text("B"), i.cost_ns = 12, i.error = 1e-9;
         m.interactions._length = m.interactions._maximum = 1, m.interactions._buffer = &i;
         REQUIRE(metrics_.write(m) == 0);
     }
     void frame(double height)
     {
-        plab_v1_BodyState body{};
+        plab_v2_BodyState body{};
         body.handle = 4, body.position = {0, 0, height}, body.orientation.w = 1;
-        plab_v1_Frame f{};
+        plab_v2_Frame f{};
         f.run = run_, f.step = ++step_, f.time = now();
         f.bodies._length = f.bodies._maximum = 1, f.bodies._buffer = &body;
         REQUIRE(frames_.write(f) == 0);
@@ -102,9 +102,9 @@ private:
     static char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
     static char* text(const char* s) { return const_cast<char*>(s); }
     double now() const { return static_cast<double>(step_) / 240; }
-    plab_v1_Server state() const
+    plab_v2_Server state() const
     {
-        plab_v1_Server s{};
+        plab_v2_Server s{};
         s.name = text(name_), s.host = text("here"), s.scene_file = text("played.xml");
         s.process = getpid(), s.run = run_, s.step = step_, s.time = now(), s.started_ns = started_ns_;
         return s;
@@ -114,11 +114,11 @@ private:
     std::int64_t started_ns_ = 0, step_ = 0;
     std::uint64_t run_ = 1, next_event_ = 1, next_collision_ = 1;
     wire::Entity participant_, publisher_;
-    wire::Writer<plab_v1_Server> server_;
-    wire::Writer<plab_v1_Events> events_;
-    wire::Writer<plab_v1_Collisions> collisions_;
-    wire::Writer<plab_v1_Metrics> metrics_;
-    wire::Writer<plab_v1_Frame> frames_;
+    wire::Writer<plab_v2_Server> server_;
+    wire::Writer<plab_v2_Events> events_;
+    wire::Writer<plab_v2_Collisions> collisions_;
+    wire::Writer<plab_v2_Metrics> metrics_;
+    wire::Writer<plab_v2_Frame> frames_;
 };
 
 /// Tests may run side by side, in several checkouts.

@@ -14,14 +14,14 @@ class Watcher
 {
 public:
     explicit Watcher(const std::string& name)
-        : session_(watch(name)), events_(session_.reader<plab_v1_Events>().take()), frames_(session_.reader<plab_v1_Frame>().take())
+        : session_(watch(name)), events_(session_.reader<plab_v2_Events>().take()), frames_(session_.reader<plab_v2_Frame>().take())
     {
     }
     void look()
     {
-        take_all(events_, [&](const plab_v1_Events& e) { numbers.emplace_back(e.sequence_number), event_runs.push_back(e.run); });
+        take_all(events_, [&](const plab_v2_Events& e) { numbers.emplace_back(e.sequence_number), event_runs.push_back(e.run); });
         take_all(frames_,
-                 [&](const plab_v1_Frame& f)
+                 [&](const plab_v2_Frame& f)
                  {
                      frame_numbers.push_back(f.sequence_number);
                      if (runs.empty() || runs.back() != f.run) runs.push_back(f.run), first_times.push_back(f.time);
@@ -37,8 +37,8 @@ public:
 
 private:
     link::Session session_;
-    wire::Reader<plab_v1_Events> events_;
-    wire::Reader<plab_v1_Frame> frames_;
+    wire::Reader<plab_v2_Events> events_;
+    wire::Reader<plab_v2_Frame> frames_;
 };
 
 bool has_no_gap(const std::vector<std::uint64_t>& numbers)

@@ -96,7 +96,7 @@ TEST_CASE("frames that name only what moved are sent whole")
     CHECK(messages_of(open_file(file), "plab/states")[5].size() < 200);
     const Again again = play_and_record(file, "thin", record_options("playback_thin_again.mcap"));
     recording::Decoder decoder;
-    recording::Sample<plab_v1_Frame> frame;
+    recording::Sample<plab_v2_Frame> frame;
     const auto frames = messages_of(open_file(again.file), "plab/states");
     CHECK(frames.size() == 201);
     for (const recording::Bytes& bytes : frames)
@@ -121,7 +121,7 @@ TEST_CASE("only the topics that are asked for, frames thinned to a rate, up to a
     CHECK(again.progress.missing == 0);  // what is left out is not missing
     const recording::Reader reader = open_file(again.file);
     recording::Decoder decoder;
-    recording::Sample<plab_v1_Frame> frame;
+    recording::Sample<plab_v2_Frame> frame;
     std::vector<double> times;
     for (const recording::Bytes& bytes : messages_of(reader, "plab/states"))
     {

@@ -77,7 +77,7 @@ public:
     {
         recorder::TapeOptions options;
         options.file = "run.mcap", options.compression = Compression::None, options.most_waiting_bytes = most_waiting_bytes;
-        auto opened = Tape::open(std::make_unique<DiskSink>(disk), options, {"plab", {{"format", "1"}}});
+        auto opened = Tape::open(std::make_unique<DiskSink>(disk), options, {"plab", {{"format", "2"}}});
         REQUIRE(opened);
         tape = opened.take();
     }
@@ -87,7 +87,7 @@ public:
         {
             Bytes data(256, 0);
             std::memcpy(data.data(), &offered, sizeof offered);
-            (void)tape->put({&wire::topic_of<plab_v1_Frame>(), offered * 1'000'000, 0, std::move(data)});
+            (void)tape->put({&wire::topic_of<plab_v2_Frame>(), offered * 1'000'000, 0, std::move(data)});
             std::this_thread::sleep_for(1ms);
         }
     }
@@ -267,7 +267,7 @@ TEST_CASE("a disk that does not answer: who records does not wait, and what find
     fed.put(30);  // the writer is in it now
     const auto begin = Clock::now();
     for (int i = 0; i < 200; ++i, ++fed.offered)
-        (void)fed.tape->put({&wire::topic_of<plab_v1_Frame>(), fed.offered * 1'000'000, 0, Bytes(256, 0)});
+        (void)fed.tape->put({&wire::topic_of<plab_v2_Frame>(), fed.offered * 1'000'000, 0, Bytes(256, 0)});
     CHECK(Clock::now() - begin < 1s);
     const std::uint64_t lost = fed.tape->progress().dropped.messages;
     CHECK(lost > 200 - kRoom / 256);

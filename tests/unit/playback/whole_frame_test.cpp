@@ -12,8 +12,8 @@ namespace
 
 struct Made
 {
-    std::vector<plab_v1_BodyState> bodies;
-    plab_v1_Frame frame{};
+    std::vector<plab_v2_BodyState> bodies;
+    plab_v2_Frame frame{};
 
     Made(std::uint64_t run, std::uint64_t revision, const std::vector<std::pair<std::uint32_t, double>>& handles_and_x)
     {
@@ -24,7 +24,7 @@ struct Made
     }
 };
 
-std::vector<std::pair<std::uint32_t, double>> rows(const plab_v1_Frame& frame)
+std::vector<std::pair<std::uint32_t, double>> rows(const plab_v2_Frame& frame)
 {
     std::vector<std::pair<std::uint32_t, double>> out;
     for (std::uint32_t i = 0; i < frame.bodies._length; ++i)

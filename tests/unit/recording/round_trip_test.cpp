@@ -70,7 +70,7 @@ TEST_CASE("statistics, attachments and metadata")
     CHECK(attachment->attachment.media_type == "text/xml");
     CHECK(attachment->attachment.create_time == 7);
     CHECK(reader->attachment("other.xml").error().text() == "memory: has no attachment \"other.xml\"");
-    CHECK(reader->metadata("plab")->values.at("format") == "1");
+    CHECK(reader->metadata("plab")->values.at("format") == "2");
     CHECK(reader->schema_of(reader->channels().at(1))->data == "module plab {};");
     CHECK(reader->channels().at(2).metadata.at("key") == "value");
 }

@@ -87,11 +87,11 @@ struct SampleFile
         WriterOptions options;
         options.compression = compression;
         auto writer = Writer::open(std::make_unique<MemorySink>(file), options).take();
-        const auto schema = writer.add_schema({0, "plab::v1::Frame", "omgidl", "module plab {};"}).take();
+        const auto schema = writer.add_schema({0, "plab::v2::Frame", "omgidl", "module plab {};"}).take();
         const auto states = writer.add_channel({0, schema, "plab/states", "cdr", {}}).take();
         const auto events = writer.add_channel({0, schema, "plab/events", "cdr", {{"key", "value"}}}).take();
         (void)writer.attach({0, 7, "blueprint.xml", "text/xml", view_of(kBlueprint)});
-        (void)writer.add_metadata({"plab", {{"format", "1"}, {"server", "sample"}}});
+        (void)writer.add_metadata({"plab", {{"format", "2"}, {"server", "sample"}}});
         Clock::time_point now{};
         for (int chunk = 0; chunk < chunks; ++chunk)
         {

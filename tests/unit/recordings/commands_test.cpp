@@ -42,7 +42,7 @@ TEST_CASE("info: for people and as JSON")
     CHECK(text.code == 0);
     CHECK(text.errors.empty());
     for (const char* part : {"whole", "lab on here, pLab 0.2.0", "2.51 s simulated in 2 runs", "1 in 1 gap",
-                             "Response/Impulse  Response/None", "reset", "script.print      warning", "plab::v1::Frame"})
+                             "Response/Impulse  Response/None", "reset", "script.print      warning", "plab::v2::Frame"})
         CHECK_MESSAGE(has(text.output, part), part << " in\n" << text.output);
     const Outcome json = plabctl({"info", file, "--json"});
     CHECK(json.code == 0);

@@ -120,11 +120,11 @@ TEST_CASE("a file that is cut anywhere is read as far as it goes, or refused")
 
 TEST_CASE("a message that is no sample is counted and left out")
 {
-    std::vector<plab_v1_BodyState> bodies(2);
-    plab_v1_Frame frame{};
+    std::vector<plab_v2_BodyState> bodies(2);
+    plab_v2_Frame frame{};
     frame.run = 1, frame.bodies._buffer = bodies.data(), frame.bodies._length = frame.bodies._maximum = 2;
     const std::vector<recording::Bytes> frames = bent(frame);
-    const std::string path = recording_of<plab_v1_Frame>("bent_frames.mcap", frames);
+    const std::string path = recording_of<plab_v2_Frame>("bent_frames.mcap", frames);
     auto log = Log::open(path);
     REQUIRE(log.ok());
     auto summary = summary_of(*log);
@@ -138,24 +138,24 @@ TEST_CASE("a message that is no sample is counted and left out")
 TEST_CASE("bent metrics, events and journals do no harm")
 {
     char text[] = "<b>bold";
-    std::vector<plab_v1_InteractionMetrics> interactions(1);
+    std::vector<plab_v2_InteractionMetrics> interactions(1);
     interactions[0] = {};
-    interactions[0].component = interactions[0].requested = text;
-    plab_v1_Metrics metrics{};
+    interactions[0].component_id = interactions[0].requested = text;
+    plab_v2_Metrics metrics{};
     metrics.interactions._buffer = interactions.data(), metrics.interactions._length = metrics.interactions._maximum = 1;
-    CHECK(use(recording_of<plab_v1_Metrics>("bent_metrics.mcap", bent(metrics))));
-    std::vector<plab_v1_Operation> operations(1);
+    CHECK(use(recording_of<plab_v2_Metrics>("bent_metrics.mcap", bent(metrics))));
+    std::vector<plab_v2_Operation> operations(1);
     operations[0] = {};
     operations[0].verb = text, operations[0].target = text;
-    plab_v1_Journal journal{};
+    plab_v2_Journal journal{};
     journal.operations._buffer = operations.data(), journal.operations._length = journal.operations._maximum = 1;
-    CHECK(use(recording_of<plab_v1_Journal>("bent_journal.mcap", bent(journal))));
-    std::vector<plab_v1_EventInfo> entries(1);
+    CHECK(use(recording_of<plab_v2_Journal>("bent_journal.mcap", bent(journal))));
+    std::vector<plab_v2_EventInfo> entries(1);
     entries[0] = {};
     entries[0].kind = entries[0].severity = entries[0].message = text;
-    plab_v1_Events events{};
+    plab_v2_Events events{};
     events.entries._buffer = entries.data(), events.entries._length = events.entries._maximum = 1;
-    const std::string file = recording_of<plab_v1_Events>("bent_events.mcap", bent(events));
+    const std::string file = recording_of<plab_v2_Events>("bent_events.mcap", bent(events));
     CHECK(use(file));
     auto log = Log::open(file);
     REQUIRE(log.ok());

@@ -86,8 +86,8 @@ private:
 
     void add_catalogue()
     {
-        plab_v1_Scene scene{};
-        scene.server = text("lab"), scene.run = run_, scene.file = text("made.xml"), scene.title = text("Made"), scene.dt = kMadeStep;
+        plab_v2_Scene scene{};
+        scene.server_name = text("lab"), scene.run = run_, scene.file = text("made.xml"), scene.title = text("Made"), scene.dt = kMadeStep;
         put(scene);
         add_object("red", kRed, "body"), add_object("blue", kBlue, "body");
         if (options_.with_axle) add_object("axle", kAxle, "shaft");
@@ -95,25 +95,25 @@ private:
     }
     void add_object(const char* id, std::uint32_t handle, const char* kind)
     {
-        plab_v1_Object o{};
-        o.component = o.name = text(id), o.type_name = text("State/RigidBody"), o.handle = handle, o.run = run_;
+        plab_v2_SceneObject o{};
+        o.component_id = o.name = text(id), o.type_name = text("State/RigidBody"), o.handle = handle, o.run = run_;
         o.shape_of = text(kind), o.motion = text("dynamic"), o.mass = 1;
         put(o);
     }
     void add_interaction(const char* type, std::int64_t since)
     {
-        plab_v1_Interaction i{};
-        i.component = i.name = text("contact.response"), i.type_name = text(type), i.family = text("Response"), i.run = run_,
+        plab_v2_Interaction i{};
+        i.component_id = i.name = text("contact.response"), i.type_name = text(type), i.family = text("Response"), i.run = run_,
         i.since = since;
         put(i);
     }
     void add_journal(const char* verb, const char* target, const char* argument)
     {
         if (!options_.with_journal) return;
-        std::vector<plab_v1_Operation> operations(1);
+        std::vector<plab_v2_Operation> operations(1);
         operations[0] = {};
         operations[0].verb = text(verb), operations[0].target = text(target), operations[0].argument = text(argument);
-        plab_v1_Journal j{};
+        plab_v2_Journal j{};
         j.run = run_, j.sequence_number = ++requests_, j.step = step_, j.time = time(), j.origin = text("client"), j.number = requests_;
         j.client[0] = 0xab;
         point_at(j.operations, operations);
@@ -122,7 +122,7 @@ private:
     void add_snapshot()
     {
         std::vector<std::uint8_t> bytes(100, 7);
-        plab_v1_Snapshot s{};
+        plab_v2_Snapshot s{};
         s.run = run_, s.step = step_, s.time = time(), s.cause = text("begin"), s.state_hash = 1, s.blueprint = text("<plab/>");
         point_at(s.data, bytes);
         put(s);
@@ -156,14 +156,14 @@ private:
         if (run_ == 1 && step_ == options_.missing_frame) return;
         const double t = time();
         const MadePlace red = made_red(t);
-        std::vector<plab_v1_BodyState> bodies(2);
+        std::vector<plab_v2_BodyState> bodies(2);
         bodies[0] = {kRed, {red.x, red.y + difference(), red.z}, {std::cos(t), 0, 0, std::sin(t)}, {1, std::cos(t), 0}, {0, 0, 2}};
         bodies[1] = {kBlue, {0, 0, t * t}, {1, 0, 0, 0}, {0, 0, 2 * t}, {0, 0, 0}};
-        std::vector<plab_v1_ShaftState> shafts{{kAxle, 3 * t, 3}};
+        std::vector<plab_v2_ShaftState> shafts{{kAxle, 3 * t, 3}};
         // Blue is told of every tenth time only, the axle after the first time never: they stay where they were told to be.
         if (!options_.with_axle || (options_.only_moved && step_ > 0)) shafts.clear();
         if (options_.only_moved && step_ % 10 != 0) bodies.pop_back();
-        plab_v1_Frame f{};
+        plab_v2_Frame f{};
         f.run = run_, f.revision = 1, f.sequence_number = frames_, f.step = step_, f.time = t;
         f.stamp_ns = static_cast<std::int64_t>(kMadeStart + now());
         point_at(f.bodies, bodies), point_at(f.shafts, shafts);
@@ -176,7 +176,7 @@ private:
         std::vector<std::uint64_t> values;
         for (std::int64_t step = step_ - 9; step <= step_; ++step)
             values.push_back(made_hash(run_, step, options_.differs_from >= 0 && step >= options_.differs_from));
-        plab_v1_Hashes h{};
+        plab_v2_Hashes h{};
         h.run = run_, h.sequence_number = static_cast<std::uint64_t>(step_) - 8, h.step = step_ - 9;
         point_at(h.values, values);
         put(h);
@@ -184,16 +184,16 @@ private:
 
     void add_metrics()
     {
-        std::vector<plab_v1_Parameter> outputs{{text("contacts"), text("4"), text(""), text("output")},
+        std::vector<plab_v2_Parameter> outputs{{text("contacts"), text("4"), text(""), text("output")},
                                                {text("force"), text("(1 2 2)"), text("N"), text("output")}};
-        std::vector<plab_v1_InteractionMetrics> interactions(1);
-        plab_v1_InteractionMetrics& i = interactions[0];
+        std::vector<plab_v2_InteractionMetrics> interactions(1);
+        plab_v2_InteractionMetrics& i = interactions[0];
         i = {};
         const bool is_swapped = run_ == 1 && step_ >= options_.swap_at;
-        i.component = text("contact.response"), i.requested = i.resolved = text(is_swapped ? "Response/None" : "Response/Impulse");
+        i.component_id = text("contact.response"), i.requested = i.resolved = text(is_swapped ? "Response/None" : "Response/Impulse");
         i.cost_ns = is_swapped ? 100 : 2000, i.error = 1e-6 * (1 + time()), i.work = -time();
         point_at(i.outputs, outputs);
-        plab_v1_Metrics m{};
+        plab_v2_Metrics m{};
         m.run = run_, m.step = step_, m.time = time(), m.step_ns = 50000, m.real_time_factor = 2;
         m.ledger = {10 + time(), 5, time(), 0, 0};
         m.momentum = {1, 0, 0}, m.angular_momentum = {0, 0, 2}, m.contacts = 4;
@@ -204,7 +204,7 @@ private:
     void add_events()
     {
         std::vector<double> values{1.5, 2};
-        std::vector<plab_v1_EventInfo> entries(1);
+        std::vector<plab_v2_EventInfo> entries(1);
         entries[0] = {text("script.print"),
                       text(step_ == 80 ? "warning" : "info"),
                       time() + 0.001,
@@ -214,7 +214,7 @@ private:
                       text("a \"quoted\", word"),
                       {}};
         point_at(entries[0].values, values);
-        plab_v1_Events e{};
+        plab_v2_Events e{};
         e.run = run_, e.sequence_number = ++events_, e.step = step_;
         point_at(e.entries, entries);
         put(e);
@@ -222,12 +222,12 @@ private:
 
     void add_collisions()
     {
-        std::vector<plab_v1_CollisionInfo> entries(2);
-        for (plab_v1_CollisionInfo& c : entries)
+        std::vector<plab_v2_CollisionInfo> entries(2);
+        for (plab_v2_CollisionInfo& c : entries)
             c = {text("impact"), time() + 0.002, text("contact.detection"), text("red"), text("blue"), {1, 2, 3}, {0, 0, 1},
                  {0, 0, 0.5},    0.125};
         entries[1].b = text("floor");
-        plab_v1_Collisions s{};
+        plab_v2_Collisions s{};
         s.run = run_, s.sequence_number = collisions_ + 1, s.step = step_;
         collisions_ += 2;
         point_at(s.entries, entries);
@@ -267,7 +267,7 @@ std::string make_recording(const std::string& name, const MadeOptions& options)
     auto writer = recording::Writer::create(path, writing);
     REQUIRE(writer.ok());
     recording::Metadata head{"plab",
-                             {{"format", "1"}, {"server", "lab"}, {"host", "here"}, {"version", "0.2.0"}, {"scene_file", "made.xml"}}};
+                             {{"format", "2"}, {"server", "lab"}, {"host", "here"}, {"version", "0.2.0"}, {"scene_file", "made.xml"}}};
     if (options.only_moved) head.values["states"] = "moved";
     REQUIRE(writer->add_metadata(head).ok());
     const std::string blueprint = "<plab version=\"1\"/>";

@@ -64,7 +64,7 @@ TEST_CASE("what is not understood is an error, whatever the text")
     std::string deep = "struct T { ";
     for (int i = 0; i < 1000; ++i) deep += "sequence<";
     CHECK(why(deep).find("nested too deeply") != std::string::npos);
-    const std::string whole = recording::idl_of("plab::v1::Frame").take();
+    const std::string whole = recording::idl_of("plab::v2::Frame").take();
     REQUIRE(whole.ends_with("};\n"));
-    for (std::size_t n = 0; n < whole.size() - 1; ++n) CHECK(!type_in(whole.substr(0, n), "plab::v1::Frame").ok());
+    for (std::size_t n = 0; n < whole.size() - 1; ++n) CHECK(!type_in(whole.substr(0, n), "plab::v2::Frame").ok());
 }

@@ -47,7 +47,7 @@ TEST_CASE("a whole recording: who wrote it, how long, how much of what")
     CHECK(s.runs[0].cause.empty());
     CHECK(topic(s, "plab/states").messages == 201);
     CHECK(topic(s, "plab/states").rate() == doctest::Approx(100));
-    CHECK(topic(s, "plab/states").schema == "plab::v1::Frame");
+    CHECK(topic(s, "plab/states").schema == "plab::v2::Frame");
     CHECK(topic(s, "plab/metrics").messages == 9);
     CHECK(s.bodies == 2);
     CHECK(s.shafts == 1);

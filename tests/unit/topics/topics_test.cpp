@@ -99,14 +99,14 @@ struct Scene
     Bus bus;
     std::string server = unique_name("topics");
     wire::Entity publisher = wire::make_publisher(bus.participant(), server).take();
-    wire::Writer<plab_v1_Frame> frames = wire::Writer<plab_v1_Frame>::make(bus.participant(), publisher).take();
-    wire::Writer<plab_v1_Object> objects = wire::Writer<plab_v1_Object>::make(bus.participant(), publisher).take();
+    wire::Writer<plab_v2_Frame> frames = wire::Writer<plab_v2_Frame>::make(bus.participant(), publisher).take();
+    wire::Writer<plab_v2_SceneObject> objects = wire::Writer<plab_v2_SceneObject>::make(bus.participant(), publisher).take();
 };
 
-plab_v1_Object object(const char* id)
+plab_v2_SceneObject object(const char* id)
 {
-    plab_v1_Object o{};
-    o.component = const_cast<char*>(id);
+    plab_v2_SceneObject o{};
+    o.component_id = const_cast<char*>(id);
     o.mass = 0.5;
     return o;
 }
@@ -146,7 +146,7 @@ TEST_CASE("list shows pLab's topics and those of strangers")
         if (topic["topic"] == "plab/states" && topic["partitions"][0] == scene.server) frames = topic;
         if (topic["topic"] == "readings") readings = topic;
     }
-    CHECK(frames["type"] == "plab::v1::Frame");
+    CHECK(frames["type"] == "plab::v2::Frame");
     CHECK(frames["plab"] == true);
     CHECK(frames["writers"] == 1);
     CHECK(has(frames["qos"][0].get<std::string>(), "reliable"));
@@ -211,7 +211,7 @@ TEST_CASE("instances that have gone are told by their key")
 {
     Scene scene;
     // A key as long as ids are: Cyclone DDS has a place of 16 bytes for those that it takes for short ones.
-    const plab_v1_Object red = object("red.arm.upper.hinge.with_a_long_name"), blue = object("blue");
+    const plab_v2_SceneObject red = object("red.arm.upper.hinge.with_a_long_name"), blue = object("blue");
     Process process(topics_command({"print", "plab/objects", "--partition", scene.server, "--json", "-n", "3"}));
     REQUIRE(scene.objects.write(red) == 0);
     REQUIRE(scene.objects.write(blue) == 0);
@@ -222,14 +222,14 @@ TEST_CASE("instances that have gone are told by their key")
     REQUIRE(all.size() == 3);
     CHECK(all[0]["sample"]["mass"] == 0.5);
     CHECK(all[2]["gone"] == true);
-    CHECK(all[2]["key"].dump() == R"({"component":"red.arm.upper.hinge.with_a_long_name"})");
+    CHECK(all[2]["key"].dump() == R"({"component_id":"red.arm.upper.hinge.with_a_long_name"})");
 }
 
 TEST_CASE("rate and bandwidth measure what is written")
 {
     Scene scene;
-    std::vector<plab_v1_BodyState> bodies(100);
-    plab_v1_Frame frame{};
+    std::vector<plab_v2_BodyState> bodies(100);
+    plab_v2_Frame frame{};
     frame.bodies._length = frame.bodies._maximum = 100, frame.bodies._buffer = bodies.data();
     const Ticker ticker(10ms, [&] { (void)scene.frames.write(frame); });
     const Outcome rate = topics({"rate", "plab/states", "--partition", scene.server, "-n", "2", "--json"});

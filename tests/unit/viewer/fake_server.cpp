@@ -42,7 +42,7 @@ public:
 
     void tell_status(std::int64_t step)
     {
-        plab_v1_Server s{};
+        plab_v2_Server s{};
         s.name = text(name_), s.version = text("0"), s.host = text("test"), s.scene_file = text("fall.xml"), s.overload = text("");
         s.process = getpid(), s.run = run_, s.step = step, s.time = time_of(step), s.dt = FakeServer::kDt, s.paused = script_.paused;
         (void)server_.write(s);
@@ -50,10 +50,10 @@ public:
 
     void tell_scene()
     {
-        std::vector<plab_v1_View> cameras{{text("behind"), {0, 8, 2}, {0, 0, 1.5}, {0, 0, 1}, 0.7},
+        std::vector<plab_v2_View> cameras{{text("behind"), {0, 8, 2}, {0, 0, 1.5}, {0, 0, 1}, 0.7},
                                           {text("front"), {0, -8, 2}, {0, 0, 1.5}, {0, 0, 1}, 0.7}};
-        plab_v1_Scene s{};
-        s.server = text(name_), s.run = run_, s.file = text("fall.xml"), s.title = text("A falling ball"), s.dt = FakeServer::kDt;
+        plab_v2_Scene s{};
+        s.server_name = text(name_), s.run = run_, s.file = text("fall.xml"), s.title = text("A falling ball"), s.dt = FakeServer::kDt;
         s.objects = 3, s.interactions = static_cast<std::uint32_t>(script_.interactions);
         point_to(s.cameras, cameras);
         (void)scene_.write(s);
@@ -77,10 +77,10 @@ public:
     void tell_frame(std::int64_t step, std::uint64_t revision)
     {
         const double t = time_of(step), z = height_at(t);
-        std::vector<plab_v1_BodyState> bodies{{1, {0, 0, z}, {1, 0, 0, 0}, {0, 0, -9.81 * t}, {0, 0, 0}}};
+        std::vector<plab_v2_BodyState> bodies{{1, {0, 0, z}, {1, 0, 0, 0}, {0, 0, -9.81 * t}, {0, 0, 0}}};
         if (script_.late_at >= 0 && step >= script_.late_at) bodies.push_back({4, {-2, 0, 1}, {1, 0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-        std::vector<plab_v1_ShaftState> shafts{{3, 2 * t, 2}};
-        plab_v1_Frame f{};
+        std::vector<plab_v2_ShaftState> shafts{{3, 2 * t, 2}};
+        plab_v2_Frame f{};
         f.run = run_, f.revision = revision, f.sequence_number = ++sequence_, f.step = step, f.time = t;
         point_to(f.bodies, bodies), point_to(f.shafts, shafts);
         (void)frames_.write(f);
@@ -96,43 +96,43 @@ private:
         writer = wire::Writer<T>::make(participant, publisher_).take();
     }
 
-    void tell_shape(const char* id, const char* form, const plab_v1_Vector& size)
+    void tell_shape(const char* id, const char* form, const plab_v2_Vector& size)
     {
-        plab_v1_Shape s{};
-        s.component = text(id), s.type_name = text("Shape/Any"), s.form = text(form), s.size = size, s.orientation = {1, 0, 0, 0};
+        plab_v2_Shape s{};
+        s.component_id = text(id), s.type_name = text("Shape/Any"), s.form = text(form), s.size = size, s.orientation = {1, 0, 0, 0};
         (void)shapes_.write(s);
     }
 
-    void tell_object(const char* id, std::uint32_t handle, const char* kind, const char* motion, const plab_v1_Vector& position,
-                     const plab_v1_Vector& color, const char* shape)
+    void tell_object(const char* id, std::uint32_t handle, const char* kind, const char* motion, const plab_v2_Vector& position,
+                     const plab_v2_Vector& color, const char* shape)
     {
         std::vector<char*> shapes;
         if (*shape != 0) shapes.push_back(text(shape));
-        plab_v1_Object o{};
-        o.component = text(id), o.name = text(id), o.type_name = text("State/Any"), o.handle = handle, o.run = run_;
+        plab_v2_SceneObject o{};
+        o.component_id = text(id), o.name = text(id), o.type_name = text("State/Any"), o.handle = handle, o.run = run_;
         o.shape_of = text(kind), o.motion = text(motion), o.mass = 1, o.position = position, o.color = color;
         // The wheel's axle lies along y: the faces look at the cameras.
-        o.orientation = *kind == 's' ? plab_v1_Rotation{std::sqrt(0.5), std::sqrt(0.5), 0, 0} : plab_v1_Rotation{1, 0, 0, 0};
+        o.orientation = *kind == 's' ? plab_v2_Rotation{std::sqrt(0.5), std::sqrt(0.5), 0, 0} : plab_v2_Rotation{1, 0, 0, 0};
         point_to(o.shapes, shapes);
         (void)objects_.write(o);
     }
 
     void tell_interaction(const std::string& id, const std::string& type, std::int64_t since)
     {
-        plab_v1_Interaction i{};
-        i.component = text(id), i.name = text(id), i.type_name = text(type), i.family = text("any"), i.run = run_, i.since = since;
+        plab_v2_Interaction i{};
+        i.component_id = text(id), i.name = text(id), i.type_name = text(type), i.family = text("any"), i.run = run_, i.since = since;
         (void)interactions_.write(i);
     }
 
     const Script& script_;
     const std::string& name_;
     wire::Entity publisher_;
-    wire::Writer<plab_v1_Server> server_;
-    wire::Writer<plab_v1_Scene> scene_;
-    wire::Writer<plab_v1_Object> objects_;
-    wire::Writer<plab_v1_Shape> shapes_;
-    wire::Writer<plab_v1_Interaction> interactions_;
-    wire::Writer<plab_v1_Frame> frames_;
+    wire::Writer<plab_v2_Server> server_;
+    wire::Writer<plab_v2_Scene> scene_;
+    wire::Writer<plab_v2_SceneObject> objects_;
+    wire::Writer<plab_v2_Shape> shapes_;
+    wire::Writer<plab_v2_Interaction> interactions_;
+    wire::Writer<plab_v2_Frame> frames_;
     std::uint64_t run_ = 1, sequence_ = 0;
 };
 
