@@ -1,34 +1,28 @@
-/// Which pairs of shapes are near one another: ODE's collision spaces over bounding boxes.
+/// Which pairs of shapes are near one another: bounding boxes in a tree of our own, or in one of ODE's collision spaces.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "bounds.h"
 #include "collider.h"
 #include "near_sweep.h"
+#include "pair_search.h"
 
 namespace plab::detection
 {
 
-/// Groups that may meet. `between` meets everything else; `against` alone meets only `between`. Two bodies that nothing
-/// moves do not meet.
-struct Membership
-{
-    bool between = false;
-    bool dynamic = false;
-};
-
-/// One box per part (a shape on a body), along the axes of W. ODE holds a box that is a tenth larger and is asked again
+/// One box per part (a shape on a body), along the axes of W. The search holds a box that is a tenth larger and is asked again
 /// only when a part has left it: trial after trial of one impact costs no search. The answer is filtered with the tight
-/// boxes, so it is a function of the present poses, whatever ODE was asked when.
+/// boxes, so it is a function of the present poses, whatever the search was asked when, and the same for every kind of search.
 class BroadPhase
 {
 public:
-    using Pair = std::pair<std::uint32_t, std::uint32_t>;
+    using Pair = PartPair;
 
-    /// `kind`: "simple", "hash", "sweep_and_prune" or "quadtree". `parts`: how many will be added.
+    /// `kind`: "tree", or an ODE space: "simple", "sweep_and_prune", "quadtree". `parts`: how many will be added.
     void reset(const std::string& kind, std::size_t parts);
     /// Parts are numbered in the order of this call; `member` (the body) must not decrease.
     void add(const Collider& collider, std::uint32_t member, Membership membership);
@@ -39,33 +33,24 @@ public:
     void offer(std::uint32_t part, double growth, NearSweep& sweep) const;
 
 private:
-    struct Box
-    {
-        Vec3 lower, upper;  // m, W
-    };
     struct Part
     {
-        GeomHandle geom;  // null for what never touches
         std::uint32_t member = 0;
+        bool collides = false;
         bool unbounded = false;
         Vec3 normal;        // of an unbounded one: the half-space normal . p <= offset
         double offset = 0;  // m
         Box tight, wide;
     };
-    static void note(void* self, dxGeom* a, dxGeom* b);
-    bool overlap(const Part& a, const Part& b) const;
-    bool reaches(const Part& half_space, const Part& part) const;
+    bool near(const Part& a, const Part& b) const;
     bool fits(const Part& part) const;
-    void widen(Part& part);
+    void widen(std::uint32_t part);
     void search();
-    void fit_cells();
-    void fit_tree();
 
-    SpaceHandle space_;  // before the parts: their geometries leave it as they go
+    std::unique_ptr<PairSearch> search_;
     std::vector<Part> parts_;
     std::vector<Pair> near_, pairs_;
-    bool hashed_ = false, tree_ = false, stale_ = true;
-    Box tree_bounds_;    // of ODE's quadtree
+    bool stale_ = true;
     double growth_ = 0;  // m, by which the tight boxes are grown in the present question
 };
 

@@ -1,14 +1,13 @@
 #include "near_sweep.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace plab::detection
 {
 
 void NearSweep::reset(std::size_t parts)
 {
-    boxes_.assign(parts, {{1, 1, 1}, {-1, -1, -1}});
+    boxes_.assign(parts, {});
     asked_.assign(parts, 0);
     half_spaces_.clear();
     pairs_.reserve(parts);
@@ -35,24 +34,6 @@ const NearSweep::HalfSpace* NearSweep::half_space(std::uint32_t part) const
     return at != half_spaces_.end() && at->part == part ? &*at : nullptr;
 }
 
-bool NearSweep::overlap(const Box& a, const Box& b)
-{
-    return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y && a.lower.z <= b.upper.z &&
-           b.lower.z <= a.upper.z;
-}
-
-bool NearSweep::reaches(const HalfSpace& h, const Box& box)
-{
-    if (std::isinf(h.growth)) return true;
-    double lowest = 0, size = std::fabs(h.offset);
-    for (int k = 0; k < 3; ++k)
-    {
-        const double term = h.normal[k] * (h.normal[k] > 0 ? box.lower : box.upper)[k];
-        lowest += term, size += std::fabs(term);
-    }
-    return lowest <= h.offset + h.growth + 1e-14 * size;
-}
-
 const std::vector<NearSweep::Pair>& NearSweep::find_all()
 {
     pairs_.clear();
@@ -73,7 +54,7 @@ const std::vector<NearSweep::Pair>& NearSweep::find_all()
     }
     for (const HalfSpace& h : half_spaces_)
         for (std::uint32_t i = 0; i < boxes_.size(); ++i)
-            if (bounded(i) && reaches(h, boxes_[i])) pairs_.push_back(std::minmax(h.part, i));
+            if (bounded(i) && reaches(h.normal, h.offset, boxes_[i], h.growth)) pairs_.push_back(std::minmax(h.part, i));
     std::sort(pairs_.begin(), pairs_.end());
     return pairs_;
 }
@@ -87,7 +68,7 @@ const std::vector<NearSweep::Pair>& NearSweep::find_of(std::span<const std::uint
         if (const HalfSpace* h = half_space(i))
         {
             for (std::uint32_t j = 0; j < boxes_.size(); ++j)
-                if (bounded(j) && reaches(*h, boxes_[j])) pairs_.push_back(std::minmax(i, j));
+                if (bounded(j) && reaches(h->normal, h->offset, boxes_[j], h->growth)) pairs_.push_back(std::minmax(i, j));
             continue;
         }
         if (!bounded(i)) continue;
@@ -96,7 +77,7 @@ const std::vector<NearSweep::Pair>& NearSweep::find_of(std::span<const std::uint
         for (std::uint32_t j = 0; j < boxes_.size(); ++j)
             if (overlap(a, boxes_[j]) && bounded(j) && j != i && (asked_[j] == 0 || i < j)) pairs_.push_back(std::minmax(i, j));
         for (const HalfSpace& h : half_spaces_)
-            if (asked_[h.part] == 0 && reaches(h, a)) pairs_.push_back(std::minmax(i, h.part));
+            if (asked_[h.part] == 0 && reaches(h.normal, h.offset, a, h.growth)) pairs_.push_back(std::minmax(i, h.part));
     }
     for (const std::uint32_t i : few) asked_[i] = 0;
     std::sort(pairs_.begin(), pairs_.end());

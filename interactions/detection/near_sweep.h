@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "plab/vector.h"
+#include "bounds.h"
 
 namespace plab::detection
 {
@@ -27,18 +27,12 @@ public:
     const std::vector<Pair>& find_of(std::span<const std::uint32_t> few);
 
 private:
-    struct Box
-    {
-        Vec3 lower, upper;
-    };
     struct HalfSpace
     {
         std::uint32_t part = 0;
         Vec3 normal;
         double offset = 0, growth = 0;
     };
-    static bool overlap(const Box& a, const Box& b);
-    static bool reaches(const HalfSpace& h, const Box& box);
     bool bounded(std::uint32_t part) const { return boxes_[part].lower.x <= boxes_[part].upper.x; }
     const HalfSpace* half_space(std::uint32_t part) const;
 

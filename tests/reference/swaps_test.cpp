@@ -91,7 +91,7 @@ TEST_CASE("H1: managers, resolutions and spaces there and back between two steps
     };
     there_and_back("contact.response.manager", "Manager/", managers());
     there_and_back("contact.resolution", "Resolution/", resolutions());
-    for (const char* space : {"simple", "sweep_and_prune", "quadtree", "hash"})
+    for (const char* space : {"simple", "sweep_and_prune", "quadtree", "tree"})
     {
         swapped(exchanged, "contact", "CDetection/ODE", {{"space", std::string(space)}});
         CHECK(exchanged.hash() == alone.hash());

@@ -112,12 +112,6 @@ Entries slide_rungs()
     return out;
 }
 
-/// Many bodies: ODE's hash space allocates for each of them in each step.
-void on_sweeps(Entries& entries)
-{
-    for (Entry& e : entries) e.rung.contact += " space=\"sweep_and_prune\"";
-}
-
 Entries ball_rungs()
 {
     Entries out;
@@ -126,7 +120,6 @@ Entries ball_rungs()
     for (const char* manager : {"SequentialImpulse", "SoftStep", "Direct"})
         for (const char* resolution : {"None", "Speculative"}) out.push_back({by_rows(manager, resolution), kBalls, ""});
     out.push_back({by_rows("Direct", "LocalRoot"), kBalls, ""});
-    on_sweeps(out);
     return out;
 }
 
@@ -147,7 +140,6 @@ Entries large_rungs()
     Entries out;
     for (const Entry& e : stack_rungs())
         if (e.rung.name != "SequentialImpulse 200+None") out.push_back({e.rung, steps({60}), ""});
-    on_sweeps(out);
     return out;
 }
 

@@ -106,7 +106,7 @@ struct OneRow
 struct Detection : OneRow<detection::OdeRows>
 {
     Sink sink;
-    explicit Detection(const char* space = "hash") { rows.space[0] = space; }
+    explicit Detection(const char* space = "tree") { rows.space[0] = space; }
     const std::vector<Contact>& look(const Bodies& bodies, const Shapes& shapes, const StepContext& context = {})
     {
         sink.contacts.clear();

@@ -103,13 +103,13 @@ TEST_CASE("no order of creation or of moves, and no kind of space, reaches the c
     const auto first = Cloud(order).look("simple", false);
     CHECK(first.size() > 60);
     CHECK(same(first, Cloud(order).look("simple", true)));
-    CHECK(same(first, Cloud(order).look("hash", true)));
+    CHECK(same(first, Cloud(order).look("tree", true)));
     CHECK(same(first, Cloud(order).look("sweep_and_prune", true)));
     std::uint64_t seed = 17;
     for (int i = 0; i < 5; ++i)
     {
         for (std::size_t k = order.size(); k-- > 1;) std::swap(order[k], order[next_random(seed) % (k + 1)]);
-        for (const char* space : {"simple", "hash", "sweep_and_prune"})
+        for (const char* space : {"simple", "tree", "sweep_and_prune"})
         {
             CHECK(same(first, Cloud(order).look(space, false)));
             CHECK(same(first, Cloud(order).look(space, true)));
@@ -133,7 +133,7 @@ TEST_CASE("the spaces lose no pair: all of a brute-force search are found")
     for (std::uint32_t i = 0; i < 500; ++i)
         for (std::uint32_t j = i + 1; j < 500; ++j)
             want += length(bodies.position[i] - bodies.position[j]) < (i % 50 ? 0.02 : 2.0) + (j % 50 ? 0.02 : 2.0);
-    for (const char* space : {"simple", "hash", "sweep_and_prune"})
+    for (const char* space : {"simple", "tree", "sweep_and_prune"})
     {
         Detection d(space);
         d.between_all(bodies);
@@ -313,7 +313,7 @@ TEST_CASE("ten thousand bodies in a heap of cells")
         add_sphere(bodies, 1, 0.51, {static_cast<double>(i % 100), static_cast<double>(i / 100), 0});
         bodies.shapes[i] = {{Facet::Shape, s}};
     }
-    for (const char* space : {"hash", "sweep_and_prune"})
+    for (const char* space : {"tree", "sweep_and_prune"})
     {
         Detection d(space);
         d.between_all(bodies);

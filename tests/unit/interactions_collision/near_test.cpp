@@ -52,11 +52,11 @@ struct Crowd
 };
 }  // namespace
 
-TEST_CASE("all of ODE's spaces give the same contacts, quadtree too, while bodies leave the bounds it was made for")
+TEST_CASE("all kinds of search give the same contacts, quadtree too, while bodies leave the bounds it was made for")
 {
     Crowd crowd(300, 1.2);
     std::deque<Detection> spaces;
-    for (const char* space : {"simple", "hash", "sweep_and_prune", "quadtree"}) spaces.emplace_back(space);
+    for (const char* space : {"simple", "tree", "sweep_and_prune", "quadtree"}) spaces.emplace_back(space);
     for (Detection& d : spaces) d.between_all(crowd.bodies);
     for (int round = 0; round < 8; ++round)
     {
@@ -82,7 +82,7 @@ TEST_CASE("all of ODE's spaces give the same contacts, quadtree too, while bodie
 
 TEST_CASE("pairs that may meet are all those whose bounds, grown by their reach, overlap; half-spaces too")
 {
-    for (const char* space : {"simple", "hash", "sweep_and_prune", "quadtree"})
+    for (const char* space : {"simple", "tree", "sweep_and_prune", "quadtree"})
     {
         CAPTURE(space);
         Crowd crowd(120, 3);

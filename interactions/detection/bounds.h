@@ -1,0 +1,54 @@
+/// Boxes along the axes of W that bound shapes.
+#pragma once
+
+#include <cmath>
+
+#include "plab/vector.h"
+
+namespace plab::detection
+{
+
+/// Empty while lower > upper.
+struct Box
+{
+    Vec3 lower{1, 1, 1}, upper{-1, -1, -1};  // m, W
+};
+
+inline bool overlap(const Box& a, const Box& b)
+{
+    for (int k = 0; k < 3; ++k)
+        if (a.lower[k] > b.upper[k] || b.lower[k] > a.upper[k]) return false;
+    return true;
+}
+
+inline Box joined(const Box& a, const Box& b)
+{
+    Box out = a;
+    for (int k = 0; k < 3; ++k)
+    {
+        if (b.lower[k] < out.lower[k]) out.lower[k] = b.lower[k];
+        if (b.upper[k] > out.upper[k]) out.upper[k] = b.upper[k];
+    }
+    return out;
+}
+
+/// Half the surface, m^2: the chance that a random line meets a box goes with it (the surface area heuristic).
+inline double half_surface(const Box& b)
+{
+    const Vec3 d = b.upper - b.lower;
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+/// Whether a box comes as near as rounding lets one say to the half-space normal . p <= offset + growth (m).
+inline bool reaches(const Vec3& normal, double offset, const Box& box, double growth = 0)
+{
+    double lowest = 0, size = std::fabs(offset);
+    for (int k = 0; k < 3; ++k)
+    {
+        const double term = normal[k] * (normal[k] > 0 ? box.lower : box.upper)[k];
+        lowest += term, size += std::fabs(term);
+    }
+    return lowest <= offset + growth + 1e-14 * size;
+}
+
+}  // namespace plab::detection

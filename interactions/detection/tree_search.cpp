@@ -1,0 +1,103 @@
+#include "tree_search.h"
+
+#include <algorithm>
+
+namespace plab::detection
+{
+
+TreeSearch::TreeSearch(std::size_t parts) : boxes_(parts), memberships_(parts), has_box_(parts, 0), is_moved_(parts, 0)
+{
+    bounded_.reserve(parts), moved_.reserve(parts);
+}
+
+void TreeSearch::add_box(std::uint32_t part, Membership membership)
+{
+    memberships_[part] = membership;
+    has_box_[part] = 1;
+    bounded_.push_back(part);
+}
+
+void TreeSearch::add_half_space(std::uint32_t part, Membership membership)
+{
+    memberships_[part] = membership;
+    half_spaces_.push_back({part, {0, 0, 1}, 0});
+}
+
+void TreeSearch::note_moved(std::uint32_t part)
+{
+    if (is_moved_[part] == 0) moved_.push_back(part);
+    is_moved_[part] = 1;
+}
+
+void TreeSearch::set_box(std::uint32_t part, const Box& box)
+{
+    boxes_[part] = box;
+    note_moved(part);
+}
+
+void TreeSearch::set_half_space(std::uint32_t part, const Vec3& normal, double offset)
+{
+    for (HalfSpace& h : half_spaces_)
+        if (h.part == part) h.normal = normal, h.offset = offset;
+    note_moved(part);
+}
+
+/// Everything against everything: by one query per box, each pair from its part of lower index.
+void TreeSearch::find_all(std::vector<PartPair>& pairs)
+{
+    pairs.clear();
+    for (const std::uint32_t i : bounded_)
+        tree_.query(boxes_[i],
+                    [&](std::uint32_t j)
+                    {
+                        if (i < j && may_meet(memberships_[i], memberships_[j])) pairs.emplace_back(i, j);
+                    });
+    for (const HalfSpace& h : half_spaces_)
+        for (const std::uint32_t i : bounded_)
+            if (may_meet(memberships_[h.part], memberships_[i]) && reaches(h.normal, h.offset, boxes_[i]))
+                pairs.push_back(std::minmax(h.part, i));
+}
+
+/// Pairs of what has moved are forgotten and searched for again; of two that moved, the first one names the pair.
+void TreeSearch::find_moved(std::vector<PartPair>& pairs)
+{
+    std::erase_if(pairs, [&](const PartPair& p) { return is_moved_[p.first] != 0 || is_moved_[p.second] != 0; });
+    for (const HalfSpace& h : half_spaces_)
+        for (const std::uint32_t i : is_moved_[h.part] != 0 ? bounded_ : moved_)
+            if (has_box_[i] != 0 && may_meet(memberships_[h.part], memberships_[i]) && reaches(h.normal, h.offset, boxes_[i]))
+                pairs.push_back(std::minmax(h.part, i));
+    for (const std::uint32_t i : moved_)
+    {
+        if (has_box_[i] == 0) continue;
+        tree_.query(boxes_[i],
+                    [&](std::uint32_t j)
+                    {
+                        if (j == i || (is_moved_[j] != 0 && j < i) || !may_meet(memberships_[i], memberships_[j])) return;
+                        pairs.push_back(std::minmax(i, j));
+                    });
+    }
+}
+
+void TreeSearch::find(std::vector<PartPair>& pairs)
+{
+    // Where many have moved, and after as many moves as there are boxes, a tree from scratch is cheaper and better.
+    moves_since_build_ += moved_.size();
+    const bool rebuild = fresh_ || 4 * moved_.size() > bounded_.size() || moves_since_build_ > bounded_.size();
+    if (rebuild)
+    {
+        tree_.build(boxes_, bounded_);
+        moves_since_build_ = 0;
+        fresh_ = false;
+        find_all(pairs);
+    }
+    else
+    {
+        for (const std::uint32_t i : moved_)
+            if (has_box_[i] != 0) tree_.move(i, boxes_[i]);
+        find_moved(pairs);
+    }
+    for (const std::uint32_t i : moved_) is_moved_[i] = 0;
+    moved_.clear();
+}
+
+}  // namespace plab::detection
