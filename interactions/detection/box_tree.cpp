@@ -135,7 +135,8 @@ void BoxTree::put_in(std::uint32_t leaf, std::uint32_t free_node)
 
 void BoxTree::refit(std::uint32_t node)
 {
-    for (; node != kNone; node = nodes_[node].parent) nodes_[node].box = joined(nodes_[nodes_[node].left].box, nodes_[nodes_[node].right].box);
+    for (; node != kNone; node = nodes_[node].parent)
+        nodes_[node].box = joined(nodes_[nodes_[node].left].box, nodes_[nodes_[node].right].box);
 }
 
 }  // namespace plab::detection

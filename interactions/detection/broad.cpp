@@ -34,7 +34,8 @@ void BroadPhase::reset(const std::string& kind, std::size_t parts)
 {
     parts_.clear();
     parts_.reserve(parts);
-    near_.clear();
+    near_.clear(), half_spaces_.clear();
+    raised_ = 0;
     search_ = make_pair_search(kind, parts);
     stale_ = true;
 }
@@ -48,7 +49,7 @@ void BroadPhase::add(const Collider& collider, std::uint32_t member, Membership 
     part.collides = collider.kind() != ColliderKind::None;
     if (!part.collides) return;
     if (part.unbounded)
-        search_->add_half_space(index, membership);
+        search_->add_half_space(index, membership), half_spaces_.push_back(index);
     else
         search_->add_box(index, membership);
 }
@@ -84,7 +85,7 @@ void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose&
     {
         const Vec3 n = part.normal = rotate(X_WS.q, {0, 0, 1});
         part.offset = dot(n, X_WS.p);
-        search_->set_half_space(index, n, part.offset);
+        search_->set_half_space(index, n, part.offset + raised_);
         stale_ = true;
         return;
     }
@@ -92,6 +93,15 @@ void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose&
     const Vec3 half = (round ? collider.bound_half() : turned_half(X_WS.q, collider.bound_half())) * (1 + kMargin);
     const Vec3 center = X_WS * collider.bound_center();
     part.tight = {center - half, center + half};
+}
+
+/// A box is grown by half the margin, and so is a half-space: with some slack, so that small changes of the margin need no search.
+void BroadPhase::raise_half_spaces()
+{
+    if (growth_ <= raised_ && (growth_ == 0 || raised_ <= 4 * kSlackOfMargin * growth_)) return;
+    raised_ = kSlackOfMargin * growth_;
+    for (const std::uint32_t i : half_spaces_) search_->set_half_space(i, parts_[i].normal, parts_[i].offset + raised_);
+    stale_ = stale_ || !half_spaces_.empty();
 }
 
 bool BroadPhase::near(const Part& a, const Part& b) const
@@ -122,6 +132,7 @@ const std::vector<BroadPhase::Pair>& BroadPhase::find_pairs(double margin)
     growth_ = std::min(0.5 * margin, kLargest);
     for (std::uint32_t i = 0; i < parts_.size(); ++i)
         if (parts_[i].collides && !parts_[i].unbounded && !fits(parts_[i])) widen(i);
+    raise_half_spaces();
     if (stale_) search();
     pairs_.clear();
     for (const Pair& p : near_)

@@ -45,10 +45,13 @@ private:
     bool near(const Part& a, const Part& b) const;
     bool fits(const Part& part) const;
     void widen(std::uint32_t part);
+    void raise_half_spaces();
     void search();
 
     std::unique_ptr<PairSearch> search_;
     std::vector<Part> parts_;
+    std::vector<std::uint32_t> half_spaces_;  // parts
+    double raised_ = 0;                       // m, by which the search holds half-spaces that are larger than they are
     std::vector<Pair> near_, pairs_;
     bool stale_ = true;
     double growth_ = 0;  // m, by which the tight boxes are grown in the present question

@@ -51,10 +51,7 @@ void OdeSpace::adopt(std::uint32_t part, dxGeom* geom, Membership membership)
     set_groups(geom, membership);
 }
 
-void OdeSpace::add_box(std::uint32_t part, Membership membership)
-{
-    adopt(part, dCreateBox(space_.get(), 1, 1, 1), membership);
-}
+void OdeSpace::add_box(std::uint32_t part, Membership membership) { adopt(part, dCreateBox(space_.get(), 1, 1, 1), membership); }
 
 void OdeSpace::add_half_space(std::uint32_t part, Membership membership)
 {

@@ -26,7 +26,7 @@ private:
     void adopt(std::uint32_t part, dxGeom* geom, Membership membership);
     void fit_tree();
 
-    SpaceHandle space_;  // before the geometries: they leave it as they go
+    SpaceHandle space_;              // before the geometries: they leave it as they go
     std::vector<GeomHandle> geoms_;  // by part
     std::vector<Box> boxes_;         // by part; empty for half-spaces
     bool quadtree_ = false;

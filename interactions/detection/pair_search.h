@@ -22,10 +22,7 @@ struct Membership
     bool dynamic = false;
 };
 
-inline bool may_meet(Membership a, Membership b)
-{
-    return (a.between || b.between) && (a.dynamic || b.dynamic);
-}
+inline bool may_meet(Membership a, Membership b) { return (a.between || b.between) && (a.dynamic || b.dynamic); }
 
 class PairSearch
 {

@@ -1,6 +1,7 @@
 // The broad phase against a search by brute force: every pair of boxes that overlaps, whatever the kind of search, also
 // after some, many or all have moved. Equal boxes in piles are where ODE's hash space lost pairs.
 #include <cstdlib>
+#include <string>
 
 #include "bodies.h"
 #include "detection/broad.h"
@@ -11,7 +12,7 @@ using namespace plab::test;
 
 namespace
 {
-constexpr const char* kSearches[] = {"tree", "simple", "sweep_and_prune", "quadtree"};
+constexpr const char* kSearches[] = {"tree", "sweep_and_prune", "quadtree", "simple"};
 
 /// Boxes along the axes, some static, some only against the others, and half-spaces on top.
 struct Crowd
@@ -118,8 +119,9 @@ void compare(Crowd crowd, std::span<const char* const> searches)
             for (std::uint32_t i = 0; i < crowd.parts.size(); ++i)
                 broad[s].move(i, crowd.colliders[crowd.parts[i].collider], crowd.parts[i].pose);
             const std::vector<PartPair>& found = broad[s].find_pairs(margin);
-            CHECK_MESSAGE(std::includes(found.begin(), found.end(), must.begin(), must.end()), searches[s], " lost a pair");
-            CHECK_MESSAGE(std::includes(may.begin(), may.end(), found.begin(), found.end()), searches[s], " made up a pair");
+            CHECK_MESSAGE(std::includes(found.begin(), found.end(), must.begin(), must.end()), std::string(searches[s]), " lost a pair of ",
+                          crowd.parts.size(), " at share ", share);
+            CHECK_MESSAGE(std::includes(may.begin(), may.end(), found.begin(), found.end()), std::string(searches[s]), " made up a pair");
         }
     }
 }
@@ -132,15 +134,14 @@ void compare_scenes(int scenes, std::size_t largest)
         const double ratio = static_cast<double>(largest) / 10;
         const auto count = static_cast<std::size_t>(10 * std::pow(ratio, next_uniform(seed)));
         const std::uint64_t of_scene = next_random(seed);
-        compare(i % 2 == 0 ? Crowd::pile(of_scene, count) : Crowd::mixture(of_scene, count), kSearches);
+        // All pairs of many boxes are what the brute force is for: ODE's space for that, the last one, is left out there.
+        const bool many = count > 1000;
+        compare(i % 2 == 0 ? Crowd::pile(of_scene, count) : Crowd::mixture(of_scene, count), std::span(kSearches).first(many ? 3 : 4));
     }
 }
 }  // namespace
 
-TEST_CASE("a hundred random scenes: every kind of search finds what brute force finds")
-{
-    compare_scenes(100, 1000);
-}
+TEST_CASE("a hundred random scenes: every kind of search finds what brute force finds") { compare_scenes(100, 1000); }
 
 TEST_CASE("a thousand piled cubes, and five thousand, lose no pair on the default")
 {
