@@ -1,0 +1,54 @@
+// Loading a scene, and its first step, take time in proportion to its objects.
+#include <chrono>
+
+#include "support/scene.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Times
+{
+    double load = 1e9, first_step = 1e9;  ///< s for each object, the best of some trials
+};
+
+Times times_for(int n, const std::string& rest, const std::string& settings)
+{
+    const std::string scene = "<repeat id='all' count='" + std::to_string(n) +
+                              "' step='1 0 0'><component id='b' type='State/RigidBody' mass='1' inertia='1 1 1'/></repeat>" + rest;
+    Times best;
+    for (int trial = 0; trial < 3; ++trial)
+    {
+        const auto start = std::chrono::steady_clock::now();
+        Scene s(scene, settings);
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        best.load = std::min(best.load, seconds_since(start) / n);
+        const auto loaded = std::chrono::steady_clock::now();
+        s.step();
+        best.first_step = std::min(best.first_step, seconds_since(loaded) / n);
+    }
+    return best;
+}
+
+}  // namespace
+
+TEST_CASE("ten times the objects take about ten times the time to load and to make their first step")
+{
+    for (const char* rest : {"", "<component id='g' type='Field/Gravity' between='*'/>", "<component id='w' type='Field/Gravity' between='all'/>"})
+    {
+        CAPTURE(rest);
+        const Times few = times_for(2000, rest, "dt='1/240'"), many = times_for(20000, rest, "dt='1/240'");
+        MESSAGE("us per object: load ", few.load * 1e6, " and ", many.load * 1e6, ", first step ", few.first_step * 1e6, " and ",
+                many.first_step * 1e6);
+        // Caches explain a factor of 2; what grows with the square is a factor of 10.
+        CHECK(many.load < 4 * few.load);
+        CHECK(many.first_step < 4 * few.first_step);
+    }
+}
