@@ -31,7 +31,7 @@ void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bod
 {
     Workspace& work = rows.workspace[row];
     const ImpactSettings settings{rows.rest_height[row], rows.rest_speed[row], rows.tolerance[row],
-                                  static_cast<int>(std::min<std::int64_t>(rows.max_iterations[row], 1'000'000))};
+                                  static_cast<int>(std::min<std::int64_t>(rows.max_iterations[row], 1'000'000)), context.interruption};
     if (impact.mode == ImpactMode::Impact)
         respond_impact(settings, work, bodies, impact);
     else

@@ -67,7 +67,7 @@ void SurfaceColumns::describe(Schema& s)
     s.param(restitution, "restitution", unit::one,
             "share of the approach speed that a single central contact gives back, where no Material/Pair says otherwise; 1: no "
             "damping on its account")
-        .or_else(1)
+        .or_else(0)
         .not_negative()
         .at_most(1);
     s.param(tangential_ratio, "tangential_ratio", unit::one, "stiffness of the stiction spring over the stiffness across the surface")

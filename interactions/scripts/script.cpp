@@ -24,7 +24,8 @@ void ScriptRows::describe(Schema& s)
     s.role(between, "between", {Facet::Body, Facet::Shaft, Facet::Quantities}, "take forces or rates, as between[i] in the order of ids")
         .optional()
         .writes();
-    s.scratch(machine, "machine", "the Lua state; made from the fields above by Script/Prepare");
+    // The reference prints what a machine offers behind the tables of fields (scratch fields themselves are not listed).
+    s.scratch(machine, "machine", manual());
 }
 
 namespace

@@ -28,7 +28,11 @@ std::string ball(const std::string& id, const std::string& attributes)
            "\" type=\"State/RigidBody\" shape=\"" + id + ".shape\" " + attributes + "/>";
 }
 
-std::string penalty(double k, const std::string& more = "") { return "Penalty\" response.stiffness=\"" + text(k) + "\"" + more; }
+std::string penalty(double k, const std::string& more = "")
+{
+    const std::string elastic = more.find("restitution") == std::string::npos ? " response.restitution=\"1\"" : "";
+    return "Penalty\" response.stiffness=\"" + text(k) + "\"" + elastic + more;
+}
 
 /// A ball of 1 kg that comes down on a floor with 1 m/s, `away` above it.
 std::string bounce(double away, const std::string& response)
@@ -150,7 +154,7 @@ TEST_CASE("the solver keeps its order through contacts")
     CHECK(order("RungeKutta4", 20, linear, 0.72924761428767) == doctest::Approx(4).epsilon(0.1));
     CHECK(order("SemiImplicitEuler", 100, linear, 0.72924761428767) > 0.9);
     // Hertz's force has no second derivative at the touch and at the end: order 2.5, with luck in where pieces end.
-    const auto hertz = [&](int pieces) { return error("RungeKutta4", pieces, "HuntCrossley\" response.stiffness=\"1e7\"", 1); };
+    const auto hertz = [&](int pieces) { return error("RungeKutta4", pieces, "HuntCrossley\" response.restitution=\"1\" response.stiffness=\"1e7\"", 1); };
     CHECK(std::log2(hertz(25) / hertz(800)) / 5 > 2.3);
 }
 
@@ -160,7 +164,7 @@ TEST_CASE("Hertz: two balls part after 2.9432 (x_m / v), and have pushed as deep
     const double k = 1e8, m = 0.5, v = 2, deepest = std::pow(1.25 * m * v * v / k, 0.4), time = 2.9432751843247047 * deepest / v;
     Scene s(ball("a", "mass=\"1\" position=\"-0.101 0 0\" linear_velocity=\"1 0 0\"") +
                 ball("b", "mass=\"1\" position=\"0.101 0 0\" linear_velocity=\"-1 0 0\"") +
-                contact("a b", "HuntCrossley\" response.stiffness=\"" + text(k) + "\"") +
+                contact("a b", "HuntCrossley\" response.restitution=\"1\" response.stiffness=\"" + text(k) + "\"") +
                 "<component id=\"solver\" type=\"Solver/RungeKutta4\"/>",
             "dt=\"1/100\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());

@@ -31,7 +31,7 @@ public:
     double run()
     {
         double part = h_, t = 0;
-        while (t < h_)
+        while (t < h_ && !flat_.interrupted())
         {
             const double size = std::min(part, h_ - t);
             if (!solve(t, size))
@@ -85,7 +85,7 @@ private:
         m_.factors.matrix().resize(n);
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = 0; j < n; ++j) m_.factors.matrix()(i, j) = (i == j ? 1.0 : 0.0) - 0.5 * h * m_.jacobian(i, j);
-        return m_.factors.factorise();
+        return m_.factors.factorise([this] { return flat_.interrupted(); });
     }
 
     /// From z (Newton) or y (fixed point) until the updates are below the tolerance, or stay below what rounding explains.

@@ -181,7 +181,7 @@ double ContactForces::locate(Piece& piece, double high)
 {
     double low = piece.t, width = 2 * (high - low);
     at_low_ = at_start_, at_high_ = at_end_;
-    for (int i = 0; i < kMostTrials; ++i)
+    for (int i = 0; i < kMostTrials && !s_->frame_.give_up(); ++i)
     {
         double next = guess(low, high, at_low_, at_high_);
         // Where guesses creep up from one side, halve.
@@ -267,7 +267,7 @@ void ContactForces::advance_island(const Island& island, double from, double to,
     order_ = std::max(1, s_->world_.type_of(piece.solver)->info.order);
     start(from);
     // Free flight and switches come on top of what contacts may have.
-    while (piece.t < to && piece.finite && piece.pieces < kMostPieces) one_piece(piece);
+    while (piece.t < to && piece.finite && piece.pieces < kMostPieces && !s_->frame_.give_up()) one_piece(piece);
     if (piece.t < to && piece.finite) piece.finite = run(piece, to, book, trial);
     s_->finish_advance(*piece.system, piece.finite, to, trial);
 }
@@ -280,7 +280,7 @@ void ContactForces::advance_mixed(const Island& island, double from, double to, 
     order_ = 2;
     start(from);
     int pieces = 0;
-    for (double t = from; t < to && pieces < kMostPieces; ++pieces)
+    for (double t = from; t < to && pieces < kMostPieces && !s_->frame_.give_up(); ++pieces)
     {
         const double left = to - t;
         const double h = pushing_.empty() ? free_time(left) : contact_time(left, pieces);

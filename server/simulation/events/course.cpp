@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "plab/rotation.h"
+#include "plab/surface.h"
 
 namespace plab::simulation
 {
@@ -95,7 +96,7 @@ BodyExtent extent_of(const Bodies& bodies, const Shapes& shapes, std::uint32_t b
         out.radius = std::max(out.radius, offset + radius);
         out.arm = std::max(out.arm, g.kind == GeometryKind::Sphere ? offset : offset + radius);
         out.is_plane = g.kind == GeometryKind::Plane;
-        out.convex = out.convex && ++solids == 1 && g.kind != GeometryKind::Compound;
+        out.convex = out.convex && ++solids == 1 && g.kind != GeometryKind::Compound && surface_of(g) == Surface::None;
     }
     out.is_plane = out.is_plane && out.convex;
     return out;
@@ -246,7 +247,7 @@ double Clearance::linear_width(const Frame& frame, const Vec3& n, double gap, do
     double width = gap + (dot(speed_, n) + dot(cross(frame.spin, n), apart_)) * s;
     const auto grow = [&](const Mover& m, const Vec3& outward)
     {
-        if (m.extent->is_plane || m.extent->arm == 0) return;
+        if (m.extent->is_plane || m.extent->arm == 0 || frame.spin == m.now.spin) return;
         const Vec3 turned = outward + cross(frame.spin - m.now.spin, outward) * s;
         width -= support_of(m, m.now.orientation, turned) - support_of(m, m.now.orientation, outward);
     };
@@ -307,7 +308,7 @@ double Clearance::by_chord(const Vec3& n, double gap) const
     double width = gap + dot((end_b - end_a) - apart_, n);
     const auto grow = [&](const Mover& m, const Vec3& outward)
     {
-        if (m.extent->is_plane || m.extent->arm == 0) return;
+        if (m.extent->is_plane || m.extent->arm == 0 || m.course->last.orientation == m.now.orientation) return;
         width -= support_of(m, m.course->last.orientation, outward) - support_of(m, m.now.orientation, outward);
     };
     grow(a_, n), grow(b_, -n);
@@ -319,10 +320,42 @@ double Clearance::by_chord(const Vec3& n, double gap) const
 double Clearance::along(const Vec3& n, double gap, const Vec3& turn) const
 {
     const bool has_plane = a_.extent->is_plane || b_.extent->is_plane;
-    if (!has_plane && !(a_.extent->convex && b_.extent->convex)) return in_any_direction(gap);
+    if (!has_plane && !(a_.extent->convex && b_.extent->convex))
+        return std::max({in_any_direction(gap), of_hulls(n, gap), of_ball_in_round(n, gap)});
     const double open = std::max(0.0, gap);
     const bool plane_turns = (a_.extent->is_plane && a_.course->spin > 0) || (b_.extent->is_plane && b_.course->spin > 0);
     return std::max(by_points(n, open, turn), open > 0 && !plane_turns ? by_chord(n, open) : 0.0);
+}
+
+double Clearance::of_hulls(const Vec3& n, double gap) const
+{
+    const double to_a = support_of(a_, a_.now.orientation, n), to_b = support_of(b_, b_.now.orientation, -n), apart = dot(n, apart_);
+    const double width = apart - to_a - to_b;
+    if (!(width >= gap - 4e-16 * (std::fabs(apart) + std::fabs(to_a) + std::fabs(to_b)))) return 0;
+    const double open = std::max(0.0, gap);
+    return std::max(by_points_in(world_frame(n), n, open), open > 0 ? by_chord(n, open) : 0.0);
+}
+
+double Clearance::of_ball_in_round(const Vec3& n, double gap) const
+{
+    const bool first = round_radius(a_) > 0;
+    const Mover &round = first ? a_ : b_, &ball = first ? b_ : a_;
+    const double radius = round_radius(round);
+    if (radius == 0 || ball.extent->arm > 0 || round.course->spin > 0) return 0;
+    // Seen from the middle the way outwards bends by v^2 / distance; within a tenth of the distance that changes little.
+    const double distance = radius - ball.extent->radius - gap, pull = length(acceleration_) + unsure_;
+    const double speed = length(speed_) + pull * left_;
+    if (!(distance > 0)) return 0;
+    const double near = speed > 0 ? std::min(left_, 0.1 * distance / speed) : left_;
+    return std::min(near, quadratic(std::max(0.0, gap), dot(speed_, n), -(speed * speed / (0.9 * distance) + pull)));
+}
+
+double Clearance::round_radius(const Mover& m) const
+{
+    if (bodies_.shapes[m.body].size() != 1) return 0;
+    const Geometry& g = shapes_.geometry[bodies_.shapes[m.body].front().index];
+    const Surface surface = surface_of(g);
+    return surface == Surface::Bowl || surface == Surface::Bore ? surface_radius(g) : 0;
 }
 
 double Clearance::in_any_direction(double gap) const

@@ -105,6 +105,11 @@ public:
     bool was_clear(const Vec3& n, double gap, double ago, const Vec3& turn = {}) const;
 
 private:
+    /// By n, where all of one body lies behind the plane through its point of contact: then their convex hulls are no nearer.
+    double of_hulls(const Vec3& n, double gap) const;
+    /// Of a ball inside of a bowl or a bore that does not turn: gap'' >= -(v^2 / d + |a|), d from its middle.
+    double of_ball_in_round(const Vec3& n, double gap) const;
+    double round_radius(const Mover& m) const;
     bool find_half_space(Vec3& n, double& gap) const;
     /// Spin of the frame in which the direction stands still, and how fast widths may bend in it, m/s^2.
     struct Frame

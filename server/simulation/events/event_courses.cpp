@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/clock.h"
 #include "simulation/events/event_locator.h"
 
 namespace plab::simulation
@@ -80,10 +79,11 @@ void EventLocator::find_near(bool only_touched)
         PhaseCall call;
         call.context = &context, call.rows = Rows(&detector.row, 1);
         call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.contacts = &sink;
-        const std::uint64_t before = now_ns();
+        s_->meter_.enter(s_->meter_.of_component(detector.component));
+        s_->meter_.ran(detector.table, Phase::Detect);
         const auto done = detector.command->run(call, table.rows());
         if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
-        s_->cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
+        s_->meter_.leave();
         for (const NearCollector::Pair& pair : near_)
             if (bodies.dynamic(pair.a.index) || bodies.dynamic(pair.b.index)) consider_near(d, pair.a, pair.b);
     }
@@ -106,10 +106,11 @@ void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, st
     PhaseCall call;
     call.context = &context, call.rows = Rows(&detector.row, 1);
     call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.contacts = &sink;
-    const std::uint64_t before = now_ns();
+    s_->meter_.enter(s_->meter_.of_component(detector.component));
+    s_->meter_.ran(detector.table, Phase::Detect);
     const auto done = detector.command->run(call, table.rows());
     if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
-    s_->cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
+    s_->meter_.leave();
     active_[candidate.a.index] = active_[candidate.b.index] = 0;
     sort_contacts(found, s_->world_);
 }

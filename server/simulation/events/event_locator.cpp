@@ -285,7 +285,7 @@ void EventLocator::run(std::vector<FoundContact>& found)
     if (any_certifies_) begin_courses(), find_near(false);
     if (!all_certify_) s_->detect_all(found), collect(found);
     std::uint32_t slot = 0;
-    for (int events = 0; pop(slot);)
+    for (int events = 0; !s_->frame_.give_up() && pop(slot);)
     {
         Candidate& c = candidates_[slot];
         if (!c.located)

@@ -55,6 +55,7 @@ void EventLocator::ask(const Candidate& candidate, Trial& trial)
     context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
     PhaseCall call;
     call.context = &context, call.rows = Rows(&c.row, 1), call.trial = &trial;
+    const CostScope scope(s_->meter_, s_->meter_.of_component(resolution));
     for (const CommandInfo& command : table.type().info.commands)
         if (command.phase == Phase::Locate && command.run) (void)command.run(call, table.rows());
 }
@@ -64,7 +65,7 @@ void EventLocator::bracket(Candidate& candidate, Trial& trial)
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
-        if (trial.decision != Trial::Decision::Try || trial.iteration > kMostLooks) return;
+        if (trial.decision != Trial::Decision::Try || trial.iteration > kMostLooks || s_->frame_.give_up()) return;
         (overlaps_at(candidate, trial.next) ? trial.end : trial.begin) = trial.next;
     }
 }
@@ -203,7 +204,7 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, co
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
-        if (trial.decision != Trial::Decision::Try || trial.iteration > kMostLooks) break;
+        if (trial.decision != Trial::Decision::Try || trial.iteration > kMostLooks || s_->frame_.give_up()) break;
         const Look look = look_at(candidate, trial.next);
         trial.last = look.time, trial.last_gap = look.query.gap, trial.last_rate = look.rate;
         if (look.query.gap > 0)
@@ -256,6 +257,7 @@ bool EventLocator::meets(Candidate& candidate)
     if (settle_at_begin(candidate, look)) return !candidate.nothing;
     for (;; ++trial.iteration)
     {
+        if (s_->frame_.give_up()) return false;
         candidate.time = look.time;
         const bool touches = look.query.gap <= look.touch;
         if (touches && (!responds || look.rate < -kStill * look.speed)) return true;

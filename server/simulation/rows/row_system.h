@@ -110,8 +110,6 @@ public:
     double take_impulses(const StepContext& context, std::span<const ConstraintRow> held, double h, const RowBook& book);
     /// Of the last react() or take_impulses(), and the last projection.
     void report_to(RowReportTable& table) const;
-    /// Adds the time that rows took since the last call, ns by table.
-    void collect_cost(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table);
 
 private:
     class Sink;

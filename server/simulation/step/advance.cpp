@@ -30,6 +30,8 @@ void Stepper::advance_all()
 
 bool Stepper::run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events)
 {
+    CostMeter& meter = system.meter();
+    const CostScope scope(meter, solver != kNoIndex ? meter.of_component(solver) : meter.accounts().host);
     system.begin(from, to, book, events);
     if (!(to > from))
         system.evaluate(0, 0);  // a piece of no length: forces are wanted, nobody moves, and no solver has to divide by it
