@@ -112,6 +112,7 @@ void Service::post(simulation::Request request, Origin origin)
 void Service::take_requests()
 {
     if (!bus_) return;
+    note_restart();
     publish::RequestText text;
     while (bus_->take(text))
     {
@@ -127,6 +128,15 @@ void Service::take_requests()
         else
             accept(text, wanted.take(), read_ns);
     }
+}
+
+void Service::note_restart()
+{
+    publish::EventRecord event;
+    event.message = bus_->take_restart();
+    if (event.message.empty()) return;
+    event.kind = "bus.restarted", event.severity = Severity::Warning;
+    collector_.note(*simulation_, std::move(event));
 }
 
 void Service::accept(const publish::RequestText& text, control::Wanted wanted, double read_ns)
