@@ -74,6 +74,9 @@ class Problem
 public:
     /// Geometry, masses and warm starts. `targets` and speeds are still to be set.
     void load(const Island& island, const Bodies& bodies, const Shafts& shafts);
+    /// Inertias, mobilities and spins without impulses at the present attitudes, after bodies have turned freely. Contact points stay where
+    /// they were found, seen from the centres of mass: what is round touches with another point of it when it has turned.
+    void turn_with(const Bodies& bodies);
     /// Speeds without impulses from the tables; given parts of u with them.
     void read_speeds(const Bodies& bodies, const Shafts& shafts);
     /// Speeds at rest, and none given: for displacements instead of speeds.
@@ -103,6 +106,8 @@ private:
     void add_bodies(const Island& island, const Bodies& bodies);
     void add_shafts(const Island& island, const Shafts& shafts);
     void add_point(const Contact& contact, const Bodies& bodies);
+    void set_mobility(Point& p) const;
+    void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
     std::uint32_t mover_of(Ref who) const;
 

@@ -40,7 +40,8 @@ double relax(Problem& problem, Line& line, double relaxation)
     return std::fabs(change) * line.mobility;
 }
 
-/// Somebody else's motion, restitution or a motor may put energy in.
+}  // namespace
+
 bool is_driven(const Problem& problem)
 {
     const auto pushed = [](const Point& p) { return p.given != Vec3{} || p.least > 0; };
@@ -49,8 +50,6 @@ bool is_driven(const Problem& problem)
     return std::any_of(problem.points.begin(), problem.points.end(), pushed) ||
            std::any_of(problem.lines.begin(), problem.lines.end(), driven);
 }
-
-}  // namespace
 
 bool makes_energy(const Problem& problem)
 {

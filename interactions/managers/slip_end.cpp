@@ -133,6 +133,7 @@ Verdict SlipEnds::advance()
         out.join(verdict);
         move(verdict, part);
         if (!cut) break;
+        problem.turn_with(bodies_);
         problem.scale_impulses((rest - part) / part);
     }
     store_impulses(problem, island_);

@@ -48,17 +48,15 @@ public:
         for (int s = 0; s < choices_.substeps; ++s)
         {
             kick();
+            most_ = kinetic_energy_without(problem_);
             sweep_points(true), sweep_lines(true);
             write();
             if (bounces_) count_way();
-            follow_points();
-            island_.motion->move(h_);
+            move();
             for (int i = 0; i < choices_.relax_iterations; ++i) sweep_lines(false), sweep_points(false);
             write();
-            const int more = calm();
-            if (more > 0) write();
+            out.iterations += 1 + choices_.relax_iterations + calm();
             gather();
-            out.iterations += 1 + choices_.relax_iterations + more;
         }
         give_back();
         finish(out);
@@ -69,7 +67,10 @@ private:
     void start();
     void kick();
     void write();
-    void follow_points();
+    void move();
+    bool gains() const;
+    int step_hard();
+    void scale_down();
     void sweep_points(bool soft);
     void sweep_lines(bool soft);
     int calm();
@@ -89,6 +90,7 @@ private:
     double h_, rate_;
     Softness soft_, against_fixed_;
     bool bounces_ = false;
+    double most_ = 0;     ///< J: kinetic energy after the sub-step's kick, which contacts may not add to
     double allowed_ = 0;  ///< J: kinetic energy that the start and the forces on the way allow
 };
 
@@ -152,11 +154,18 @@ void SoftIsland::write()
     problem_.write_speeds(bodies_, shafts_);
 }
 
-/// Depths after the way that comes. Contact points stay where they were found, seen from the centres of mass: what is round
-/// touches with another point of it when it has turned, and a point that turned with it would seem to rise.
-void SoftIsland::follow_points()
+/// Contact points stay where they were found, seen from the centres of mass: what is round touches with another point of it when it
+/// has turned, and a point that turned with it would seem to rise.
+void SoftIsland::move()
 {
+    memory_.depth_before = memory_.depth;
+    memory_.moved_with.clear(), memory_.lines_moved_with.clear();
+    for (const Point& p : problem_.points) memory_.moved_with.push_back(p.impulse);
+    for (const Line& line : problem_.lines) memory_.lines_moved_with.push_back(line.impulse);
     for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth[i] -= h_ * problem_.slip(problem_.points[i]).z;
+    island_.motion->move(h_);
+    problem_.turn_with(bodies_);
+    problem_.apply_impulses();
 }
 
 void SoftIsland::sweep_points(bool soft)
@@ -207,16 +216,11 @@ void SoftIsland::gather()
     for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
 }
 
-/// Where the sub-step made energy: hard sweeps, then as much off all impulses as leaves none. The number of sweeps.
-int SoftIsland::calm()
+bool SoftIsland::gains() const { return !is_driven(problem_) && kinetic_energy(problem_) > most_ * (1 + 1e-9); }
+
+/// With v0 without impulses and dv by them: the energy of s of them is 1/2 |v0 + s dv|^2, that of none again at this s.
+void SoftIsland::scale_down()
 {
-    constexpr int kSweeps = 2;
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
-    if (!makes_energy(problem_)) return 0;
-    const Swept done = sweep(problem_, {kSweeps, 0, 1});
-    problem_.apply_impulses();
-    if (!makes_energy(problem_)) return done.sweeps;
-    // With v0 without impulses and dv by them: the energy of s of them is 1/2 |v0 + s dv|^2, that of none again at this s.
     double linear = 0, square = 0;
     for (std::size_t i = 0; i < problem_.movers.size(); ++i)
     {
@@ -226,7 +230,41 @@ int SoftIsland::calm()
         square += m.mass * length_squared(dv) + dot(problem_.movers[i].w - m.w, dw);
     }
     problem_.scale_impulses(std::clamp(-2 * linear / square, 0.0, 1.0));
+    problem_.apply_impulses();
+}
+
+/// The sub-step once more, from where it began, without what pushes overlap apart: sweeps that only take energy, and a motion that
+/// keeps it.
+int SoftIsland::step_hard()
+{
+    constexpr int kSweeps = 4;
+    // Back with the speeds of the move.
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].impulse = memory_.moved_with[i];
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i) problem_.lines[i].impulse = memory_.lines_moved_with[i];
+    write();
+    island_.motion->move(-h_);
+    memory_.depth = memory_.depth_before;
+    problem_.turn_with(bodies_);
+    problem_.clear_impulses();
+    problem_.apply_impulses();
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
+    const Swept done = sweep(problem_, {kSweeps, 0, 1});
+    problem_.apply_impulses();
+    if (gains()) scale_down();
+    write();
+    move();
     return done.sweeps;
+}
+
+/// Where the sub-step made energy: hard sweeps, and if those do not get it out again, another sub-step.
+int SoftIsland::calm()
+{
+    constexpr int kSweeps = 2;
+    if (!gains()) return 0;
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
+    const Swept done = sweep(problem_, {kSweeps, 0, 1});
+    write();
+    return done.sweeps + (gains() ? step_hard() : 0);
 }
 
 /// Impulses that give back a share of the restitution; the kinetic energy with them, J.

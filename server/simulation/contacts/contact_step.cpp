@@ -301,7 +301,6 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
                              WorkBook book, bool trial)
 {
     const double h = to - from;
-    Bodies& bodies = world_.host().bodies;
     Shafts& shafts = world_.host().shafts;
     GroupSystem& system = system_for(island, shadows);
     touching_.clear();
@@ -315,25 +314,11 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
                              frame_.start_time + from);
     if (arrest(system, h, book)) system.join();
 
-    old_velocity_.clear(), old_spin_.clear();
-    const auto members = system.bodies();
-    for (std::size_t i = 0; i < members.size(); ++i)
-    {
-        const std::uint32_t b = members[i];
-        old_velocity_.push_back(bodies.velocity[b]), old_spin_.push_back(bodies.angular_velocity[b]);
-        system.kick(i, h);
-    }
+    KickedBodies& moved = held_->kick_all(system, h);
     respond(touching_, ImpactMode::Rest, h, book);
     if (!trial) keep_impulses(touching_);
     system.join();  // an impulse knows nothing of joints
-    for (std::size_t i = 0; i < members.size(); ++i)
-    {
-        const std::uint32_t b = members[i];
-        bodies.position[b] += (old_velocity_[i] + bodies.velocity[b]) * (0.5 * h);
-        const Vec3 turn_W = (old_spin_[i] + bodies.angular_velocity[b]) * (0.5 * h);
-        bodies.orientation[b] = normalized(exp_rotation(turn_W) * bodies.orientation[b]);
-        bodies.refresh_spin(b);
-    }
+    (void)moved.move_mean(h);
     system.move_shafts(h, shafts);
     system.move_prescribed();
     system.project();

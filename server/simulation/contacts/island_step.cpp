@@ -1,6 +1,7 @@
 #include "simulation/contacts/island_step.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "simulation/clock.h"
 #include "simulation/step/stepper.h"
@@ -184,8 +185,8 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     set_approach(isle, system, to - from);
     if (!trial)
         for (std::size_t i = 0; i < isle.contacts.size(); ++i)
-            if (s_->is_paradox(isle.contacts[i])) s_->tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]],
-                                                               s_->frame_.start_time + from);
+            if (s_->is_paradox(isle.contacts[i]))
+                s_->tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]], s_->frame_.start_time + from);
     isle.motion.begin(system, host.bodies, host.shafts, isle.members, isle.roots, isle.contacts, isle.rows, book.work != nullptr);
     Island island;
     island.h = to - from, island.time = s_->frame_.start_time + from;
@@ -213,6 +214,14 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     s_->report_.worst_residual = std::max(s_->report_.worst_residual, island.residual);
     keep(isle);
     tell_impacts(isle, island.time);
+}
+
+KickedBodies& HeldIslands::kick_all(GroupSystem& system, double h)
+{
+    everybody_.resize(system.bodies().size());
+    std::iota(everybody_.begin(), everybody_.end(), 0u);
+    kicked_.kick(system, s_->world_.host().bodies, everybody_, h);
+    return kicked_;
 }
 
 /// What joints say of themselves, and their share in what the manager did.

@@ -280,11 +280,7 @@ void GroupSystem::kick(std::size_t member, double h)
     Bodies& bodies = frame_.world->host().bodies;
     const std::uint32_t b = bodies_[member];
     bodies.velocity[b] += acceleration(member) * h;
-    if (bodies.needle[b] != 0)
-        bodies.angular_velocity[b] += rotate(bodies.orientation[b], spin_rate_B(b)) * h;
-    else
-        bodies.angular_momentum[b] += scratch_->wrenches.torque[b] * h;
-    bodies.refresh_spin(b);
+    bodies.add_angular_impulse(b, scratch_->wrenches.torque[b] * h);
 }
 
 void GroupSystem::rates_of_shafts(double weight)

@@ -79,6 +79,7 @@ void share(Batch& batch, std::span<const std::uint32_t> cluster, std::uint32_t s
     if (fresh) batch.parts.emplace_back().solver = solver;
     auto& groups = batch.parts[place->second].groups;
     groups.insert(groups.end(), cluster.begin(), cluster.end());
+    std::sort(groups.begin(), groups.end());
 }
 
 }  // namespace
@@ -130,7 +131,6 @@ void Stepper::plan_batches()
         batch.work.assign(work_.size(), 0.0);
         for (Batch::Part& part : batch.parts)
         {
-            std::sort(part.groups.begin(), part.groups.end());  // once: a part may have gathered thousands of clusters
             part.system = std::make_unique<GroupSystem>(*batch.scratch);
             part.system->configure(frame_, part.groups);
         }
@@ -152,6 +152,7 @@ void Batch::add(std::span<const std::uint32_t> cluster, std::uint32_t solver, bo
     Part& part = same != parts.end() ? *same : parts.emplace_back();
     part.solver = solver;
     part.groups.insert(part.groups.end(), cluster.begin(), cluster.end());
+    std::sort(part.groups.begin(), part.groups.end());
 }
 
 void Stepper::run_batch(Batch& batch, std::vector<double>& work)
