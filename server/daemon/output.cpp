@@ -77,7 +77,8 @@ std::string interaction_json(const simulation::Simulation& s, std::uint32_t i, d
 {
     const world::World& world = s.world();
     std::string out = "{\"type\": " + quoted(world.type_of(i)->info.name) + ", \"cost_ns_per_step\": " + number(cost) +
-                      ", \"work\": " + number(s.stepper().work()[i]) + ", \"error\": " + number(s.error_of(i));
+                      ", \"work\": " + number(s.stepper().work()[i]) + ", \"made\": " + number(s.stepper().contact_energy()[i].made) +
+                      ", \"lifted\": " + number(s.stepper().contact_energy()[i].lifted) + ", \"error\": " + number(s.error_of(i));
     for (const Field& field : world.table_of(i).schema().fields())
     {
         if (field.kind != FieldKind::Output) continue;

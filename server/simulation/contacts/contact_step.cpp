@@ -1,6 +1,7 @@
 // Contacts inside a step: looking for them, standing contacts as time stepping, impulses.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "plab/rotation.h"
 #include "simulation/clock.h"
@@ -223,12 +224,25 @@ void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, doub
         for (const CommandInfo& command : table.type().info.commands)
             if (command.phase == Phase::Respond && command.run) (void)command.run(call, table.rows());
         cost_.by_table[c.table][static_cast<std::size_t>(Phase::Respond)] += now_ns() - started;
-        if (book.work) (*book.work)[response] += book.sign * (kinetic_energy(contacts) - before);
+        if (book.work) book_impact(response, contacts, mode, kinetic_energy(contacts) - before, book);
         report_.worst_residual = std::max(report_.worst_residual, impact.residual);
         std::size_t next = 0;
         for (FoundContact& f : contacts)
             if (f.detector == d) f.contact = impact_contacts_[next++];
     }
+}
+
+/// An impact takes energy, or keeps it, where nobody is moved as told.
+void Stepper::book_impact(std::uint32_t response, const std::vector<FoundContact>& contacts, ImpactMode mode, double work, WorkBook book)
+{
+    constexpr double kRounding = 1e-9;
+    (*book.work)[response] += book.sign * work;
+    if (mode != ImpactMode::Impact || !(work > kRounding * kinetic_energy(contacts))) return;
+    const Bodies& bodies = world_.host().bodies;
+    for (const FoundContact& f : contacts)
+        if (bodies.motion[f.contact.a.index] == Motion::Kinematic || bodies.motion[f.contact.b.index] == Motion::Kinematic) return;
+    (*book.work)[response] -= book.sign * work;
+    contact_energy_[response].made += book.sign * work;
 }
 
 void Stepper::advance_contacts(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
@@ -301,6 +315,7 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
                              WorkBook book, bool trial)
 {
     const double h = to - from;
+    Bodies& bodies = world_.host().bodies;
     Shafts& shafts = world_.host().shafts;
     GroupSystem& system = system_for(island, shadows);
     touching_.clear();
@@ -314,15 +329,37 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
                              frame_.start_time + from);
     if (arrest(system, h, book)) system.join();
 
-    KickedBodies& moved = held_->kick_all(system, h);
+    members_.resize(system.bodies().size());
+    std::iota(members_.begin(), members_.end(), 0u);
+    moved_.kick(system, bodies, members_, h);
+    if (!trial)
+    {
+        resting_force_.resize(bodies.size());
+        for (const std::uint32_t i : members_)
+            resting_force_[system.bodies()[i]] = system.acceleration(i) * bodies.mass[system.bodies()[i]];
+    }
     respond(touching_, ImpactMode::Rest, h, book);
     if (!trial) keep_impulses(touching_);
     system.join();  // an impulse knows nothing of joints
-    (void)moved.move_mean(h);
+    const double work = moved_.move_mean(h);
+    if (book.work && !system.rows()) book_rest(work, book);
     system.move_shafts(h, shafts);
     system.move_prescribed();
     system.project();
     finish_advance(system, system.all_finite(), to, trial);
+}
+
+/// What resting contacts did on the way that the bodies went: no more than nothing where nobody else moves. What it is more stays
+/// unexplained; respond() has booked it with the mean speeds of the impulses alone.
+void Stepper::book_rest(double work, WorkBook book)
+{
+    const Bodies& bodies = world_.host().bodies;
+    const auto driven = [&](const FoundContact& f)
+    { return bodies.motion[f.contact.a.index] == Motion::Kinematic || bodies.motion[f.contact.b.index] == Motion::Kinematic; };
+    if (!(work > 0) || touching_.empty() || std::any_of(touching_.begin(), touching_.end(), driven)) return;
+    const std::uint32_t response = detectors_[touching_.front().detector].response;
+    (*book.work)[response] -= book.sign * work;
+    contact_energy_[response].made += book.sign * work;
 }
 
 void Stepper::keep_impulses(const std::vector<FoundContact>& contacts)

@@ -1,7 +1,6 @@
 #include "simulation/contacts/island_step.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "simulation/clock.h"
 #include "simulation/step/stepper.h"
@@ -209,19 +208,29 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     for (const CommandInfo& command : table.type().info.commands)
         if (command.phase == Phase::Solve && command.run) (void)command.run(call, table.rows());
     s_->cost_.by_table[c.table][static_cast<std::size_t>(Phase::Solve)] += now_ns() - started;
-    if (book.work) (*book.work)[isle.manager] += book.sign * (isle.motion.kinetic_energy() - before - isle.motion.work_of_forces());
+    if (book.work) book_contacts(isle, isle.motion.kinetic_energy() - before, book);
     if (trial) return;
     s_->report_.worst_residual = std::max(s_->report_.worst_residual, island.residual);
     keep(isle);
     tell_impacts(isle, island.time);
 }
 
-KickedBodies& HeldIslands::kick_all(GroupSystem& system, double h)
+/// Contacts give back no more than they took, so what they do to bodies that nothing else drives is no more than nothing, but for
+/// what parting their overlap lifts. What a method makes beyond that is nobody's work: it stays unexplained.
+void HeldIslands::book_contacts(Isle& isle, double gained, WorkBook book)
 {
-    everybody_.resize(system.bodies().size());
-    std::iota(everybody_.begin(), everybody_.end(), 0u);
-    kicked_.kick(system, s_->world_.host().bodies, everybody_, h);
-    return kicked_;
+    const Bodies& bodies = s_->world_.host().bodies;
+    const double lifted = isle.motion.count_corrections();
+    const double work = gained - isle.motion.work_of_forces();
+    const bool driven = !isle.rows.empty() || std::any_of(isle.contacts.begin(), isle.contacts.end(),
+                                                          [&](const Contact& c) {
+                                                              return bodies.motion[c.a.index] == Motion::Kinematic ||
+                                                                     bodies.motion[c.b.index] == Motion::Kinematic;
+                                                          });
+    const double made = driven ? 0.0 : std::max(0.0, work - lifted);
+    (*book.work)[isle.manager] += book.sign * (work - made);
+    ContactEnergy& own = s_->contact_energy_[isle.manager];
+    own.made += book.sign * made, own.lifted += book.sign * lifted;
 }
 
 /// What joints say of themselves, and their share in what the manager did.

@@ -39,6 +39,8 @@ public:
     /// J: what the forces did on the way that the bodies went.
     double work_of_forces() const { return worked_; }
     double kinetic_energy() const;
+    /// J, against the forces: what bodies have moved beside the moves, where overlap was parted. Counted as their way from then on.
+    double count_corrections();
     /// Mean speeds of the kicks times the time they took, by member, and of
     /// roots.
     struct Mean
@@ -66,6 +68,7 @@ private:
     KickedBodies kicked_;
     std::vector<double> shaft_before_;
     std::vector<Mean> means_;
+    std::vector<Vec3> started_;  ///< m, positions at the start
     struct Arms
     {
         Vec3 a, b;         ///< m, in the bodies' frames
@@ -105,8 +108,6 @@ public:
     /// Takes the groups that managers advance out of `groups` into held(); both
     /// ascending.
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
-    /// Kicks all bodies of a system that nobody holds but resting contacts with impulses.
-    KickedBodies& kick_all(GroupSystem& system, double h);
     bool holds_any() const { return !held_.empty(); }
     void advance(std::span<const std::uint32_t> shadows, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
 
@@ -135,6 +136,7 @@ private:
     void run(std::span<Isle*> isles, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
              WorkBook book, bool trial);
     void solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void book_contacts(Isle& isle, double gained, WorkBook book);
     void keep(const Isle& isle);
     void tell_begin(const PairState& pair, const Contact& contact, double time) const;
     void tell_impacts(const Isle& isle, double time);
@@ -155,8 +157,6 @@ private:
     std::size_t isle_count_ = 0;
     std::vector<Isle*> plain_, jointed_;
     std::vector<std::uint32_t> plain_groups_;
-    KickedBodies kicked_;  ///< of kick_all
-    std::vector<std::uint32_t> everybody_;
     std::vector<FoundContact> touching_;
     std::vector<PairState*> pair_of_contact_;
     std::vector<PairState> fresh_;

@@ -31,6 +31,9 @@ void Stepper::part(std::size_t begin, std::size_t end)
             b.push(c.point, push), a.push(c.point, -push);
         }
     a.apply(bodies, ia), b.apply(bodies, ib);
+    const std::uint32_t response = detectors_[found_[begin].detector].response;
+    if (response == kNoIndex || resting_force_.size() != bodies.size()) return;
+    contact_energy_[response].lifted -= dot(resting_force_[ia], a.shift) + dot(resting_force_[ib], b.shift);
 }
 
 void Stepper::correct_positions()

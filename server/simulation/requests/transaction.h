@@ -25,6 +25,7 @@ private:
         world::Backup world;
         ContactCache contacts;
         std::vector<double> work;
+        std::vector<ContactEnergy> contact_energy;
         double departed_work, requests_work;
         Told told;
         CostBook cost;

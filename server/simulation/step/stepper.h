@@ -6,6 +6,7 @@
 
 #include "simulation/contact_forces/contact_forces.h"
 #include "simulation/contacts/contacts.h"
+#include "simulation/contacts/kicked_bodies.h"
 #include "simulation/groups/system_pool.h"
 #include "simulation/shafts/coupling_watch.h"
 #include "simulation/shafts/shaft_reactions.h"
@@ -34,6 +35,13 @@ struct CostBook
     std::vector<std::array<std::uint64_t, kPhaseCount>> by_table;  ///< index of the world's table
     std::uint64_t steps = 0;
     std::uint64_t total = 0;
+};
+
+/// Energy that contacts put in on their own account, by component (manager or response), J, since the run began.
+struct ContactEnergy
+{
+    double made = 0;    ///< work of contacts that have none to do: no part of the ledger's work, so it stays unexplained there
+    double lifted = 0;  ///< against the forces of the step, where overlap was parted
 };
 
 /// What events told of already and would tell again only when it ends and comes back.
@@ -99,6 +107,8 @@ public:
     const ContactForces& forces() const { return forces_; }
     const ContactCache& contacts() const { return cache_; }
     const std::vector<FoundContact>& touching() const { return found_; }
+    std::vector<ContactEnergy>& contact_energy() { return contact_energy_; }
+    const std::vector<ContactEnergy>& contact_energy() const { return contact_energy_; }
     std::vector<double>& work() { return work_; }  ///< J by component, since the run began
     const std::vector<double>& work() const { return work_; }
     /// A component is about to be removed: its work stays in the ledger, whoever gets its place starts with none.
@@ -107,6 +117,7 @@ public:
         if (component >= work_.size()) return;
         departed_work_ += work_[component];
         work_[component] = 0;
+        contact_energy_[component] = {};
         told_.contradictory[component] = 0;
     }
     /// J, by components that were removed since.
@@ -217,6 +228,8 @@ private:
     void respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book);
     void advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
                         WorkBook book, bool trial);
+    void book_rest(double work, WorkBook book);
+    void book_impact(std::uint32_t response, const std::vector<FoundContact>& contacts, ImpactMode mode, double work, WorkBook book);
     void keep_impulses(const std::vector<FoundContact>& contacts);
     static bool same_pair(const FoundContact& x, const FoundContact& y)
     {
@@ -291,13 +304,16 @@ private:
     std::vector<FoundContact> found_, touching_;
     std::vector<Eased> eased_;
     std::vector<Contact> impact_contacts_;
-    std::vector<Vec3> old_velocity_, old_spin_;
+    std::vector<std::uint32_t> members_;
+    KickedBodies moved_;
+    std::vector<Vec3> resting_force_;  ///< N, by body: of the step, where Response/Impulse advances it
 
     std::vector<Event> events_;
     std::vector<ParameterChange> changes_;
     ApplyChanges apply_changes_ = nullptr;
     void* changes_owner_ = nullptr;
     std::vector<double> work_;
+    std::vector<ContactEnergy> contact_energy_;
     double departed_work_ = 0, requests_work_ = 0;
     Told told_;
     CostBook cost_;
