@@ -33,9 +33,9 @@ void OdeRows::describe(Schema& s)
         .default_type("Resolution/Bisection");
     s.role(response, "response", {Facet::Component}, "answers contacts").family("Response/").default_type("Response/Impulse");
     s.param(space, "space", unit::one,
-            "search for overlapping bounds: a tree of boxes (hash, of older scenes, is that too) or a space of ODE; changes no result")
+            "search for pairs whose bounds overlap: a tree of boxes, or a space of ODE (simple tests all pairs); changes no result")
         .or_else("tree")
-        .one_of({"tree", "hash", "simple", "sweep_and_prune", "quadtree"});
+        .one_of({"tree", "simple", "sweep_and_prune", "quadtree"});
     s.output(pairs, "pairs", unit::one, "pairs of shapes whose bounds overlapped, in the last look");
     s.output(penetration, "penetration", unit::metre, "deepest overlap in the last look").reported_as_error();
     s.scratch(scene, "scene", "geometries of ODE, one per body and shape; made anew from bodies and shapes when needed");

@@ -116,7 +116,7 @@ void OdeSpace::find(std::vector<PartPair>& pairs)
 
 std::unique_ptr<PairSearch> make_pair_search(std::string_view kind, std::size_t parts)
 {
-    if (kind == "tree" || kind == "hash") return std::make_unique<TreeSearch>(parts);
+    if (kind == "tree") return std::make_unique<TreeSearch>(parts);
     return std::make_unique<OdeSpace>(kind, parts);
 }
 
