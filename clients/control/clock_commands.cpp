@@ -114,6 +114,17 @@ void add_load(CLI::App& app, Context& context)
     command.add_option("file", *file, "blueprint; - is standard input")->required()->type_name("FILE");
 }
 
+void add_cancel(CLI::App& app, Context& context)
+{
+    auto name = std::make_shared<std::string>();
+    CLI::App& command = add_command(app, context,
+                                    {"cancel", "take back a request that waits",
+                                     "  plabctl cancel 3f9c01d2a4b5e6f70819a2b3c4d5e6f7:1\n"
+                                     "The name is what a time-out of plabctl tells.\n"},
+                                    [name](Context& c) { return send(c, {{"cancel", "", *name}}); });
+    command.add_option("request", *name, "as the time-out named it: client and number")->required()->type_name("CLIENT:NUMBER");
+}
+
 Exit run_shutdown(Context& c)
 {
     if (const Exit e = c.connect(); e != Exit::Done) return e;
@@ -143,6 +154,7 @@ void add_clock_commands(CLI::App& app, Context& context)
     add_dt(app, context);
     add_plain(app, context, {"reset", "go back to the scene as loaded; a new run begins", "  plabctl reset\n"});
     add_load(app, context);
+    add_cancel(app, context);
     add_command(app, context, {"shutdown", "end the server; waits until it is gone", "  plabctl shutdown --server lab\n"}, run_shutdown);
 }
 

@@ -1,11 +1,11 @@
 #include "control/context.h"
 
-#include "control/interrupt.h"
+#include "program/interruption.h"
 
 namespace plab::control
 {
 
-bool Context::stopped() const { return is_interrupted(); }
+bool Context::stopped() const { return program::is_interrupted(); }
 
 Exit Context::join()
 {

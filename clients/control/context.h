@@ -13,6 +13,7 @@
 
 #include "control/console.h"
 #include "link/session.h"
+#include "program/progress.h"
 
 namespace plab::control
 {
@@ -24,8 +25,8 @@ enum class Exit : int
     Usage = 2,
     NoServer = 3,  ///< or time-out
     Refused = 4,
-    Lost = 5,  ///< of a recording: something could not be recovered, or found no place on the disk
-    Interrupted = 130,
+    Lost = 5,           ///< of a recording: something could not be recovered, or found no place on the disk
+    Interrupted = 130,  ///< by a signal; main() gives 128 + its number
 };
 
 /// Global options.
@@ -33,6 +34,7 @@ struct Settings
 {
     link::Options link;                  ///< server, domain, interface
     std::optional<double> timeout;       ///< s; see Context::timeout()
+    bool progress = false;               ///< lines of progress also where standard error is no terminal
     bool json = false;                   ///< one object; a line per sample of streams
     std::string color = "auto";          ///< "auto", "always", "never"
     std::optional<std::uint64_t> count;  ///< of a stream: end after so many samples
@@ -59,7 +61,9 @@ public:
 
     link::Seconds timeout(double otherwise = kTimeout) const { return link::Seconds(settings.timeout.value_or(otherwise)); }
 
-    /// Ctrl-C was pressed, or SIGTERM came: what waits or streams ends soon.
+    program::ProgressTo progress_to() const { return settings.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal; }
+
+    /// Ctrl-C was pressed, or SIGTERM came: what waits, reads or streams ends soon.
     bool stopped() const;
     link::Stop stop() const
     {

@@ -210,7 +210,8 @@ Json json_of(const link::Reply& r)
             {"reasons", r.reasons},     {"run", r.run},
             {"revision", r.revision},   {"step", r.step},
             {"time", r.time},           {"pause_ns", r.pause_ns},
-            {"waited_ns", r.waited_ns}, {"swaps", array(r.swaps, [](const link::SwapReport& s) { return json_of(s); })}};
+            {"waited_ns", r.waited_ns}, {"trial", r.trial},
+            {"swaps", array(r.swaps, [](const link::SwapReport& s) { return json_of(s); })}};
 }
 
 std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }

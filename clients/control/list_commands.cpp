@@ -5,6 +5,7 @@
 
 #include "control/commands.h"
 #include "control/frames.h"
+#include "control/metrics_text.h"
 #include "control/table.h"
 #include "link/names.h"
 
@@ -187,6 +188,7 @@ Exit run_interactions(Context& c)
                  {"algorithm", Align::Left, Shrink::Middle},
                  {"cost/step", Align::Right},
                  {"error", Align::Right, Shrink::Never, 1},
+                 {"unit", Align::Left, Shrink::Never, 1},
                  {"work", Align::Right, Shrink::Never, 2},
                  {"since", Align::Right, Shrink::Never, 3},
                  {"note", Align::Left, Shrink::End},
@@ -195,7 +197,7 @@ Exit run_interactions(Context& c)
     {
         const link::InteractionMetrics* const m = now.metrics ? now.metrics->find(id) : nullptr;
         const std::string note = note_of(i, m);
-        table.add({id, i.type, m ? duration_text(m->cost_ns) : "", m ? number(m->error) : "", m ? number(m->work) + " J" : "",
+        table.add({id, i.type, m ? cost_text(*m) : "", m ? error_text(*m) : "", m ? error_unit(*m) : "", m ? number(m->work) + " J" : "",
                    std::to_string(i.since), note, members_text(i)},
                   note == "quarantined" ? Style::Red
                   : note.empty()        ? Style::Plain

@@ -1,15 +1,18 @@
 #include "control/local_server.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <thread>
 
 extern char** environ;
 
@@ -17,6 +20,8 @@ namespace plab::control
 {
 namespace
 {
+
+constexpr std::chrono::milliseconds kLook(5);  // how late its end may be seen
 
 Error failed(const std::string& what, int code) { return reason(what + ": " + std::strerror(code)); }
 
@@ -98,15 +103,22 @@ Life look_at(int process)
     return {false, code_of(status)};
 }
 
-Result<int> run_plabd(const std::vector<std::string>& arguments)
+Result<int> run_plabd(const std::vector<std::string>& arguments, const link::Stop& stop)
 {
     SpawnPlan plan;
     auto process = plan.spawn(plabd_with(arguments));
     if (!process) return process.errors();
     int status = 0;
-    while (waitpid(*process, &status, 0) < 0)
-        if (errno != EINTR) return failed("cannot wait for plabd", errno);
-    return code_of(status);
+    bool is_told = false;
+    for (;;)
+    {
+        const pid_t ended = waitpid(*process, &status, WNOHANG);
+        if (ended == *process) return code_of(status);
+        if (ended < 0 && errno != EINTR) return failed("cannot wait for plabd", errno);
+        // Ctrl-C reaches both; another signal only this process.
+        if (!is_told && stop()) is_told = kill(*process, SIGTERM) == 0;
+        std::this_thread::sleep_for(kLook);
+    }
 }
 
 Result<TemporaryFile> TemporaryFile::write(const std::uint8_t* data, std::size_t size)

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "link/session.h"
 #include "plab/result.h"
 
 namespace plab::control
@@ -24,8 +25,9 @@ struct Life
 };
 Life look_at(int process);
 
-/// Runs plabd to its end with this program's own output; the exit code, or 128 + the signal that ended it.
-Result<int> run_plabd(const std::vector<std::string>& arguments);
+/// Runs plabd to its end with this program's own output; the exit code, or 128 + the signal that ended it. Once `stop` says so
+/// it is told to end, and waited for.
+Result<int> run_plabd(const std::vector<std::string>& arguments, const link::Stop& stop);
 
 /// A file of this process's own, removed with the object.
 class TemporaryFile

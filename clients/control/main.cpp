@@ -2,10 +2,10 @@
 #include <sstream>
 
 #include "control/commands.h"
-#include "control/interrupt.h"
 #include "control/topics.h"
 #include "link/names.h"
 #include "link/numbers.h"
+#include "program/interruption.h"
 
 namespace
 {
@@ -23,7 +23,7 @@ constexpr const char* kExamples = R"(Examples:
 
 constexpr const char* kExitCodes = R"(
 Exit codes: 0 done, 1 failed, 2 usage, 3 no server or time-out, 4 refused with the reason,
-5 lost (recover, record), 130 interrupted.
+5 lost (recover, record), 130 Ctrl-C, 143 SIGTERM.
 Environment: PLAB_SERVER, PLAB_DOMAIN, PLAB_INTERFACE, NO_COLOR; CYCLONEDDS_URI wins over --interface.
 )";
 
@@ -52,6 +52,7 @@ void add_global_options(CLI::App& app, Settings& s)
     app.add_option("--timeout", s.timeout, "how long to wait for a server and a reply; default 5 (wait: 30, servers: 0.5)")
         ->check(plab::link::check_positive)
         ->type_name("SECONDS");
+    app.add_flag("--progress", s.progress, "long work: a line every five seconds on standard error, also where that is no terminal");
     app.add_flag("--json", s.json, "print one JSON object; streams: one on each line");
     app.add_option("--color", s.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
     app.add_option("-n,--count", s.count, "end a stream after so many samples")->check(plab::link::check_count)->type_name("N");
@@ -130,7 +131,9 @@ int main(int argc, char** argv)
     if (!server.empty() && !plab::wire::is_server_name(server))
         return static_cast<int>(
             context.fail(Exit::Usage, "'" + server + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'"));
-    catch_interrupts();
+    plab::program::catch_signals();
     const Exit code = context.action(context);
-    return context.console.flush() || code != Exit::Done ? static_cast<int>(code) : static_cast<int>(Exit::Failed);
+    const bool is_flushed = context.console.flush();
+    if (code == Exit::Interrupted) return plab::program::code_of_interruption();
+    return is_flushed || code != Exit::Done ? static_cast<int>(code) : static_cast<int>(Exit::Failed);
 }

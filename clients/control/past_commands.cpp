@@ -273,8 +273,10 @@ void add_shadow(CLI::App& app, Context& context)
         if (!file) return c.fail(Exit::Failed, file.errors());
         std::vector<std::string> arguments{"--load", file->path(), "--shadow", o->id + "=" + o->type, "--for", o->seconds};
         if (c.settings.json) arguments.emplace_back("--json");
-        auto code = run_plabd(arguments);
+        if (c.settings.progress) arguments.emplace_back("--progress");
+        auto code = run_plabd(arguments, c.stop());
         if (!code) return c.fail(Exit::Failed, code.errors());
+        if (c.stopped()) return Exit::Interrupted;
         return *code == 0 ? Exit::Done : Exit::Failed;
     };
     CLI::App& command = add_command(app, context,

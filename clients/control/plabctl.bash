@@ -14,8 +14,8 @@ _plabctl_ids()
 _plabctl()
 {
     local commands="servers objects interactions types show watch add remove swap set push pause resume step rate dt reset load
-        shutdown wait topics snapshot snapshots restore forget rewind branch shadow record play info export recover diff plot report log"
-    local globals="--server --domain --interface --timeout --json --color --count --duration --help --version"
+        shutdown cancel wait topics snapshot snapshots restore forget rewind branch shadow record play info export recover diff plot report log"
+    local globals="--server --domain --interface --timeout --progress --json --color --count --duration --help --version"
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
     local command="" i word
     local -a _plabctl_globals=()
@@ -62,7 +62,7 @@ _plabctl()
             case $command in
                 "") words="$commands $globals" ;;
                 show) words="$(_plabctl_ids objects interactions types) $globals" ;;
-                swap) words="$(_plabctl_ids interactions objects) --to --param --at --revision $globals" ;;
+                swap) words="$(_plabctl_ids interactions objects) --to --param --trial --or-refuse --allow-energy --at --revision $globals" ;;
                 remove) words="$(_plabctl_ids objects interactions) --at --revision $globals" ;;
                 push) words="$(_plabctl_ids objects) --impulse --point --at --revision $globals" ;;
                 set) words="$(_plabctl_ids objects interactions) --at --revision $globals" ;;

@@ -2,11 +2,11 @@
 
 #include "control/commands.h"
 #include "control/json.h"
-#include "control/status_line.h"
 #include "link/numbers.h"
 #include "playback/keys.h"
 #include "playback/player.h"
 #include "playback/terminal.h"
+#include "program/progress.h"
 
 namespace plab::control
 {
@@ -65,7 +65,7 @@ bool obey(playback::Player& player, playback::Key key)
     return true;
 }
 
-void show(StatusLine& line, const playback::Player& player)
+void show(program::Progress& line, const playback::Player& player)
 {
     if (!line.is_due()) return;
     const playback::Pace& pace = player.pace();
@@ -78,7 +78,7 @@ void show(StatusLine& line, const playback::Player& player)
 /// Until it is over, somebody ends it, or another server has its name.
 Result<void> follow(const Context& c, playback::Player& player, playback::Terminal& terminal)
 {
-    StatusLine line;
+    program::Progress line(c.progress_to(), std::chrono::milliseconds(0));
     playback::KeyParser keys;
     const Clock::time_point begin = Clock::now();
     bool goes_on = true;

@@ -5,8 +5,8 @@
 
 #include "control/commands.h"
 #include "control/json.h"
-#include "control/status_line.h"
 #include "link/numbers.h"
+#include "program/progress.h"
 #include "recorder/recorder.h"
 
 namespace plab::control
@@ -59,7 +59,7 @@ std::string counts_text(const recorder::TapeProgress& p)
 class TroubleWatch
 {
 public:
-    void look(const Context& c, StatusLine& line, const std::optional<Error>& trouble)
+    void look(const Context& c, program::Progress& line, const std::optional<Error>& trouble)
     {
         if (trouble.has_value() == is_told_) return;
         is_told_ = trouble.has_value();
@@ -79,7 +79,7 @@ recorder::State follow(const Context& c, recorder::Recorder& recorder, const std
         if (c.settings.count && recorder.progress().messages >= *c.settings.count) return true;
         return c.settings.duration && link::Seconds(std::chrono::steady_clock::now() - begin).count() >= *c.settings.duration;
     };
-    StatusLine line;
+    program::Progress line(c.progress_to(), std::chrono::milliseconds(0));
     TroubleWatch watch;
     auto state = recorder::State::Goes;
     while (state == recorder::State::Goes && !c.stopped() && !is_over())
@@ -151,7 +151,11 @@ Exit run_record(Context& c, RecordOptions o)
     // After Ctrl-C as well: who ended it wants to know what became of the file.
     const recorder::TapeProgress progress = (*recorder)->progress();
     print_end(c, file, **recorder, progress);
-    if (closed) return tell_losses(c, progress);
+    if (closed)
+    {
+        const Exit lost = tell_losses(c, progress);
+        return lost == Exit::Done && c.stopped() ? Exit::Interrupted : lost;
+    }
     for (const Error& e : closed.errors()) c.console.say("plabctl: " + printable(e.text()));
     if (!progress.is_ended) c.console.say("plabctl: the file was not ended; what is in it can be read: plabctl recover " + printable(file));
     return Exit::Failed;

@@ -5,6 +5,7 @@
 #include "control/commands.h"
 #include "control/recording_options.h"
 #include "control/recording_print.h"
+#include "control/work.h"
 #include "idl/recording/recovery.h"
 #include "link/numbers.h"
 #include "recordings/export.h"
@@ -21,10 +22,13 @@ using recordings::Log;
 
 Exit run_info(Context& c, const std::string& file)
 {
-    auto log = Log::open(file);
-    if (!log) return c.fail(Exit::Failed, log.errors());
-    auto summary = recordings::summary_of(*log);
+    Work work(c, "info " + file);
+    auto log = Log::open(file, work.watch());
+    if (!log && !c.stopped()) return c.fail(Exit::Failed, log.errors());
+    auto summary = log ? recordings::summary_of(*log) : Result<recordings::Summary>(log.errors());
+    if (c.stopped()) return work.interrupted("nothing is known of the rest");
     if (!summary) return c.fail(Exit::Failed, summary.errors());
+    work.end();
     if (c.settings.json)
         print(c.console, json_of(*summary));
     else
@@ -46,10 +50,16 @@ Exit run_export(Context& c, const ExportArguments& o)
     if (o.csv == c.settings.json) return c.fail(Exit::Usage, "export needs either --csv or --json");
     if (o.options.span.from && o.options.span.to && *o.options.span.to < *o.options.span.from)
         return c.fail(Exit::Usage, "--to is before --from");
-    auto log = Log::open(o.file);
-    if (!log) return c.fail(Exit::Failed, log.errors());
-    auto done = o.csv ? recordings::export_csv(*log, o.options) : recordings::export_json(*log, o.options);
+    const bool is_printed = o.options.out.empty() || o.options.out == "-";
+    Work work(c, "export " + o.file, is_printed);
+    auto log = Log::open(o.file, work.watch());
+    if (!log && !c.stopped()) return c.fail(Exit::Failed, log.errors());
+    auto done = !log    ? Result<recordings::Exported>(log.errors())
+                : o.csv ? recordings::export_csv(*log, o.options)
+                        : recordings::export_json(*log, o.options);
+    if (c.stopped()) return work.interrupted(is_printed ? "what was printed is not all" : o.options.out + " is not written");
     if (!done) return c.fail(Exit::Failed, done.errors());
+    work.end();
     return warn(c, done->troubles);
 }
 
@@ -70,7 +80,10 @@ std::string recovered_name(const std::string& file)
 Exit run_recover(Context& c, const RecoverArguments& o)
 {
     const std::string out = o.out.empty() ? recovered_name(o.file) : o.out;
-    auto report = recording::recover(o.file, out);
+    Work work(c, "recover " + o.file);
+    auto report = recording::recover(o.file, out, recording::Overwrite::No, {}, work.watch());
+    if (c.stopped() && !report) return work.interrupted(out + " is not written");
+    work.end();
     if (!report) return c.fail(Exit::Failed, report.errors());
     if (c.settings.json)
         print(c.console, json_of(*report, out));

@@ -80,6 +80,8 @@ Json json_of(const recordings::Summary& s)
              {"file", s.path},
              {"whole", s.is_whole()},
              {"closed", s.is_closed},
+             {"recovered", s.recovered.empty() ? Json() : Json(s.recovered)},
+             {"not_recovered", s.losses()},
              {"head", s.head},
              {"library", s.library},
              {"bytes", s.file_bytes},

@@ -45,6 +45,7 @@ std::string state_of(const Summary& s)
 {
     if (s.is_whole()) return "whole";
     if (!s.is_closed) return "cut: it was not closed; plabctl recover FILE makes a whole one of what is there";
+    if (s.troubles.count == 0) return "recovered: something is lost (below)";
     return "damaged: " + counted(s.troubles.count, "place") + " cannot be read; plabctl recover FILE tells what is lost";
 }
 
@@ -145,11 +146,12 @@ void print_kinds(const Console& console, const Summary& s)
 
 void print_losses(const Console& console, const Summary& s)
 {
-    if (s.gaps.empty() && s.dropped.empty() && s.troubles.count == 0) return;
+    if (s.gaps.empty() && s.dropped.empty() && s.troubles.count == 0 && s.recovered.empty()) return;
     heading(console, "Lost");
     Table table({{"what"}, {"from", Align::Right}, {"to", Align::Right}, {"why", Align::Left, Shrink::Wrap}});
     for (const auto& [topic, samples] : s.dropped)
         table.add({counted(samples, "sample") + " of " + topic, "", "", "dropped by the server"});
+    for (const std::string& text : s.losses()) table.add({"not recovered", "", "", text});
     for (const std::string& text : s.troubles.texts) table.add({"damaged", "", "", text});
     add_some(
         console, s.gaps, table,

@@ -4,6 +4,7 @@
 #include "control/commands.h"
 #include "control/recording_options.h"
 #include "control/recording_print.h"
+#include "control/work.h"
 #include "figures/chart.h"
 #include "link/numbers.h"
 #include "logger/follow.h"
@@ -31,11 +32,18 @@ struct DiffArguments
 
 Exit run_diff(Context& c, const DiffArguments& o)
 {
-    auto a = Log::open(o.a);
+    Work work(c, "diff " + o.a + " " + o.b);
+    const std::string consequence = "whether they differ is not known";
+    auto a = Log::open(o.a, work.watch());
+    if (c.stopped()) return work.interrupted(consequence);
     if (!a) return c.fail(Exit::Failed, a.errors());
-    auto b = Log::open(o.b);
+    // The other one is read beside it, step by step: its place is that of the first.
+    auto b = Log::open(o.b, [&c](double) { return !c.stopped(); });
+    if (c.stopped()) return work.interrupted(consequence);
     if (!b) return c.fail(Exit::Failed, b.errors());
     const recordings::Difference difference = recordings::difference_of(*a, *b);
+    if (c.stopped()) return work.interrupted(consequence);
+    work.end();
     if (difference.is_unknown())
         return c.fail(Exit::Failed, "nothing to compare: " + o.a + " and " + o.b + " have no step in common, neither hashes nor states");
     if (c.settings.json)
@@ -48,6 +56,8 @@ Exit run_diff(Context& c, const DiffArguments& o)
         for (const recordings::Growth& g : difference.objects)
             if (g.largest > 0 && objects.size() < kMostInPlot) objects.push_back(g.object);
         const auto chart = recordings::difference_chart(*a, *b, objects);
+        if (c.stopped()) return work.interrupted(o.plot + " is not written");
+        work.end();
         if (auto written = figures::write_picture(draw(chart), o.plot); !written) return c.fail(Exit::Failed, written.errors());
     }
     const Exit damaged = std::max(warn(c, difference.troubles_a), warn(c, difference.troubles_b));
@@ -89,9 +99,12 @@ Exit run_plot(Context& c, const PlotArguments& o)
     if (!o.out.ends_with(".svg") && !o.out.ends_with(".png"))
         return c.fail(Exit::Usage, "-o " + o.out + ": a picture's name ends with .svg or .png");
     if (o.span.from && o.span.to && *o.span.to < *o.span.from) return c.fail(Exit::Usage, "--to is before --from");
-    auto log = Log::open(o.file);
-    if (!log) return c.fail(Exit::Failed, log.errors());
-    auto chart = chart_of(*log, o);
+    Work work(c, "plot " + o.file);
+    auto log = Log::open(o.file, work.watch());
+    if (!log && !c.stopped()) return c.fail(Exit::Failed, log.errors());
+    auto chart = log ? chart_of(*log, o) : Result<figures::Chart>(log.errors());
+    if (c.stopped()) return work.interrupted(o.out + " is not written");
+    work.end();
     if (!chart) return c.fail(Exit::Failed, chart.errors());
     if (auto written = figures::write_picture(draw(*chart), o.out); !written) return c.fail(Exit::Failed, written.errors());
     return warn(c, log->troubles());
@@ -106,12 +119,15 @@ struct ReportArguments
 
 Exit run_report(Context& c, const ReportArguments& o)
 {
-    auto log = Log::open(o.file);
-    if (!log) return c.fail(Exit::Failed, log.errors());
-    auto summary = recordings::summary_of(*log);
-    if (!summary) return c.fail(Exit::Failed, summary.errors());
-    if (auto written = recordings::write_file(o.out, recordings::report_html(*log, *summary)); !written)
-        return c.fail(Exit::Failed, written.errors());
+    Work work(c, "report " + o.file);
+    auto log = Log::open(o.file, work.watch());
+    if (!log && !c.stopped()) return c.fail(Exit::Failed, log.errors());
+    auto summary = log ? recordings::summary_of(*log) : Result<recordings::Summary>(log.errors());
+    if (!summary && !c.stopped()) return c.fail(Exit::Failed, summary.errors());
+    const std::string page = c.stopped() ? "" : recordings::report_html(*log, *summary);
+    if (c.stopped()) return work.interrupted(o.out + " is not written");
+    work.end();
+    if (auto written = recordings::write_file(o.out, page); !written) return c.fail(Exit::Failed, written.errors());
     return Exit::Done;
 }
 
@@ -143,13 +159,18 @@ Exit run_log(const Context& c, LogArguments o)
     filter.severity = logger::severity_of(o.severity);
     if (o.file.empty()) return log_live(c, o);
     if (o.lines.span.from && o.lines.span.to && *o.lines.span.to < *o.lines.span.from) return c.fail(Exit::Usage, "--to is before --from");
-    auto log = Log::open(o.file);
+    Work work(c, "log " + o.file, true);
+    auto log = Log::open(o.file, work.watch());
+    if (c.stopped()) return work.interrupted("nothing was printed");
     if (!log) return c.fail(Exit::Failed, log.errors());
     if (auto known = recordings::check_names(*log, filter); !known) return c.fail(Exit::Failed, known.errors());
     o.lines.json = c.settings.json, o.lines.count = c.settings.count;
     auto out = recordings::TextOut::open("");
     if (!out) return c.fail(Exit::Failed, out.errors());
+    work.end();
     auto written = recordings::write_lines(*log, o.lines, *out);
+    if (c.stopped()) return work.interrupted("what was printed is not all");
+    work.end();
     return written ? warn(c, *written) : c.fail(Exit::Failed, written.errors());
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "control/request.h"
@@ -14,7 +15,7 @@ std::string when(const link::Reply& r) { return "step " + std::to_string(r.step)
 
 std::string past_of(const link::Operation& op)
 {
-    static constexpr std::array<std::pair<const char*, const char*>, 13> kWords{{
+    static constexpr std::array<std::pair<const char*, const char*>, 14> kWords{{
         {"add", "added"},
         {"remove", "removed"},
         {"swap", "swapped"},
@@ -28,6 +29,7 @@ std::string past_of(const link::Operation& op)
         {"load", "loaded"},
         {"dt", "step length is now"},
         {"shutdown", "shutting down"},
+        {"cancel", "taken back"},
     }};
     std::string out = op.verb;
     for (const auto& [verb, past] : kWords)
@@ -72,6 +74,11 @@ void print_swap(const Console& console, const link::SwapReport& swap)
                 console.styled(Style::Bold, printable(swap.to)) + "\n");
     print_fields(console, swap);
     const link::StepOutcome &a = swap.with_old, &b = swap.with_new;
+    if (std::isnan(b.energy))
+    {
+        console.out("first step not tried\n");
+        return;
+    }
     Table table({{"first step"},
                  {"with the old", Align::Right, Shrink::Wrap},
                  {"with the new", Align::Right, Shrink::Wrap},
@@ -89,9 +96,11 @@ void print_swap(const Console& console, const link::SwapReport& swap)
 void print_reply(const Console& console, const std::vector<link::Operation>& operations, const link::Reply& reply)
 {
     std::string text;
-    for (const link::Operation& op : operations) text += (text.empty() ? "" : ", ") + past_of(op);
+    for (const link::Operation& op : operations)
+        if (op.verb != "trial" && op.verb != "energy") text += (text.empty() ? "" : ", ") + past_of(op);
     console.out(text + " at " + when(reply) + ", revision " + std::to_string(reply.revision) + ", run " + std::to_string(reply.run) +
-                ", pause " + duration_text(reply.pause_ns) + (reply.repeated ? " (carried out before)" : "") + "\n");
+                ", pause " + duration_text(reply.pause_ns) + "\n");
+    if (!reply.trial.empty() && reply.trial != "none") console.out("trial " + printable(reply.trial) + "\n");
     for (const link::SwapReport& swap : reply.swaps) print_swap(console, swap);
 }
 

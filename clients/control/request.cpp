@@ -20,17 +20,20 @@ Exit refused(const Context& context, const link::Reply& reply)
     return Exit::Refused;
 }
 
-/// A request for a later step outlives a time-out, but not the server.
-std::string fate_of_unanswered(const link::Caller& caller, const Timing& timing)
+/// A request outlives a time-out, but not the server: until it is answered it may take effect.
+std::string fate_of_unanswered(const Context& context, const link::Caller& caller, const Timing& timing)
 {
-    if (!timing.at) return "whether it was carried out is not known";
-    const std::string step = "step " + std::to_string(*timing.at);
+    const std::string step = timing.at ? "step " + std::to_string(*timing.at) : "its next step";
+    const std::string name = caller.last_request();
+    if (name.empty()) return "it was not sent";
+    const std::string back = "'plabctl --server " + context.session().server() + " cancel " + name + "' takes it back";
     switch (caller.presence())
     {
         case link::Presence::There:
-            return step + " may still be ahead: the request stands, --timeout waits longer";
+            return (timing.at ? step + " may still be ahead: the request stands, " : "the request stands, and can take effect before " + step + ": ") +
+                   std::string("--timeout waits longer, ") + back;
         case link::Presence::Silent:
-            return "the server shows no sign of life: whether the request for " + step + " will be carried out is not known";
+            return "the server shows no sign of life: if it comes back, the request can still take effect before " + step + "; " + back;
         case link::Presence::Gone:
             break;
     }
@@ -55,7 +58,7 @@ Exit send(Context& context, std::vector<link::Operation> operations, const Timin
     if (!caller) return context.fail(Exit::NoServer, caller.errors());
     const link::Request request{std::move(operations), timing.at, timing.revision};
     auto reply = caller->call(request, context.timeout(), context.stop());
-    if (!reply) return context.fail(Exit::NoServer, reply.error().text() + "; " + fate_of_unanswered(*caller, timing));
+    if (!reply) return context.fail(Exit::NoServer, reply.error().text() + "; " + fate_of_unanswered(context, *caller, timing));
     if (context.settings.json)
     {
         Json json{{"server", context.session().server()}};

@@ -72,34 +72,54 @@ void add_remove(CLI::App& app, Context& context)
 
 struct SwapOptions
 {
-    std::string id, to;
+    std::vector<std::string> ids;
+    std::string to, trial, energy;
+    bool or_refuse = false;
     std::vector<std::string> parameters;
     Timing timing;
 };
 
 Exit run_swap(Context& c, const SwapOptions& o)
 {
-    link::Operation swap{"swap", o.id, o.to};
+    link::Operation swap{"swap", "", o.to};
     for (const std::string& text : o.parameters)
     {
         auto given = split_at_equal(text, "NAME=VALUE");
         if (!given) return c.fail(Exit::Usage, "--param: " + given.error().text());
         swap.values.emplace_back(given->name, given->value);
     }
-    return send(c, {std::move(swap)}, o.timing);
+    std::vector<link::Operation> operations;
+    for (const std::string& id : o.ids)
+    {
+        operations.push_back(swap);
+        operations.back().target = id;
+    }
+    const std::string trial = o.trial + (o.or_refuse ? (o.trial.empty() ? "or refuse" : " or refuse") : "");
+    if (!trial.empty()) operations.push_back({"trial", "", trial});
+    if (!o.energy.empty()) operations.push_back({"energy", "", o.energy});
+    return send(c, std::move(operations), o.timing);
 }
 
 void add_swap(CLI::App& app, Context& context)
 {
     auto o = std::make_shared<SwapOptions>();
     CLI::App& command = add_command(app, context,
-                                    {"swap", "exchange a component for another of its family",
+                                    {"swap", "exchange components for others of their family, all or none",
                                      "  plabctl swap contact.response --to Response/None\n"
                                      "  plabctl swap contact.response --to Response/Impulse --param restitution=0.5\n"
                                      "  plabctl swap gears --to Constraint/AngularVelocity/Impulse --at 2400 --json\n"
+                                     "  plabctl swap 'gears.*' clutch --to Constraint/AngularVelocity/Graph --trial 20 --or-refuse\n"
                                      "What can be swapped in: plabctl types --for ID\n"},
                                     [o](Context& c) { return run_swap(c, *o); });
-    command.add_option("id", o->id, "the component")->required()->type_name("ID");
+    command.add_option("id", o->ids, "components; * and ? stand for any text and any character: all of the new type's family that match")
+        ->required()
+        ->type_name("ID");
+    command.add_option("--trial", o->trial,
+                       "how long the first step may be tried, in ms, or none; default: ten steps' mean cost, at least 5 ms. Beyond it the swap is "
+                       "carried out without the proof")
+        ->type_name("MS");
+    command.add_flag("--or-refuse", o->or_refuse, "refuse the swap if its trial takes longer");
+    command.add_option("--allow-energy", o->energy, "by how much the first step may multiply the energy, or any; default: 100")->type_name("FACTOR");
     command.add_option("--to", o->to, "the new type")->required()->type_name("TYPE");
     command.add_option("--param", o->parameters, "a value of the new component (may be repeated)")
         ->take_all()

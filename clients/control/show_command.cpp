@@ -4,6 +4,7 @@
 
 #include "control/commands.h"
 #include "control/frames.h"
+#include "control/metrics_text.h"
 #include "control/table.h"
 #include "link/names.h"
 
@@ -115,10 +116,12 @@ void print_interaction(Context& c, const link::Interaction& i, const link::Inter
     {
         lines.add("asked for", m->requested);
         lines.add("resolved", m->resolved == m->requested ? "" : m->resolved);
-        lines.add("cost", duration_text(m->cost_ns) + " per step");
-        lines.add("error", number(m->error));
+        lines.add("cost", cost_in_words(*m));
+        const std::string meaning = error_meaning(*m);
+        lines.add("error", error_text(*m) + " " + error_unit(*m) + (meaning.empty() ? "" : "  (" + meaning + ")"));
         lines.add("work", number(m->work) + " J");
-        for (const link::Parameter& p : m->outputs) lines.add(p.name, p.text + (p.unit.empty() ? "" : " " + p.unit));
+        for (const link::Parameter& p : m->outputs)
+            if (p.kind != "account") lines.add(p.name, p.text + (p.unit.empty() ? "" : " " + p.unit));
     }
     lines.print(c.console);
     print_parameters(c.console, i.parameters, type);

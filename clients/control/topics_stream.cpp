@@ -109,7 +109,8 @@ Exit measure(Context& context, const TopicsArguments& arguments, const Report& r
         context.console.out(report(interval) + "\n");
         if (!context.console.flush()) return Exit::Done;
     }
-    if (samples > 0 || context.stopped()) return Exit::Done;
+    if (context.stopped()) return Exit::Interrupted;
+    if (samples > 0) return Exit::Done;
     return context.fail(Exit::NoServer, "no sample of '" + arguments.topic + "' came");
 }
 
@@ -252,7 +253,8 @@ Exit print_samples(Context& context, const TopicsArguments& arguments)
         if (!context.console.flush()) return Exit::Done;
     }
     if (broken > 0) return Exit::Failed;
-    if (shown > 0 || context.stopped()) return Exit::Done;
+    if (context.stopped()) return Exit::Interrupted;
+    if (shown > 0) return Exit::Done;
     return context.fail(Exit::NoServer, "no sample of '" + arguments.topic + "' came");
 }
 

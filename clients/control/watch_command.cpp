@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <map>
 #include <memory>
 
 #include "control/commands.h"
@@ -112,12 +114,59 @@ Exit watch_log(Watch& w, const char* what, Print print)
                      });
 }
 
+template <class T>
+void add_ids(const std::map<std::string, T>& things, std::vector<std::string>& out)
+{
+    for (const auto& [id, thing] : things) out.push_back(id);
+}
+
+/// Whom the samples of a stream are about, as far as the scene has them now.
+std::vector<std::string> known_to(const std::string& stream, const link::Snapshot& now)
+{
+    std::vector<std::string> out;
+    if (stream != "metrics") add_ids(now.objects, out);
+    if (stream != "states") add_ids(now.interactions, out);
+    if (stream == "events") add_ids(now.shapes, out);
+    return out;
+}
+
+link::Parts parts_for(const WatchOptions& o)
+{
+    if (o.only.empty()) return o.stream == "states" ? static_cast<link::Parts>(link::Part::Objects) : 0;
+    return link::Part::Objects | link::Part::Interactions | link::Part::Shapes;
+}
+
+/// States and metrics of nobody would be empty for ever: that is an error. What collides or happens may be of a component that is
+/// added later: that is told, and waited for.
+Exit check_names(const Context& c, const WatchOptions& o, const link::Snapshot& now)
+{
+    const std::vector<std::string> known = known_to(o.stream, now);
+    const bool is_error = o.stream == "states" || o.stream == "metrics";
+    Exit out = Exit::Done;
+    for (const std::string& id : o.only)
+    {
+        if (std::find(known.begin(), known.end(), id) != known.end()) continue;
+        const std::string what = o.stream == "states" ? "no object '" : o.stream == "metrics" ? "no interaction '" : "no component '";
+        const std::string head = what + id + "'" + link::did_you_mean(id, known);
+        if (!is_error)
+        {
+            c.console.say("plabctl: " + printable(head) + "; it is watched for, should it be added");
+            continue;
+        }
+        std::string list;
+        for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+        out = c.fail(Exit::Failed, head + "; there are: " + (list.empty() ? "none" : list));
+    }
+    return out;
+}
+
 Exit run_watch(Context& c, const WatchOptions& o)
 {
     if (const Exit e = c.connect(); e != Exit::Done) return e;
-    auto catalogue = link::Catalogue::open(c.session(), o.stream == "states" ? static_cast<link::Parts>(link::Part::Objects) : 0);
+    auto catalogue = link::Catalogue::open(c.session(), parts_for(o));
     if (!catalogue) return c.fail(Exit::Failed, catalogue.errors());
     if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
+    if (const Exit e = check_names(c, o, catalogue->now()); e != Exit::Done) return e;
     const Selection selection{{o.only.begin(), o.only.end()}};
     Watch w{c, *catalogue, WatchPrinter(c.console, c.settings.json, selection), Limit(c), Thinning(o.every), {}};
     if (o.stream == "states") return watch_states(w);

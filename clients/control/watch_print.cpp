@@ -1,5 +1,6 @@
 #include "control/watch_print.h"
 
+#include "control/metrics_text.h"
 #include "control/table.h"
 
 namespace plab::control
@@ -86,17 +87,18 @@ void WatchPrinter::metrics(const link::Metrics& metrics)
     link::Metrics m = metrics;
     std::erase_if(m.interactions, [&](const link::InteractionMetrics& i) { return !selection_.takes(i.component); });
     if (json_) return print(console_, json_of(m));
-    console_.out(console_.styled(Style::Bold, when(m.step, m.time)) + "  " + number(m.real_time_factor) + "x  " + duration_text(m.step_ns) +
+    console_.out(console_.styled(Style::Bold, when(m.step, m.time)) + "  " + (m.real_time_factor > 0 ? number(m.real_time_factor) + "x  " : "") + (m.step_ns > 0 ? duration_text(m.step_ns) : "-") +
                  " a step  kinetic " + number(m.kinetic) + " J  stored " + number(m.stored) + " J  unexplained " + number(m.unexplained) +
                  " J  " + std::to_string(m.contacts) + " contacts  deepest " + number(m.deepest) + " m\n");
     Table table({{"interaction", Align::Left, Shrink::Middle},
                  {"algorithm", Align::Left, Shrink::Middle},
                  {"cost/step", Align::Right},
                  {"error", Align::Right, Shrink::Never, 2},
+                 {"unit", Align::Left, Shrink::Never, 2},
                  {"work", Align::Right, Shrink::Never, 3},
                  {"state"}});
     for (const link::InteractionMetrics& i : m.interactions)
-        table.add({i.component, algorithm_of(i), duration_text(i.cost_ns), number(i.error), number(i.work) + " J",
+        table.add({i.component, algorithm_of(i), cost_text(i), error_text(i), error_unit(i), number(i.work) + " J",
                    i.quarantined ? "quarantined" : ""},
                   i.quarantined ? Style::Red : Style::Plain);
     table.print(console_, !has_title_);

@@ -27,7 +27,7 @@ Reply reply_of(const plab_v2_Reply& r)
     out.outcome = r.outcome, out.repeated = r.repeated;
     for (std::uint32_t i = 0; i < r.reasons._length; ++i) out.reasons.emplace_back(r.reasons._buffer[i]);
     out.run = r.run, out.revision = r.revision, out.step = r.step, out.time = r.time;
-    out.pause_ns = r.pause_ns, out.waited_ns = r.waited_ns;
+    out.pause_ns = r.pause_ns, out.waited_ns = r.waited_ns, out.trial = r.trial;
     for (std::uint32_t i = 0; i < r.swaps._length; ++i)
     {
         const plab_v2_SwapReport& s = r.swaps._buffer[i];
@@ -149,6 +149,15 @@ void Caller::take(const std::function<void(std::uint64_t, Reply)>& handle)
         });
 }
 
+std::string Caller::last_request() const
+{
+    if (state_->last == 0) return {};
+    std::string out;
+    for (const std::uint8_t byte : state_->id)
+        for (const int digit : {byte >> 4, byte & 15}) out += "0123456789abcdef"[digit];
+    return out + ":" + std::to_string(state_->last);
+}
+
 Presence Caller::presence() const
 {
     // The server's state comes at once to a new reader, and once a second to all.
@@ -181,7 +190,10 @@ Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& 
         take(
             [&](std::uint64_t of, Reply reply)
             {
-                if (of == *number) answer = std::move(reply);
+                if (of != *number || answer) return;
+                answer = std::move(reply);
+                // Whoever calls asked once. That this function sent it again, and that another copy was answered first, is its own affair.
+                answer->repeated = false;
             });
         if (answer || Clock::now() - sent_at < between) continue;
         // A request for a later step is answered when that step is there: repeating it does no harm, it has its number.

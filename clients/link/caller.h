@@ -49,6 +49,7 @@ struct Reply
     std::int64_t step = 0;
     double time = 0, pause_ns = 0, waited_ns = 0;
     std::vector<SwapReport> swaps;
+    std::string trial;  ///< how it was proved, in the server's words
 
     bool done() const { return outcome == "done"; }
 };
@@ -71,6 +72,8 @@ public:
     /// was carried out is unknown).
     Result<Reply> call(const Request& request, Seconds timeout, const Stop& stop = {});
 
+    /// How the last request is named to `cancel`: "3f..00:7". "" before the first.
+    std::string last_request() const;
     /// Whether the server is still there; takes a moment if it is silent.
     Presence presence() const;
 

@@ -49,6 +49,13 @@ std::string count_text(const char* what, std::size_t got, std::size_t wanted)
 
 }  // namespace
 
+const Parameter* InteractionMetrics::account(std::string_view name) const
+{
+    for (const Parameter& p : outputs)
+        if (p.kind == "account" && p.name == name) return &p;
+    return nullptr;
+}
+
 const InteractionMetrics* Metrics::find(const std::string& component) const
 {
     const auto at = std::find_if(interactions.begin(), interactions.end(), [&](const auto& i) { return i.component == component; });

@@ -111,7 +111,10 @@ struct InteractionMetrics
     std::string component, requested, resolved;
     double cost_ns = 0, error = 0, work = 0;
     bool quarantined = false;
-    std::vector<Parameter> outputs;
+    std::vector<Parameter> outputs;  ///< and accounts: what the figures above are
+
+    /// What the server says of a figure; null if it says nothing.
+    const Parameter* account(std::string_view name) const;
 };
 
 struct Metrics

@@ -19,7 +19,7 @@ constexpr const char* kExamples =
     "\n"
     "Kinds are \"collision.begin\", \".impact\", \".rest\", \".end\", and those of events: \"script.print\", \"request.swap\", ...\n"
     "A server that ends is waited for; what was missed has a line of its own. Exit codes: 0 done, 1 cannot write,\n"
-    "2 wrong use, 3 no server.";
+    "2 wrong use, 3 no server, 130 Ctrl-C, 143 SIGTERM.";
 
 void add_options(CLI::App& app, Options& options, std::string& severity)
 {

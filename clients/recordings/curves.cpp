@@ -43,11 +43,13 @@ private:
         std::optional<std::uint32_t> handle;  ///< in that run
     };
 
-    void begin_run(Course& c, std::uint64_t run) const
+    /// True at the first sample of a run.
+    bool begin_run(Course& c, std::uint64_t run) const
     {
-        if (c.run == run) return;
+        if (c.run == run) return false;
         if (c.run) c.series.interrupt();
         c.run = run, c.handle = log_->things().handle_of(run, c.quantity.id);
+        return true;
     }
 
     void note_frame(const plab_v2_Frame& frame, double time)
@@ -56,7 +58,7 @@ private:
         for (Course& c : courses_)
         {
             if (c.quantity.source != Quantity::Source::Object) continue;
-            begin_run(c, frame.run);
+            (void)begin_run(c, frame.run);
             if (!c.handle) continue;
             const plab_v2_BodyState* const body = merged_.find_body(*c.handle);
             const plab_v2_ShaftState* const shaft = body == nullptr ? merged_.find_shaft(*c.handle) : nullptr;
@@ -72,7 +74,7 @@ private:
         for (Course& c : courses_)
         {
             if (c.quantity.source == Quantity::Source::Object) continue;
-            begin_run(c, metrics.run);
+            if (begin_run(c, metrics.run) && is_measured(c.quantity)) continue;
             const auto value = value_of(c.quantity, metrics);
             if (!value) continue;
             if (c.series.empty() && c.quantity.unit.empty()) c.quantity.unit = unit_in(c.quantity, metrics);

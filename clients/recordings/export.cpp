@@ -180,6 +180,7 @@ Result<Exported> export_csv(const Log& log, const ExportOptions& options)
         ++out.messages[entry->channel->topic];
         if (!files->add(*entry, log.things())) break;
     }
+    if (log.is_interrupted()) return reason("interrupted");
     auto finished = files->finish();
     if (!finished) return finished.errors();
     out.files = finished.take();
@@ -218,6 +219,7 @@ Result<Exported> export_json(const Log& log, const ExportOptions& options)
         file->write(R"({"topic":)" + link::json_text(here.channel->topic) + R"(,"log_time":)" + std::to_string(here.message.log_time) +
                     R"(,"publish_time":)" + std::to_string(here.message.publish_time) + R"(,"message":)" + *message + "}\n");
     }
+    if (log.is_interrupted()) return reason("interrupted");
     if (auto done = file->finish(); !done) return done.errors();
     out.files = {options.out};
     return out;

@@ -28,11 +28,14 @@ std::string full_topic(const std::string& name)
     return name;
 }
 
-Result<Log> Log::open(const std::string& path)
+Result<Log> Log::open(const std::string& path, const recording::Watch& watch)
 {
-    auto reader = recording::open_recording(path);
+    const auto interrupted = std::make_shared<bool>(false);
+    const auto note = [watch, interrupted](double share) { return !(*interrupted = *interrupted || !watch(share)); };
+    auto reader = recording::open_recording(path, watch ? recording::Watch(note) : recording::Watch());
     if (!reader) return reader.errors();
     Log log(std::make_unique<recording::Reader>(reader.take()));
+    log.interrupted_ = interrupted;
     for (const recording::MetadataIndex& place : log.reader_->index().metadata)
     {
         if (place.name != recording::kAbout) continue;

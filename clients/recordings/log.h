@@ -4,6 +4,7 @@
 ///   Stream stream = log->stream({"plab/states"}, {.from = 3.0});
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "recordings/runs.h"
@@ -25,8 +26,9 @@ struct Span
 class Log
 {
 public:
-    /// An error: it is no recording, or cannot be read.
-    static Result<Log> open(const std::string& path);
+    /// An error: it is no recording, or cannot be read. `watch` is asked as long as the log is read: after it said no, what was
+    /// made of the log is not complete (is_interrupted()).
+    static Result<Log> open(const std::string& path, const recording::Watch& watch = {});
 
     const recording::Reader& reader() const { return *reader_; }
     const std::string& path() const { return reader_->name(); }
@@ -38,6 +40,7 @@ public:
     const Runs& runs() const { return runs_; }
     /// What was damaged of what open() has read.
     const Troubles& troubles() const { return troubles_; }
+    bool is_interrupted() const { return *interrupted_; }
     bool has_topic(const std::string& topic) const;
 
     /// Messages of these topics (none: all).
@@ -52,6 +55,7 @@ private:
     Things things_;
     Runs runs_;
     Troubles troubles_;
+    std::shared_ptr<bool> interrupted_ = std::make_shared<bool>(false);  // the source sets it, which knows no log
 };
 
 /// "plab/states" for "states": the names of our topics without their head.

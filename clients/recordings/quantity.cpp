@@ -248,11 +248,11 @@ std::optional<double> value_of(const Quantity& q, const plab_v2_ShaftState& s)
     return q.what == "speed" ? std::optional(s.speed) : std::nullopt;
 }
 
+bool is_measured(const Quantity& q) { return q.what == "cost" || q.what == "step_cost" || q.what == "real_time_factor"; }
+
 std::optional<double> value_of(const Quantity& q, const plab_v2_Metrics& m)
 {
-    // The first sample of a run comes before its first step: nothing was measured.
-    const bool is_measured = q.what == "cost" || q.what == "step_cost" || q.what == "real_time_factor";
-    if (is_measured && m.step_ns == 0) return {};
+    if (is_measured(q) && m.step_ns == 0) return {};
     if (q.source == Source::Scene) return scene_value(q, m);
     const plab_v2_InteractionMetrics* const i = find(m, q.id);
     if (i == nullptr) return {};

@@ -163,10 +163,16 @@ std::vector<std::string> findings(const Summary& s, const std::vector<Segment>& 
                                            : counted(warnings, "warning") + " and " + counted(failures, "failure") + " (below).");
     for (const TopicSummary& t : s.topics) missing += t.missing;
     for (const NotedGap& gap : s.gaps) missing += gap.messages;
-    if (s.is_whole() && missing == 0)
+    if (s.is_whole() && missing == 0 && s.dropped.empty())
         out.push_back("The recording is whole, and nothing is missing.");
     else if (missing > 0)
         out.push_back(counted(missing, "entry") + " that were numbered are not in the file (below).");
+    if (!s.recovered.empty())
+    {
+        const std::vector<std::string> losses = s.losses();
+        out.push_back("It was recovered from a recording of which something is lost" +
+                      (losses.empty() ? std::string(".") : ": " + losses.front() + (losses.size() > 1 ? ", and more (below)." : ".")));
+    }
     if (!s.is_closed) out.push_back("The file was cut: it was not closed.");
     if (s.troubles.count > 0) out.push_back(counted(s.troubles.count, "place") + " of the file cannot be read.");
     return out;

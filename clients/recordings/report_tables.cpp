@@ -62,6 +62,8 @@ Row row_of(const plab_v2_EventInfo& e, std::int64_t step, double log_time)
     return {moment(log_time), whole(step), text(e.severity), text(e.kind), text(who), text(e.message)};
 }
 
+std::string with_unit(const Segment& s) { return short_number(s.largest_error) + (s.error_unit.empty() ? "" : " " + s.error_unit); }
+
 }  // namespace
 
 std::string sentence_of(const Swap& swap, const std::vector<Segment>& segments)
@@ -82,8 +84,7 @@ std::string sentence_of(const Swap& swap, const std::vector<Segment>& segments)
     if (before->mean_cost > 0 || after->mean_cost > 0)
         told.push_back(microseconds(before->mean_cost) + " per step before, " + microseconds(after->mean_cost) + " after");
     if (before->largest_error > 0 || after->largest_error > 0)
-        told.push_back("largest error " + short_number(before->largest_error) + " before, " + short_number(after->largest_error) +
-                       " after");
+        told.push_back("largest error " + with_unit(*before) + " before, " + with_unit(*after) + " after");
     for (std::size_t i = 0; i < told.size(); ++i) out += (i == 0 ? ": " : "; ") + told[i];
     return out + ".";
 }
@@ -100,10 +101,11 @@ void add_segments(Page& page, const std::vector<Segment>& segments)
                             moment(s.end),
                             number(s.mean_cost * 1e-3),
                             number(s.largest_error),
+                            text(s.error_unit),
                             number(s.work)});
     if (rows.empty()) return;
     page.paragraph("Each interaction with each algorithm that it had. A click on a column's head sorts by it.");
-    add_table(page, head({"interaction", "algorithm", "run", "from, s", "to, s", "cost, µs/step", "largest error", "work, J"}), rows,
+    add_table(page, head({"interaction", "algorithm", "run", "from, s", "to, s", "cost, µs/step", "largest error", "unit", "work, J"}), rows,
               segments.size());
 }
 
@@ -178,6 +180,8 @@ void add_losses(Page& page, const Summary& summary)
     for (const NotedGap& g : summary.gaps)
         rows.push_back({text("all topics"), whole(g.messages), text(g.reason),
                         text(formatted("%.6g", seconds(g.from)) + " to " + formatted("%.6g", seconds(g.to)))});
+    for (const std::string& loss : summary.losses())
+        rows.push_back({text("the file"), {"–", "-", ""}, text("lost, and not recovered: " + loss), text("")});
     for (const std::string& trouble : summary.troubles.texts) rows.push_back({text("the file"), {"–", "-", ""}, text(trouble), text("")});
     if (rows.empty()) return;
     page.heading("What is missing");

@@ -2,11 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace plab::recordings
 {
 namespace
 {
+
+std::string unit_of_error(const plab_v2_InteractionMetrics& m)
+{
+    for (std::uint32_t i = 0; i < m.outputs._length; ++i)
+        if (const plab_v2_Parameter& p = m.outputs._buffer[i]; std::string_view(p.kind) == "account" && std::string_view(p.name) == "error")
+            return p.unit;
+    return {};
+}
 
 class Collector
 {
@@ -45,8 +55,10 @@ private:
         Segment& now = course.segments.back();
         now.resolved = m.resolved, now.end = time;
         ++now.samples;
-        // The first sample of a run comes before its first step: nothing was measured.
-        if (all.step_ns > 0) now.mean_cost += (m.cost_ns - now.mean_cost) / static_cast<double>(++course.measured);
+        // The first sample of a run measures what was before it (is_measured in quantity.h).
+        if (all.step_ns > 0 && !is_new_run) now.mean_cost += (m.cost_ns - now.mean_cost) / static_cast<double>(++course.measured);
+        // A residual until the first shadow step, then what that measures: figures of two units are no largest one.
+        if (const std::string unit = unit_of_error(m); std::exchange(now.error_unit, unit) != unit) now.largest_error = 0;
         // A comparison with what is no number is false.
         if (!(std::fabs(m.error) <= now.largest_error)) now.largest_error = std::fabs(m.error);
         now.work += m.work - course.last_work;

@@ -16,6 +16,7 @@ struct Segment
     std::uint64_t samples = 0;
     double mean_cost = 0;  ///< ns per step
     double largest_error = 0;
+    std::string error_unit;  ///< of it; errors that were measured in another unit before are left out
     double work = 0;  ///< J, done in this time
 };
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 
+#include "idl/recording/recovery.h"
 #include "link/sequence.h"
 #include "recordings/words.h"
 
@@ -136,6 +138,8 @@ void add_container(const Log& log, Summary& out)
     for (const recording::AttachmentIndex& a : index.attachments) out.attachments.push_back({a.name, a.media_type, a.data_size});
     for (const recording::MetadataIndex& place : index.metadata)
     {
+        if (place.name == recording::kRecovery)
+            if (auto note = log.reader().metadata(place); note) out.recovered += text_at(note->values, "report");
         if (place.name != "gap") continue;
         auto gap = log.reader().metadata(place);
         if (gap)
@@ -155,6 +159,16 @@ double per_object_second(const Summary& s, std::uint64_t bytes)
 }  // namespace
 
 double TopicSummary::rate() const { return last > first ? static_cast<double>(messages - 1) / seconds(last - first) : 0; }
+
+std::vector<std::string> Summary::losses() const
+{
+    constexpr std::string_view kLost = "lost: ";
+    std::vector<std::string> out;
+    std::istringstream lines(recovered);
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with(kLost)) out.push_back(line.substr(kLost.size()));
+    return out;
+}
 
 double Summary::state_bytes_per_object_second() const
 {

@@ -63,6 +63,7 @@ struct Summary
     std::uint64_t file_bytes = 0;
     std::uint64_t chunks = 0, chunk_bytes = 0, raw_bytes = 0;  ///< of chunks: as they stand in the file, and decompressed
     bool is_closed = false;                                    ///< ends as a file does that was closed
+    std::string recovered;  ///< what `plabctl recover` wrote into the file that it made: what it kept and what is lost; "": it did not
     Troubles troubles;
 
     std::uint64_t messages = 0;
@@ -84,7 +85,10 @@ struct Summary
     /// Bytes per moving object and second of simulated time; 0 if there is no state or no time.
     double state_bytes_per_object_second() const;  ///< of plab/states, before compression
     double file_bytes_per_object_second() const;   ///< of all that is in the file
-    bool is_whole() const { return is_closed && troubles.count == 0; }
+    /// All that was recorded is there and can be read.
+    bool is_whole() const { return is_closed && troubles.count == 0 && recovered.empty(); }
+    /// "lost: ..." of what was recovered, a text each.
+    std::vector<std::string> losses() const;
 };
 
 Result<Summary> summary_of(const Log& log);

@@ -1,4 +1,5 @@
-/// Where text goes that a command makes: standard output or a file, which is emptied first.
+/// Where text goes that a command makes: standard output or a file. A file gets its name only when it is whole: until then it is
+/// NAME.part, and it is removed if it is not finished.
 #pragma once
 
 #include <cstdio>
@@ -14,24 +15,31 @@ namespace plab::recordings
 class TextOut
 {
 public:
+    TextOut(TextOut&& other) noexcept = default;
+    TextOut& operator=(TextOut&&) = delete;
+    ~TextOut();
+
     /// "" or "-": standard output.
     static Result<TextOut> open(const std::string& path);
 
     void write(std::string_view text);
     /// Nobody reads any more (a closed pipe), or the disk is full: the rest need not be made.
     bool is_over() const { return error_ != 0; }
-    /// Writes what is left. A closed pipe is a normal end.
+    /// Writes what is left, and gives the file its name. A closed pipe is a normal end.
     Result<void> finish();
 
 private:
+    TextOut() = default;
     struct Closer
     {
         void operator()(std::FILE* file) const { (void)std::fclose(file); }
     };
 
     std::unique_ptr<std::FILE, Closer> file_;  ///< empty: standard output
-    std::string name_;
-    int error_ = 0;  ///< errno of the first failure
+    std::string name_;                         ///< for messages
+    std::string target_;                       ///< where links lead to
+    std::string partial_;  ///< "": it is written in place, because it is no plain file (a pipe, a device) or standard output
+    int error_ = 0;        ///< errno of the first failure
 };
 
 /// One text as one file.

@@ -37,7 +37,7 @@ std::optional<Moment> Feed::next()
     const auto start = Clock::now();
     while (true)
     {
-        if (interrupt_.pending())
+        if (stop_())
         {
             end_ = {Exit::Interrupted, "interrupted"};
             return {};

@@ -10,10 +10,7 @@ namespace plab::view
 class Feed
 {
 public:
-    Feed(Source& source, const Options& options, const Interrupt& interrupt)
-        : source_(source), interrupt_(interrupt), timeout_(options.timeout)
-    {
-    }
+    Feed(Source& source, const Options& options, link::Stop stop) : source_(source), stop_(std::move(stop)), timeout_(options.timeout) {}
 
     /// Waits for the next moment. None: end() says why.
     std::optional<Moment> next();
@@ -29,7 +26,7 @@ private:
     Outcome timed_out() const;
 
     Source& source_;
-    const Interrupt& interrupt_;
+    link::Stop stop_;
     link::Seconds timeout_;
     Outcome end_;
     bool any_ = false, gone_ = false;

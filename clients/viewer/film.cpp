@@ -53,8 +53,12 @@ public:
         sigset_t none;
         (void)sigemptyset(&none);
         (void)posix_spawnattr_setsigmask(&attributes_, &none);
+        sigset_t usual;
+        (void)sigemptyset(&usual);
+        for (const int ignored : {SIGPIPE, SIGXFSZ}) (void)sigaddset(&usual, ignored);
+        (void)posix_spawnattr_setsigdefault(&attributes_, &usual);
         (void)posix_spawnattr_setpgroup(&attributes_, 0);
-        (void)posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+        (void)posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
     }
     SpawnSettings(const SpawnSettings&) = delete;
     SpawnSettings& operator=(const SpawnSettings&) = delete;

@@ -1,18 +1,20 @@
 /// plab-view: pictures and films of a running scene.
 #include <cstdio>
 
+#include "program/interruption.h"
 #include "viewer/run.h"
 
 int main(int argc, char** argv)
 {
-    const plab::view::Interrupt interrupt;
+    plab::program::catch_signals();
     plab::view::Options options;
     if (const auto end = plab::view::parse_options(argc, argv, options))
     {
         std::fputs(end->message.c_str(), end->code == 0 ? stdout : stderr);
         return end->code;
     }
-    const plab::view::Outcome outcome = plab::view::run(options, interrupt);
+    const plab::view::Outcome outcome = plab::view::run(options, plab::program::is_interrupted);
     if (!outcome.message.empty()) std::fprintf(stderr, "plab-view: %s\n", outcome.message.c_str());
+    if (outcome.exit == plab::view::Exit::Interrupted) return plab::program::code_of_interruption();
     return static_cast<int>(outcome.exit);
 }

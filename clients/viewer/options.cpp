@@ -28,7 +28,7 @@ With a FILE the pictures are of a recording, without it of a running server. Tim
 'front', else its first one, else one that shows everything.
 
 Environment: PLAB_SERVER, PLAB_DOMAIN, PLAB_INTERFACE stand in for the options of these names.
-Exit codes: 0 done, 1 failed or not all pictures could be had, 2 wrong use, 3 no server or time-out, 130 interrupted.)";
+Exit codes: 0 done, 1 failed or not all pictures could be had, 2 wrong use, 3 no server or time-out, 130 Ctrl-C, 143 SIGTERM.)";
 
 struct Texts
 {
@@ -78,6 +78,8 @@ void add_pictures(CLI::App& app, Options& options, Texts& texts)
                                ->check(link::check_positive)
                                ->type_name("S")
                                ->group("Pictures");
+    app.add_flag("--progress", options.progress, "a line every five seconds on standard error, also where that is no terminal")
+        ->group("Pictures");
     app.add_option("--until", options.until, "time of the last frame")
         ->check(link::check_not_negative)
         ->type_name("T")

@@ -50,6 +50,7 @@ struct Options
     ViewChoice view;
     std::uint32_t width = 1280, height = 720;
     bool captions = true, ground = true;
+    bool progress = false;  ///< lines of progress also where standard error is no terminal
     link::Options link;
     link::Seconds timeout{10};
 

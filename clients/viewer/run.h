@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "viewer/interrupt.h"
 #include "viewer/options.h"
 
 namespace plab::view
@@ -16,7 +15,7 @@ enum class Exit : int
     Failed = 1,
     Usage = 2,
     NoServer = 3,
-    Interrupted = 130,
+    Interrupted = 130,  ///< by a signal; main() gives 128 + its number
 };
 
 struct Outcome
@@ -25,6 +24,7 @@ struct Outcome
     std::string message;  ///< for standard error; empty: nothing to say
 };
 
-Outcome run(const Options& options, const Interrupt& interrupt);
+/// `stop`: nobody wants the rest.
+Outcome run(const Options& options, const link::Stop& stop);
 
 }  // namespace plab::view

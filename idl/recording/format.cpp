@@ -29,9 +29,13 @@ std::string why_not(const Pairs& about)
 
 }  // namespace
 
-Result<Reader> open_recording(const std::string& path)
+Result<Reader> open_recording(const std::string& path, const Watch& watch)
 {
-    auto reader = Reader::open(path);
+    auto file = FileSource::open(path);
+    if (!file) return file.errors();
+    std::unique_ptr<const Source> source = std::make_unique<FileSource>(file.take());
+    if (watch) source = std::make_unique<WatchedSource>(std::move(source), watch);
+    auto reader = Reader::open(std::move(source));
     if (!reader) return reader;
     // None, or damaged: what else is in the file may still be good.
     const auto about = reader->metadata(kAbout);

@@ -13,8 +13,8 @@ inline constexpr int kOldestFormat = 2;
 /// The metadata record that tells it, under the key "format", with the file's origin.
 inline constexpr const char* kAbout = "plab";
 
-/// As Reader::open(), and refused is what is of a newer or an outdated format, or of one that nobody knows. A file without our metadata (others'
-/// tools make such, or its beginning was lost) is taken as it is.
-Result<Reader> open_recording(const std::string& path);
+/// As Reader::open(), and refused is what is of a newer or an outdated format, or of one that nobody knows. A file without our metadata
+/// (others' tools make such, or its beginning was lost) is taken as it is.
+Result<Reader> open_recording(const std::string& path, const Watch& watch = {});
 
 }  // namespace plab::recording

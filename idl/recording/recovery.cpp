@@ -98,7 +98,7 @@ private:
 
     static Metadata note_of(const RecoveryReport& report)
     {
-        return sealed({"recovery", {{"messages", std::to_string(report.messages)}, {"report", report.text()}}});
+        return sealed({kRecovery, {{"messages", std::to_string(report.messages)}, {"report", report.text()}}});
     }
 
     const Source* source_;
@@ -231,12 +231,13 @@ Result<RecoveryReport> recover(const Source& in, const SinkMaker& make_out, cons
     return report;
 }
 
-Result<RecoveryReport> recover(const std::string& in, const std::string& out, Overwrite overwrite, const Limits& limits)
+Result<RecoveryReport> recover(const std::string& in, const std::string& out, Overwrite overwrite, const Limits& limits, const Watch& watch)
 {
     std::error_code ignored;  // what is not there is not the same
     if (std::filesystem::equivalent(in, out, ignored)) return reason(out + ": is the recording itself; name another file");
-    auto source = FileSource::open(in);
-    if (!source) return source.errors();
+    auto file = FileSource::open(in);
+    if (!file) return file.errors();
+    const WatchedSource source(std::make_unique<FileSource>(file.take()), watch);
     bool is_made = false;
     const auto make = [&]() -> Result<std::unique_ptr<Sink>>
     {
@@ -245,7 +246,7 @@ Result<RecoveryReport> recover(const std::string& in, const std::string& out, Ov
         is_made = true;
         return std::unique_ptr<Sink>(std::make_unique<FileSink>(sink.take()));
     };
-    auto report = recover(*source, make, limits);
+    auto report = recover(source, make, limits);
     if (report) return report;
     if (is_made) std::filesystem::remove(out, ignored);
     Error error = report.error();

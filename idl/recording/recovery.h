@@ -51,13 +51,16 @@ struct RecoveryReport
     std::string text() const;
 };
 
+/// Metadata of a file that was made of one of which something was lost: `report` is text(), `messages` how many were kept.
+inline constexpr const char* kRecovery = "recovery";
+
 using SinkMaker = std::function<Result<std::unique_ptr<Sink>>()>;
 
 /// Reads `in`, writes a new whole file with what is good; asks for its sink only if there is something. Records of later
 /// versions of MCAP are not copied. An error: `in` is no recording at all, or cannot be read, or `out` not be written.
 Result<RecoveryReport> recover(const Source& in, const SinkMaker& make_out, const Limits& limits = {});
-/// As above, by names. After an error no new file is left.
+/// As above, by names. After an error no new file is left; an end that `watch` wants is one. It reads the file twice.
 Result<RecoveryReport> recover(const std::string& in, const std::string& out, Overwrite overwrite = Overwrite::No,
-                               const Limits& limits = {});
+                               const Limits& limits = {}, const Watch& watch = {});
 
 }  // namespace plab::recording

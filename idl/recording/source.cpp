@@ -68,6 +68,14 @@ Result<std::size_t> MemorySource::read(std::uint64_t offset, std::span<std::uint
     return there.size();
 }
 
+Result<std::size_t> WatchedSource::read(std::uint64_t offset, std::span<std::uint8_t> into) const
+{
+    const auto all = source_->size();
+    const double share = all && *all > 0 ? static_cast<double>(offset) / static_cast<double>(*all) : 0.0;
+    if (watch_ && !watch_(share)) return reason("interrupted");
+    return source_->read(offset, into);
+}
+
 Result<ByteView> Window::view(std::uint64_t offset, std::size_t n)
 {
     const bool is_inside = offset >= begin_ && offset - begin_ <= bytes_.size() && bytes_.size() - (offset - begin_) >= n;

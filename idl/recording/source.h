@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -60,6 +61,25 @@ public:
 private:
     ByteView bytes_;
     std::string name_;
+};
+
+/// Told at each read which share of the source lies before it, from 0 to 1; false: nobody wants the rest.
+using Watch = std::function<bool(double share)>;
+
+/// A source that tells how far it is read, and that can be told to stop: from then on each read is an error. So whatever reads a
+/// recording, by its index or byte by byte, can be interrupted and shows how far it is.
+class WatchedSource final : public Source
+{
+public:
+    WatchedSource(std::unique_ptr<const Source> source, Watch watch) : source_(std::move(source)), watch_(std::move(watch)) {}
+
+    const std::string& name() const override { return source_->name(); }
+    Result<std::uint64_t> size() const override { return source_->size(); }
+    Result<std::size_t> read(std::uint64_t offset, std::span<std::uint8_t> into) const override;
+
+private:
+    std::unique_ptr<const Source> source_;
+    Watch watch_;
 };
 
 /// A source through a small window: for many short reads that are near each other.

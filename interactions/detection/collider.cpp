@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "plab/surface.h"
+
 namespace plab::detection
 {
 namespace
@@ -42,9 +44,30 @@ Collider::Collider(const Geometry& geometry) : source_(geometry)
     }
 }
 
+void Collider::make_surface()
+{
+    switch (surface_of(source_))
+    {
+        case Surface::Bowl:
+            kind_ = ColliderKind::Bowl;
+            break;
+        case Surface::Bore:
+            kind_ = ColliderKind::Bore;
+            break;
+        case Surface::Triangles:
+            if (auto triangles = TriangleSurface::make(source_.vertices, source_.triangles); triangles)
+                kind_ = ColliderKind::Triangles, triangles_ = triangles.take();
+            else
+                complaint_ = triangles.error().reason;
+            break;
+        case Surface::None:
+            break;
+    }
+}
+
 void Collider::make_hull_of_mesh()
 {
-    if (!source_.hull_collides) return;
+    if (!source_.hull_collides) return make_surface();
     auto hull = make_hull(source_.vertices);
     if (hull)
         kind_ = ColliderKind::Hull, hull_ = hull.take();
@@ -58,6 +81,7 @@ bool Collider::built_from(const Geometry& g) const
     if (g.kind == GeometryKind::Compound) return g.parts == source_.parts;
     if (g.kind != GeometryKind::Mesh) return true;
     if (g.hull_collides != source_.hull_collides) return false;
+    if (surface_of(g) == Surface::Triangles) return g.vertices == source_.vertices && g.triangles == source_.triangles;
     return !g.hull_collides || g.vertices == source_.vertices;
 }
 
@@ -74,11 +98,22 @@ Vec3 Collider::bound_half() const
             return {h.x, h.x, h.x + h.z};
         case ColliderKind::Cylinder:
             return {h.x, h.x, h.z};
+        case ColliderKind::Bowl:
+            return {h.x, h.x, 0.5 * (h.z + h.x)};
+        case ColliderKind::Bore:
+            return {h.x, h.x, h.z};
+        case ColliderKind::Triangles:
+            return (triangles_.upper() - triangles_.lower()) * 0.5;
         default:
             return (hull_.upper - hull_.lower) * 0.5;
     }
 }
 
-Vec3 Collider::bound_center() const { return kind_ == ColliderKind::Hull ? (hull_.upper + hull_.lower) * 0.5 : Vec3{}; }
+Vec3 Collider::bound_center() const
+{
+    if (kind_ == ColliderKind::Hull) return (hull_.upper + hull_.lower) * 0.5;
+    if (kind_ == ColliderKind::Triangles) return (triangles_.upper() + triangles_.lower()) * 0.5;
+    return kind_ == ColliderKind::Bowl ? Vec3{0, 0, 0.5 * (size().z - size().x)} : Vec3{};
+}
 
 }  // namespace plab::detection

@@ -7,6 +7,7 @@
 #include "hull.h"
 #include "ode_handles.h"
 #include "plab/tables.h"
+#include "triangle_surface.h"
 
 namespace plab::detection
 {
@@ -20,7 +21,11 @@ enum class ColliderKind : std::uint8_t
     Hull,
     Capsule,
     Cylinder,
+    Bowl,       ///< surfaces (plab/surface.h): they meet solids, but neither one another nor planes
+    Bore,
+    Triangles,
 };
+inline bool is_surface(ColliderKind kind) { return kind >= ColliderKind::Bowl; }
 
 /// Built once per shape and shared by all bodies that name it. Keeps the geometry that it was built from, so that a
 /// change of a shape's parameter is seen by comparison.
@@ -32,8 +37,9 @@ public:
     bool built_from(const Geometry& geometry) const;
     ColliderKind kind() const { return kind_; }
     const Pose& pose() const { return source_.pose; }  ///< X_BS
-    const Vec3& size() const { return source_.size; }
+    const Vec3& size() const { return source_.size; }  ///< of bowls and bores: x radius, z reach
     const Hull& hull() const { return hull_; }  ///< of meshes
+    const TriangleSurface& triangles() const { return triangles_; }
     /// Why a shape that should collide does not; empty if nothing is wrong.
     const std::string& complaint() const { return complaint_; }
 
@@ -43,10 +49,12 @@ public:
 
 private:
     void make_hull_of_mesh();
+    void make_surface();
 
     Geometry source_;
     ColliderKind kind_ = ColliderKind::None;
     Hull hull_;
+    TriangleSurface triangles_;
     std::string complaint_;
 };
 

@@ -7,18 +7,18 @@
 #include "exact_pairs.h"
 #include "manifold.h"
 #include "separation.h"
+#include "surface_contacts.h"
 
 namespace plab::detection
 {
 namespace
 {
-bool collides(const Collider& c) { return c.kind() != ColliderKind::None; }
-
 /// Pairs are computed in this order, whatever order they are given in, so that (b, a) is the mirror of (a, b) to the last
-/// bit: by kind (planes last), then by size and pose.
+/// bit: by kind (planes and surfaces last), then by size and pose.
 bool in_order(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
 {
-    const auto rank = [](const Collider& c) { return c.kind() == ColliderKind::Plane ? 100 : static_cast<int>(c.kind()); };
+    const auto rank = [](const Collider& c)
+    { return c.kind() == ColliderKind::Plane || is_surface(c.kind()) ? 100 : static_cast<int>(c.kind()); };
     if (rank(a) != rank(b)) return rank(a) < rank(b);
     const auto key = [](const Collider& c, const Pose& X) {
         return std::make_tuple(c.size().x, c.size().y, c.size().z, c.hull().vertices.size(), X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y,
@@ -43,6 +43,9 @@ void collide_with_plane(const Collider& a, const Pose& X_a, const Pose& X_plane,
             return cylinder_plane(Solid(a, X_a), X_plane, out);
         case ColliderKind::None:
         case ColliderKind::Plane:
+        case ColliderKind::Bowl:
+        case ColliderKind::Bore:
+        case ColliderKind::Triangles:
             break;  // half-spaces do not collide with one another
     }
 }
@@ -54,6 +57,7 @@ void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, cons
 {
     using enum ColliderKind;
     if (b.kind() == Plane) return collide_with_plane(a, X_a, X_b, out);
+    if (is_surface(b.kind())) return collide_with_surface(a, X_a, b, X_b, out);
     if (a.kind() == Sphere && b.kind() == Sphere) return sphere_sphere(a.size().x, X_a.p, b.size().x, X_b.p, out);
     if (a.kind() == Sphere && b.kind() == Box) return sphere_box(a.size().x, X_a.p, b.size(), X_b, out);
     const Solid A(a, X_a), B(b, X_b);
@@ -66,26 +70,32 @@ void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, cons
 }
 }  // namespace
 
+bool meets(ColliderKind a, ColliderKind b)
+{
+    const auto open = [](ColliderKind kind) { return kind == ColliderKind::Plane || is_surface(kind); };
+    return a != ColliderKind::None && b != ColliderKind::None && !(open(a) && open(b));
+}
+
 Separation separation(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
 {
-    const bool planes = a.kind() == ColliderKind::Plane && b.kind() == ColliderKind::Plane;
-    if (!collides(a) || !collides(b) || planes) return {HUGE_VAL, X_a.p, X_b.p, {0, 0, 1}};
+    if (!meets(a.kind(), b.kind())) return {HUGE_VAL, X_a.p, X_b.p, {0, 0, 1}};
     if (!in_order(a, X_a, b, X_b))
     {
         const Separation s = separation(b, X_b, a, X_a);
         return {s.gap, s.point_b, s.point_a, -s.normal};
     }
+    if (is_surface(b.kind())) return separation_from_surface(a, X_a, b, X_b);
     const Solid A(a, X_a);
     return b.kind() == ColliderKind::Plane ? separation_from_plane(A, X_b) : separation_of(A, Solid(b, X_b));
 }
 
 void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out)
 {
-    if (!collides(a) || !collides(b)) return;
+    if (!meets(a.kind(), b.kind())) return;
     if (in_order(a, X_a, b, X_b)) return collide_ordered(a, X_a, b, X_b, out);
     const std::size_t before = out.all().size();
     collide_ordered(b, X_b, a, X_a, out);
-    const bool has_sides = a.kind() != ColliderKind::Plane && b.kind() != ColliderKind::Sphere;
+    const bool has_sides = a.kind() != ColliderKind::Plane && !is_surface(a.kind()) && b.kind() != ColliderKind::Sphere;
     for (Touch& t : out.all().subspan(before))
     {
         t.normal = -t.normal;

@@ -44,6 +44,9 @@ private:
     double margin_ = 0;
 };
 
+/// Half-spaces and surfaces meet neither one another nor themselves; what has no volume meets nobody.
+bool meets(ColliderKind a, ColliderKind b);
+
 /// The nearest points of two shapes.
 struct Separation
 {

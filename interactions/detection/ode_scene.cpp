@@ -15,13 +15,6 @@ std::uint32_t feature_of(std::uint32_t slot_a, std::uint32_t slot_b, std::uint32
     return ((slot_a & 63u) << 26) | ((slot_b & 63u) << 20) | (local % kFeatures);
 }
 
-/// Half-spaces do not meet one another; what has no volume meets nobody.
-bool meets(ColliderKind a, ColliderKind b)
-{
-    if (a == ColliderKind::None || b == ColliderKind::None) return false;
-    return a != ColliderKind::Plane || b != ColliderKind::Plane;
-}
-
 bool same_shapes(const RefList& now, std::span<const std::uint32_t> built)
 {
     return std::equal(now.begin(), now.end(), built.begin(), built.end(), [](const Ref& r, std::uint32_t s) { return r.index == s; });

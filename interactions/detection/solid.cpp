@@ -52,8 +52,22 @@ Solid::Solid(const Collider& collider, const Pose& X) : size_(collider.size()), 
             break;
         case ColliderKind::None:
         case ColliderKind::Plane:
+        case ColliderKind::Bowl:
+        case ColliderKind::Bore:
+        case ColliderKind::Triangles:
             break;
     }
+}
+
+Solid Solid::rod(const Vec3& a, const Vec3& b)
+{
+    Solid out;
+    const double size = length(b - a);
+    const Vec3 u = (b - a) / size, v = any_perpendicular(u), w = cross(u, v);
+    for (int i = 0; i < 3; ++i) out.R_(i, 0) = v[i], out.R_(i, 1) = w[i], out.R_(i, 2) = u[i];
+    out.core_ = Core::Segment, out.size_ = {0, 0, 0.5 * size}, out.extent_ = 0.5 * size;
+    out.X_.p = out.center_ = (a + b) * 0.5;
+    return out;
 }
 
 Vec3 Solid::support(const Vec3& d) const

@@ -35,8 +35,10 @@ struct Facelet
 class Solid
 {
 public:
-    /// Not for planes.
+    /// Not for planes and surfaces.
     Solid(const Collider& collider, const Pose& X);
+    /// A segment without thickness from a to b.
+    static Solid rod(const Vec3& a, const Vec3& b);
 
     Core core() const { return core_; }
     double radius() const { return radius_; }  ///< around the core, m
@@ -61,6 +63,7 @@ public:
     Foot foot(const Vec3& q, const Facelet& facelet) const;
 
 private:
+    Solid() = default;
     Foot foot_on_segment(const Vec3& q) const;
     Foot foot_on_box(const Vec3& q) const;
     Foot foot_on_cylinder(const Vec3& q) const;

@@ -223,10 +223,11 @@ void BlockMatrix::eliminate(std::uint32_t place)
         }
 }
 
-bool BlockMatrix::factor()
+bool BlockMatrix::factor(const Interruption* interruption)
 {
     for (std::uint32_t place = 0; place < size_; ++place)
     {
+        if (interruption && interruption->due()) return false;
         if (!invert(diagonal_[order_[place]])) return false;
         eliminate(place);
     }

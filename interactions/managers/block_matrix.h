@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "plab/interruption.h"
+
 namespace plab::managers
 {
 
@@ -31,7 +33,7 @@ public:
     /// Block in row i and column j of the pair that find(i, j) names.
     Block& block(std::uint32_t pair, std::uint32_t i) { return earlier_[pair] == i ? upper_[pair] : lower_[pair]; }
     /// False if a block of the elimination is singular.
-    bool factor();
+    bool factor(const Interruption* interruption = nullptr);
     /// In place; after factor().
     void solve(std::span<Column6> x) const;
     std::size_t pairs() const { return earlier_.size(); }

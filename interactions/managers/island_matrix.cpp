@@ -75,6 +75,7 @@ void IslandMatrix::shape(const Problem& problem)
 void IslandMatrix::start(const Problem& problem)
 {
     matrix_.clear();
+    interruption_ = problem.interruption;
     for (std::uint32_t i = 0; i < problem.movers.size(); ++i)
     {
         Block& b = matrix_.diagonal(i);
@@ -120,7 +121,7 @@ void IslandMatrix::add(const Problem& problem, std::size_t i, double g)
 
 bool IslandMatrix::solve(std::span<Column6> x)
 {
-    if (!matrix_.factor()) return false;
+    if (!matrix_.factor(interruption_)) return false;
     matrix_.solve(x);
     return std::all_of(x.begin(), x.end(),
                        [](const Column6& c) { return std::all_of(c.begin(), c.end(), [](double v) { return std::isfinite(v); }); });

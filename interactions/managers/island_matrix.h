@@ -17,11 +17,12 @@ public:
     /// Adds J^T G J of a point; G in contact coordinates.
     void add(const Problem& problem, std::size_t point, const Mat3& G);
     void add(const Problem& problem, std::size_t line, double g);
-    /// x = (M + J^T G J)^-1 x. False if that does not exist in doubles.
+    /// x = (M + J^T G J)^-1 x. False if that does not exist in doubles, or the step is given up.
     bool solve(std::span<Column6> x);
 
 private:
     BlockMatrix matrix_;
+    const Interruption* interruption_ = nullptr;
     std::vector<BlockMatrix::Edge> edges_;
     std::vector<std::uint32_t> pair_of_point_;
     std::vector<std::array<std::uint32_t, 3>> pairs_of_line_;

@@ -4,10 +4,15 @@
 #include <cmath>
 #include <string>
 
+#include "plab/number_text.h"
+
 namespace plab::managers
 {
 namespace
 {
+
+/// What a step of some hundred contacts still ends with in minutes.
+constexpr double kMostIterations = 1e6;
 
 constexpr Unit kHertz{"1/s", {{0, 0, -1, 0}}};
 
@@ -104,8 +109,8 @@ void Account::add(const StepContext& context, Row row, const Island& island, dou
     if (island.converged) return;
     const bool told = last_failure[row] >= 0 && last_failure[row] + 1 >= context.tick;
     if (!told)
-        context.emit(row, "manager.not_converged", Severity::Info,
-                     "contacts are left " + std::to_string(island.residual) + " m/s from what they ask for, " + std::to_string(tolerance) +
+        context.emit(row, "manager.not_converged", Severity::Warning,
+                     "contacts are left " + rounded_text(island.residual) + " m/s from what they ask for, " + number_text(tolerance) +
                          " would do; allow more iterations, or take a smaller dt or a more exact manager",
                      {island.residual, tolerance});
     last_failure[row] = context.tick;
@@ -116,8 +121,12 @@ void SequentialRows::describe(Schema& s)
     s.param(max_iterations, "max_iterations", unit::one,
             "sweeps over the contacts and rows for speeds; up to ten times as many where contacts are new")
         .or_else(20)
-        .positive();
-    s.param(position_iterations, "position_iterations", unit::one, "sweeps that part overlap").or_else(10).not_negative();
+        .positive()
+        .at_most(kMostIterations);
+    s.param(position_iterations, "position_iterations", unit::one, "sweeps that part overlap")
+        .or_else(10)
+        .not_negative()
+        .at_most(kMostIterations);
     s.param(tolerance, "tolerance", unit::metre_per_second,
             "violation that may be left; ends the sweeps, and above it the step counts as not converged")
         .or_else(1e-6)
@@ -154,15 +163,17 @@ void DirectRows::describe(Schema& s)
             "violation that counts as none; never less than rounding leaves: 1e-11 in a wall of 1000 bricks")
         .or_else(1e-13)
         .positive();
-    s.param(max_steps, "max_steps", unit::one, "Newton steps before sweeps have to finish").or_else(80).positive();
+    s.param(max_steps, "max_steps", unit::one, "Newton steps before sweeps have to finish").or_else(80).positive().at_most(10000);
     s.param(max_iterations, "max_iterations", unit::one,
             "sweeps at a time where Newton's method does not converge, up to four times; and in islands beyond max_contacts")
         .or_else(100)
-        .positive();
+        .positive()
+        .at_most(kMostIterations);
     s.param(max_contacts, "max_contacts", unit::one,
             "islands with more contact points are left to sweeps: one factorisation would cost too much")
         .or_else(20000)
-        .positive();
+        .positive()
+        .at_most(1e6);
     account.describe(s);
     s.scratch(memory, "memory", "working memory: factors of the island's matrix");
 }
@@ -187,10 +198,14 @@ void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies&
 
 void SoftStepRows::describe(Schema& s)
 {
-    s.param(substeps, "substeps", unit::one, "parts of the step, each with one sweep and the relaxing ones").or_else(8).positive();
+    s.param(substeps, "substeps", unit::one, "parts of the step, each with one sweep and the relaxing ones")
+        .or_else(8)
+        .positive()
+        .at_most(1000);
     s.param(relax_iterations, "relax_iterations", unit::one, "sweeps after each move that take out the speed of parting")
         .or_else(1)
-        .not_negative();
+        .not_negative()
+        .at_most(100);
     s.param(hertz, "hertz", kHertz, "stiffness of contacts as a frequency; never more than a quarter of the sub-steps' rate")
         .or_else(60)
         .positive();

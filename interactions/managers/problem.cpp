@@ -32,6 +32,40 @@ void add_mobility(Point& p, const Mover& m, const Vec3& r)
 
 }  // namespace
 
+void Problem::set_mobility(Point& p) const
+{
+    p.K = {};
+    if (p.a != kNoIndex) add_mobility(p, movers[p.a], p.r_a);
+    if (p.b != kNoIndex) add_mobility(p, movers[p.b], p.r_b);
+    p.slip_mobility = slip_mobility(p.K);
+}
+
+void Problem::set_mobility(Line& line) const
+{
+    line.mobility = 0;
+    for (std::uint32_t k = 0; k < line.count; ++k)
+    {
+        const Mover& m = movers[line.mover[k]];
+        line.mobility += m.inverse_mass * length_squared(line.linear[k]) + dot(line.angular[k], m.inverse_inertia * line.angular[k]);
+    }
+}
+
+void Problem::turn_with(const Bodies& bodies)
+{
+    for (std::size_t i = 0; i < movers.size(); ++i)
+    {
+        if (anchors[i].shaft) continue;
+        const std::uint32_t b = anchors[i].host;
+        const Mat3 R = rotation_matrix(bodies.orientation[b]), R_T = transposed(R);
+        movers[i].inverse_inertia = R * bodies.inverse_inertia_B[b] * R_T;
+        anchors[i].inertia = R * bodies.inertia_B[b] * R_T;
+        // Momenta stay where bodies turn freely: spins without impulses are those of what impulses have not given.
+        anchors[i].w = bodies.angular_velocity[b] - movers[i].inverse_inertia * anchors[i].written;
+    }
+    for (Point& p : points) set_mobility(p);
+    for (Line& line : lines) set_mobility(line);
+}
+
 void Problem::add_bodies(const Island& island, const Bodies& bodies)
 {
     mover_of_body_.resize(bodies.size(), kNoIndex);
@@ -78,9 +112,7 @@ void Problem::add_point(const Contact& c, const Bodies& bodies)
     p.t1 = any_perpendicular(p.n), p.t2 = cross(p.n, p.t1);
     p.r_a = c.point - bodies.position[c.a.index], p.r_b = c.point - bodies.position[c.b.index];
     p.friction = c.friction;
-    if (p.a != kNoIndex) add_mobility(p, movers[p.a], p.r_a);
-    if (p.b != kNoIndex) add_mobility(p, movers[p.b], p.r_b);
-    p.slip_mobility = slip_mobility(p.K);
+    set_mobility(p);
     if (!(p.K(2, 2) > 0)) return;
     // The normal may have turned since, and friction may be another: a guess within the law.
     p.impulse = to_contact(p, c.impulse);
@@ -113,6 +145,7 @@ void Problem::load(const Island& island, const Bodies& bodies, const Shafts& sha
 {
     movers.clear(), anchors.clear(), points.clear(), lines.clear();
     contacts_ = island.contacts, rows_ = island.rows;
+    interruption = island.interruption;
     add_bodies(island, bodies);
     add_shafts(island, shafts);
     for (const Contact& c : island.contacts) add_point(c, bodies);

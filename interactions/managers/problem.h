@@ -74,6 +74,9 @@ class Problem
 public:
     /// Geometry, masses and warm starts. `targets` and speeds are still to be set.
     void load(const Island& island, const Bodies& bodies, const Shafts& shafts);
+    /// Inertias, mobilities and spins without impulses at the present attitudes, after bodies have turned freely. Contact points stay where
+    /// they were found, seen from the centres of mass: what is round touches with another point of it when it has turned.
+    void turn_with(const Bodies& bodies);
     /// Speeds without impulses from the tables; given parts of u with them.
     void read_speeds(const Bodies& bodies, const Shafts& shafts);
     /// Speeds at rest, and none given: for displacements instead of speeds.
@@ -93,16 +96,21 @@ public:
     /// m/s: what rounding may leave of a contact law: a share of the largest speed, and of what the largest impulse alone
     /// would give; of sums of that many terms, like a random walk.
     double rounding(double terms = 1) const;
+    /// The step is given up: sweeps and factorisations end.
+    bool interrupted() const { return interruption && interruption->due(); }
 
     std::vector<Mover> movers;
     std::vector<Anchor> anchors;  ///< beside movers
     std::vector<Point> points;    ///< beside Island::contacts
     std::vector<Line> lines;      ///< beside Island::rows; those without movers have count 0
+    const Interruption* interruption = nullptr;
 
 private:
     void add_bodies(const Island& island, const Bodies& bodies);
     void add_shafts(const Island& island, const Shafts& shafts);
     void add_point(const Contact& contact, const Bodies& bodies);
+    void set_mobility(Point& p) const;
+    void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
     std::uint32_t mover_of(Ref who) const;
 

@@ -40,7 +40,8 @@ double relax(Problem& problem, Line& line, double relaxation)
     return std::fabs(change) * line.mobility;
 }
 
-/// Somebody else's motion, restitution or a motor may put energy in.
+}  // namespace
+
 bool is_driven(const Problem& problem)
 {
     const auto pushed = [](const Point& p) { return p.given != Vec3{} || p.least > 0; };
@@ -49,8 +50,6 @@ bool is_driven(const Problem& problem)
     return std::any_of(problem.points.begin(), problem.points.end(), pushed) ||
            std::any_of(problem.lines.begin(), problem.lines.end(), driven);
 }
-
-}  // namespace
 
 bool makes_energy(const Problem& problem)
 {
@@ -73,7 +72,7 @@ double sweep_once(Problem& problem, double relaxation, bool backwards)
 Swept sweep(Problem& problem, const Sweeping& how)
 {
     Swept out;
-    while (out.sweeps < how.most && !out.converged)
+    while (out.sweeps < how.most && !out.converged && !problem.interrupted())
     {
         // To and fro: rocking that one direction hardly sees dies in the other.
         out.change = sweep_once(problem, how.relaxation, out.sweeps % 2 == 1);

@@ -29,6 +29,8 @@ Swept sweep(Problem& problem, const Sweeping& how);
 /// The same, and once more from nothing where the guess made kinetic energy: contacts without restitution never do, and
 /// sweeps from nothing only take it away.
 Swept sweep_without_gain(Problem& problem, const Sweeping& how);
+/// Whether somebody else's motion, restitution or a motor may put energy in.
+bool is_driven(const Problem& problem);
 /// Whether the present impulses raise the kinetic energy, beyond rounding, where nothing (restitution, a motor, a body that moves
 /// as told) may.
 bool makes_energy(const Problem& problem);

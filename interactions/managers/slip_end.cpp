@@ -73,7 +73,7 @@ double SlipEnds::first_end(double h)
     if (!ends) return h;
     // While all of them still slide, slip falls linearly: its end is read off a shorter part.
     double share = 0.5;
-    for (double part = 0.5 * h; part > kSliver * island_.h; part *= 0.25, share = 0.25)
+    for (double part = 0.5 * h; part > kSliver * island_.h && !island_.interrupted(); part *= 0.25, share = 0.25)
     {
         take_back();
         memory_.problem.scale_impulses(share);
@@ -132,7 +132,8 @@ Verdict SlipEnds::advance()
         }
         out.join(verdict);
         move(verdict, part);
-        if (!cut) break;
+        if (!cut || island_.interrupted()) break;
+        problem.turn_with(bodies_);
         problem.scale_impulses((rest - part) / part);
     }
     store_impulses(problem, island_);

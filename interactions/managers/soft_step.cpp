@@ -45,20 +45,18 @@ public:
     {
         start();
         Verdict out;
-        for (int s = 0; s < choices_.substeps; ++s)
+        for (int s = 0; s < choices_.substeps && !island_.interrupted(); ++s)
         {
             kick();
+            most_ = kinetic_energy_without(problem_);
             sweep_points(true), sweep_lines(true);
             write();
             if (bounces_) count_way();
-            follow_points();
-            island_.motion->move(h_);
+            move();
             for (int i = 0; i < choices_.relax_iterations; ++i) sweep_lines(false), sweep_points(false);
             write();
-            const int more = calm();
-            if (more > 0) write();
+            out.iterations += 1 + choices_.relax_iterations + calm();
             gather();
-            out.iterations += 1 + choices_.relax_iterations + more;
         }
         give_back();
         finish(out);
@@ -69,14 +67,20 @@ private:
     void start();
     void kick();
     void write();
-    void follow_points();
+    void move();
+    bool gains() const;
+    int step_hard();
+    void scale_down();
     void sweep_points(bool soft);
     void sweep_lines(bool soft);
     int calm();
     void gather();
     void note_kicks(bool before);
     void count_way();
+    void note_limits();
     double bounce(double share);
+    void bounce_points(double share);
+    void bounce_with_limits(double share);
     void give_back();
     void finish(Verdict& out);
 
@@ -89,6 +93,8 @@ private:
     double h_, rate_;
     Softness soft_, against_fixed_;
     bool bounces_ = false;
+    double most_ = 0;     ///< J: kinetic energy after the sub-step's kick, which contacts may not add to
+    bool limits_bounce_ = false;
     double allowed_ = 0;  ///< J: kinetic energy that the start and the forces on the way allow
 };
 
@@ -103,10 +109,32 @@ void SoftIsland::start()
     memory_.line_sum.assign(problem_.lines.size(), 0.0);
     bounces_ =
         std::any_of(island_.contacts.begin(), island_.contacts.end(), [](const Contact& c) { return c.approach > 0 && c.restitution > 0; });
+    note_limits();
+    bounces_ = bounces_ || limits_bounce_;
     if (!bounces_) return;
     problem_.read_speeds(bodies_, shafts_);
     allowed_ = kinetic_energy_without(problem_);
     memory_.kicks.resize(problem_.anchors.size());
+}
+
+/// Speeds at which limits with restitution are met.
+void SoftIsland::note_limits()
+{
+    memory_.line_closing.assign(problem_.lines.size(), 0.0), memory_.line_greatest.assign(problem_.lines.size(), 0.0);
+    const auto may_bounce = [&](const Line& line)
+    { return line.count > 0 && island_.rows[line.row].kind == RowKind::OneSided && island_.rows[line.row].restitution > 0; };
+    if (std::none_of(problem_.lines.begin(), problem_.lines.end(), may_bounce)) return;
+    problem_.read_speeds(bodies_, shafts_);
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i)
+    {
+        const Line& line = problem_.lines[i];
+        if (!may_bounce(line)) continue;
+        double rate = line.given;  // without impulses: those of the problem are a guess for the sub-step
+        for (std::uint32_t k = 0; k < line.count; ++k)
+            rate += dot(line.linear[k], problem_.anchors[line.mover[k]].v) + dot(line.angular[k], problem_.anchors[line.mover[k]].w);
+        memory_.line_closing[i] = std::max(0.0, island_.rows[line.row].rate - rate);
+        limits_bounce_ = limits_bounce_ || memory_.line_closing[i] > 0;
+    }
 }
 
 /// Before and after a kick: what it did to the momenta.
@@ -152,11 +180,18 @@ void SoftIsland::write()
     problem_.write_speeds(bodies_, shafts_);
 }
 
-/// Depths after the way that comes. Contact points stay where they were found, seen from the centres of mass: what is round
-/// touches with another point of it when it has turned, and a point that turned with it would seem to rise.
-void SoftIsland::follow_points()
+/// Contact points stay where they were found, seen from the centres of mass: what is round touches with another point of it when it
+/// has turned, and a point that turned with it would seem to rise.
+void SoftIsland::move()
 {
+    memory_.depth_before = memory_.depth;
+    memory_.moved_with.clear(), memory_.lines_moved_with.clear();
+    for (const Point& p : problem_.points) memory_.moved_with.push_back(p.impulse);
+    for (const Line& line : problem_.lines) memory_.lines_moved_with.push_back(line.impulse);
     for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth[i] -= h_ * problem_.slip(problem_.points[i]).z;
+    island_.motion->move(h_);
+    problem_.turn_with(bodies_);
+    problem_.apply_impulses();
 }
 
 void SoftIsland::sweep_points(bool soft)
@@ -188,8 +223,9 @@ void SoftIsland::sweep_points(bool soft)
 
 void SoftIsland::sweep_lines(bool soft)
 {
-    for (Line& line : problem_.lines)
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
+        Line& line = problem_.lines[i];
         if (line.count == 0) continue;
         const ConstraintRow& row = island_.rows[line.row];
         const bool pulled = soft && row.kind != RowKind::Rate && (row.kind == RowKind::Equality || row.error < 0);
@@ -198,6 +234,7 @@ void SoftIsland::sweep_lines(bool soft)
         line.impulse =
             std::clamp(before - share * (problem_.rate(line) - line.target + bias) / line.mobility - leak * before, line.least, line.most);
         problem_.push(line, line.impulse - before);
+        memory_.line_greatest[i] = std::max(memory_.line_greatest[i], line.impulse);
     }
 }
 
@@ -207,16 +244,11 @@ void SoftIsland::gather()
     for (std::size_t i = 0; i < problem_.lines.size(); ++i) memory_.line_sum[i] += problem_.lines[i].impulse;
 }
 
-/// Where the sub-step made energy: hard sweeps, then as much off all impulses as leaves none. The number of sweeps.
-int SoftIsland::calm()
+bool SoftIsland::gains() const { return !is_driven(problem_) && kinetic_energy(problem_) > most_ * (1 + 1e-9); }
+
+/// With v0 without impulses and dv by them: the energy of s of them is 1/2 |v0 + s dv|^2, that of none again at this s.
+void SoftIsland::scale_down()
 {
-    constexpr int kSweeps = 2;
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
-    if (!makes_energy(problem_)) return 0;
-    const Swept done = sweep(problem_, {kSweeps, 0, 1});
-    problem_.apply_impulses();
-    if (!makes_energy(problem_)) return done.sweeps;
-    // With v0 without impulses and dv by them: the energy of s of them is 1/2 |v0 + s dv|^2, that of none again at this s.
     double linear = 0, square = 0;
     for (std::size_t i = 0; i < problem_.movers.size(); ++i)
     {
@@ -226,7 +258,41 @@ int SoftIsland::calm()
         square += m.mass * length_squared(dv) + dot(problem_.movers[i].w - m.w, dw);
     }
     problem_.scale_impulses(std::clamp(-2 * linear / square, 0.0, 1.0));
+    problem_.apply_impulses();
+}
+
+/// The sub-step once more, from where it began, without what pushes overlap apart: sweeps that only take energy, and a motion that
+/// keeps it.
+int SoftIsland::step_hard()
+{
+    constexpr int kSweeps = 4;
+    // Back with the speeds of the move.
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].impulse = memory_.moved_with[i];
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i) problem_.lines[i].impulse = memory_.lines_moved_with[i];
+    write();
+    island_.motion->move(-h_);
+    memory_.depth = memory_.depth_before;
+    problem_.turn_with(bodies_);
+    problem_.clear_impulses();
+    problem_.apply_impulses();
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
+    const Swept done = sweep(problem_, {kSweeps, 0, 1});
+    problem_.apply_impulses();
+    if (gains()) scale_down();
+    write();
+    move();
     return done.sweeps;
+}
+
+/// Where the sub-step made energy: hard sweeps, and if those do not get it out again, another sub-step.
+int SoftIsland::calm()
+{
+    constexpr int kSweeps = 2;
+    if (!gains()) return 0;
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
+    const Swept done = sweep(problem_, {kSweeps, 0, 1});
+    write();
+    return done.sweeps + (gains() ? step_hard() : 0);
 }
 
 /// Impulses that give back a share of the restitution; the kinetic energy with them, J.
@@ -234,6 +300,41 @@ double SoftIsland::bounce(double share)
 {
     problem_.clear_impulses();
     problem_.apply_impulses();
+    if (limits_bounce_)
+        bounce_with_limits(share);
+    else
+        bounce_points(share);
+    return kinetic_energy(problem_);
+}
+
+/// Sweeps, as joints hand on what a limit gives back.
+void SoftIsland::bounce_with_limits(double share)
+{
+    constexpr int kMostSweeps = 1000;
+    double fastest = 0;
+    for (const double closing : memory_.line_closing) fastest = std::max(fastest, closing);
+    for (std::size_t i = 0; i < problem_.points.size(); ++i)
+    {
+        Point& p = problem_.points[i];
+        const Contact& c = island_.contacts[i];
+        p.friction = 0;
+        p.least = !(memory_.greatest[i] > 0) ? kFar : share * c.restitution * std::max(0.0, c.approach);
+    }
+    for (std::size_t i = 0; i < problem_.lines.size(); ++i)
+    {
+        Line& line = problem_.lines[i];
+        const ConstraintRow& row = island_.rows[line.row];
+        const bool one_sided = row.kind == RowKind::OneSided, pressed = memory_.line_greatest[i] > 0;
+        line.target = row.rate + (one_sided ? share * row.restitution * memory_.line_closing[i] : 0.0);
+        line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
+        // Motors have no impulse at an instant; a limit that was not met has none either.
+        if (row.kind == RowKind::Rate || (one_sided && !pressed)) line.least = line.most = 0;
+    }
+    (void)sweep(problem_, {kMostSweeps, 1e-6 * fastest, 1});
+}
+
+void SoftIsland::bounce_points(double share)
+{
     for (std::size_t i = 0; i < problem_.points.size(); ++i)
     {
         Point& p = problem_.points[i];
@@ -244,7 +345,6 @@ double SoftIsland::bounce(double share)
         p.impulse.z = missing / p.K(2, 2);
         problem_.push(p, {0, 0, p.impulse.z});
     }
-    return kinetic_energy(problem_);
 }
 
 void SoftIsland::give_back()
@@ -284,7 +384,7 @@ void SoftIsland::finish(Verdict& out)
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         const Line& line = problem_.lines[i];
-        island_.rows[line.row].impulse = memory_.line_sum[i];
+        island_.rows[line.row].impulse = memory_.line_sum[i] + line.impulse;  // what was given back is in the latter
         if (line.count > 0 && island_.rows[line.row].kind != RowKind::OneSided)
             out.residual = std::max(out.residual, std::fabs(problem_.rate(line) - island_.rows[line.row].rate));
     }

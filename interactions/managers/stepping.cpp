@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plab/body_turn.h"
 #include "plab/rotation.h"
 #include "slip_end.h"
 
@@ -171,8 +172,7 @@ void displace(const Problem& problem, Bodies& bodies, Shafts& shafts)
         }
         if (shift == Vec3{} && turn == Vec3{}) continue;
         bodies.position[m.host] += shift;
-        bodies.orientation[m.host] = normalized(exp_rotation(turn) * bodies.orientation[m.host]);
-        bodies.refresh_spin(m.host);
+        turn_without_work(bodies, m.host, exp_rotation(turn));
     }
 }
 
@@ -201,6 +201,7 @@ Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& met
         if (line.most > 0) worst = std::max(worst, held ? std::fabs(row.error) : -row.error);
     }
     if (worst <= kPositionTolerance) return {};
+    problem.turn_with(bodies);
     problem.rest();
     problem.clear_impulses();
     for (Point& p : problem.points) p.friction = 0;

@@ -13,7 +13,11 @@ void AdvancementRows::describe(Schema& s)
     s.param(gap_tolerance, "gap_tolerance", unit::metre, "a gap this small counts as closed; rounding of positions always does")
         .or_else(1e-12)
         .not_negative();
-    s.param(max_iterations, "max_iterations", unit::one, "steps towards one contact before giving up").or_else(1000).positive();
+    s.param(max_iterations, "max_iterations", unit::one, "steps towards one contact before giving up")
+        .or_else(1000)
+        .positive()
+        .at_most(1e6);
+    describe_work(s, max_work);
 }
 
 void advance_to_contact(const StepContext& context, Row row, const AdvancementRows& rows, Trial& trial)

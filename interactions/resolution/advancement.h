@@ -16,6 +16,7 @@ namespace plab::resolution
 struct AdvancementRows
 {
     Column<double> gap_tolerance;         // m
+    Column<double> max_work;              // 1
     Column<std::int64_t> max_iterations;  // steps
 
     void describe(Schema& schema);

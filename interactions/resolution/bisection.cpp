@@ -1,6 +1,7 @@
 #include "bisection.h"
 
 #include "bracket.h"
+#include "plab/number_text.h"
 
 namespace plab::resolution
 {
@@ -13,7 +14,8 @@ void BisectionRows::describe(Schema& s)
             "length of the bracket at which the time counts as found; never less than 2^-48 of the step")
         .or_else(1e-15)
         .not_negative();
-    s.param(max_iterations, "max_iterations", unit::one, "trials per impact before giving up").or_else(60).positive();
+    s.param(max_iterations, "max_iterations", unit::one, "trials per impact before giving up").or_else(60).positive().at_most(1e6);
+    describe_work(s, max_work);
 }
 
 void bisect(const StepContext& context, Row row, const BisectionRows& rows, Trial& trial)
@@ -31,7 +33,7 @@ void bisect(const StepContext& context, Row row, const BisectionRows& rows, Tria
     }
     trial.decision = Trial::Decision::GiveUp;
     context.emit(row, "resolution.gave_up", Severity::Warning,
-                 "the time of impact is known only to " + std::to_string(length / trial.step) + " of the step after " +
+                 "the time of impact is known only to " + rounded_text(length / trial.step) + " of the step after " +
                      std::to_string(trial.iteration) + " trials; allow more max_iterations or a larger time_tolerance",
                  {trial.begin, trial.end});
 }

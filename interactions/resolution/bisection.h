@@ -19,6 +19,7 @@ void accept_end(const StepContext& context, Row row, const NoneRows& rows, Trial
 struct BisectionRows
 {
     Column<double> time_tolerance;        // s
+    Column<double> max_work;              // 1
     Column<std::int64_t> max_iterations;  // trials
 
     void describe(Schema& schema);

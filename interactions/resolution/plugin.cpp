@@ -11,7 +11,7 @@ PLAB_PLUGIN("resolution", registrar)
     registrar.component<NoneRows>("Resolution/None", "answers an impact at the end of the step in which it is seen")
         .command<accept_end>(Phase::Locate, "Resolution/Locate", "takes the end of the step")
         .accuracy("times of impact to one step: order 1")
-        .strengths("the cheapest; enough where contacts stay")
+        .strengths("nothing is searched for: enough where contacts stay")
         .cost("nothing")
         .limits("bodies overlap by up to speed x step when they meet, or pass through one another; times of impact are right to one step")
         .source("time stepping without location of events; the lowest rung, to compare with");

@@ -16,7 +16,9 @@ void RootRows::describe(Schema& s)
         .not_negative();
     s.param(max_iterations, "max_iterations", unit::one, "looks at one pair in one piece of a step before giving up")
         .or_else(1000)
-        .positive();
+        .positive()
+        .at_most(1e6);
+    describe_work(s, max_work);
 }
 
 double hermite_zero(double t0, double g0, double r0, double t1, double g1, double r1)

@@ -17,6 +17,7 @@ namespace plab::resolution
 struct RootRows
 {
     Column<double> time_tolerance;        // s
+    Column<double> max_work;              // 1
     Column<std::int64_t> max_iterations;  // looks
 
     void describe(Schema& schema);

@@ -143,10 +143,10 @@ Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, con
     return {stick.x * share, stick.y * share, normal};
 }
 
-ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double tolerance, int max_sweeps)
+ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double tolerance, int max_sweeps, const Interruption* interruption)
 {
     ConeResult out;
-    while (out.sweeps < max_sweeps && !out.converged)
+    while (out.sweeps < max_sweeps && !out.converged && !(interruption && interruption->due()))
     {
         ++out.sweeps;
         double largest = 0;

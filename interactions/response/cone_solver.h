@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "contact_point.h"
+#include "plab/interruption.h"
 
 namespace plab::response
 {
@@ -34,7 +35,8 @@ struct ConeResult
 Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, const Vec3& last = {});
 
 /// Changes the velocities in `bodies`. Ends when no impulse changes its contact's velocity by more than `tolerance`
-/// (m/s).
-ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double tolerance, int max_sweeps);
+/// (m/s), or when the step is given up.
+ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double tolerance, int max_sweeps,
+                       const Interruption* interruption = nullptr);
 
 }  // namespace plab::response

@@ -208,7 +208,7 @@ double ImpactSequence::try_at_once(double share)
         work_.before.push_back(u);
         work_.cones.push_back({&work_.points[h.contact], contacts_[h.contact].friction, u.z < 0 ? -share * h.restitution * u.z : 0.0, {}});
     }
-    spent_ += solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations).sweeps;
+    spent_ += solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps;
     double gain = 0, size = 0;
     for (std::size_t k = 0; k < work_.cones.size(); ++k)
     {
@@ -227,7 +227,7 @@ void ImpactSequence::run(Impact& impact)
     const std::int64_t budget = settings_.max_iterations * static_cast<std::int64_t>(std::max<std::size_t>(1, work_.patches.size()));
     bool plastic = false;
     double hardest = 0;  // m/s
-    for (impact.iterations = 0; spent_ < budget; ++impact.iterations)
+    for (impact.iterations = 0; spent_ < budget && !(settings_.interruption && settings_.interruption->due()); ++impact.iterations)
     {
         std::uint32_t next = kNoIndex;
         double fastest = threshold_;

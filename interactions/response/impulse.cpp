@@ -21,7 +21,7 @@ void ImpulseRows::describe(Schema& s)
         .or_else(1e-9)
         .not_negative();
     s.param(tolerance, "tolerance", unit::metre_per_second, "closing speed that may be left").or_else(1e-12).positive();
-    s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(500).positive();
+    s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(500).positive().at_most(1e6);
     s.output(residual, "residual", unit::metre_per_second, "largest closing speed left in this step").reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps and single impacts in this step");
     s.scratch(workspace, "workspace", "working memory");
@@ -31,7 +31,7 @@ void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bod
 {
     Workspace& work = rows.workspace[row];
     const ImpactSettings settings{rows.rest_height[row], rows.rest_speed[row], rows.tolerance[row],
-                                  static_cast<int>(std::min<std::int64_t>(rows.max_iterations[row], 1'000'000))};
+                                  static_cast<int>(std::min<std::int64_t>(rows.max_iterations[row], 1'000'000)), context.interruption};
     if (impact.mode == ImpactMode::Impact)
         respond_impact(settings, work, bodies, impact);
     else

@@ -74,6 +74,7 @@ struct ImpactSettings
 {
     double rest_height = 0, rest_speed = 0, tolerance = 0;
     int max_iterations = 0;
+    const Interruption* interruption = nullptr;  ///< asked in each sweep
 };
 /// Bodies meet: see README, "impacts".
 void respond_impact(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact);

@@ -67,7 +67,7 @@ void SurfaceColumns::describe(Schema& s)
     s.param(restitution, "restitution", unit::one,
             "share of the approach speed that a single central contact gives back, where no Material/Pair says otherwise; 1: no "
             "damping on its account")
-        .or_else(1)
+        .or_else(0)
         .not_negative()
         .at_most(1);
     s.param(tangential_ratio, "tangential_ratio", unit::one, "stiffness of the stiction spring over the stiffness across the surface")
@@ -80,8 +80,9 @@ void SurfaceColumns::describe(Schema& s)
             "steps of the solver in the time of one contact, pi / (its fastest rate): the step is cut into as many as that takes, "
             "while something touches")
         .or_else(200)
-        .at_least(4);
-    s.param(max_substeps, "max_substeps", unit::one, "pieces into which one step may be cut").or_else(20000).positive();
+        .at_least(4)
+        .at_most(10000);
+    s.param(max_substeps, "max_substeps", unit::one, "pieces into which one step may be cut").or_else(20000).positive().at_most(1e6);
     s.output(stored, "stored", unit::joule, "energy in the springs at the end of the step");
     s.output(force, "force", unit::newton, "sum of the normal forces at the end of the step");
     s.output(penetration, "penetration", unit::metre, "deepest overlap that pushes, at the end of the step").reported_as_error();

@@ -33,10 +33,10 @@ void take_back(std::span<ConeContact> cones, Bodies& bodies)
 /// left energy behind, from nothing: then each sweep only takes energy away.
 ConeResult solve_without_gain(const ImpactSettings& settings, Workspace& work, Bodies& bodies)
 {
-    const ConeResult warm = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations);
+    const ConeResult warm = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations, settings.interruption);
     if (warm.converged || energy_gained(work.cones, work.before, bodies) == 0) return warm;
     take_back(work.cones, bodies);
-    ConeResult cold = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations);
+    ConeResult cold = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations, settings.interruption);
     cold.sweeps += warm.sweeps;
     return cold;
 }

@@ -12,7 +12,7 @@ void ScriptRows::describe(Schema& s)
     s.param(instruction_budget, "instruction_budget", unit::one, "instructions that one call may take")
         .or_else(100'000)
         .at_least(100)
-        .at_most(1e12);
+        .at_most(1e10);
     s.param(memory_limit, "memory_limit", unit::one, "bytes that the script may hold").or_else(4 << 20).at_least(64 << 10).at_most(1 << 30);
     s.state(state, "state", unit::one, "named values that live across steps; read and written as state.name");
     s.state(random_state, "random_state", unit::one, "state of math.random; 0 takes one from seed and component");
@@ -24,7 +24,8 @@ void ScriptRows::describe(Schema& s)
     s.role(between, "between", {Facet::Body, Facet::Shaft, Facet::Quantities}, "take forces or rates, as between[i] in the order of ids")
         .optional()
         .writes();
-    s.scratch(machine, "machine", "the Lua state; made from the fields above by Script/Prepare");
+    // The reference prints what a machine offers behind the tables of fields (scratch fields themselves are not listed).
+    s.scratch(machine, "machine", manual());
 }
 
 namespace

@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "blueprint/writer.h"
+#include "model/measured_costs.h"
+#include "model/text.h"
 #include "model/type_summary.h"
 #include "model/values.h"
 
@@ -97,9 +99,29 @@ std::string facts_of(const TypeInfo& info)
     fact("accuracy", info.accuracy);
     fact("good for", info.strengths);
     fact("cost", info.cost);
+    fact("measured, a step", model::measured_cost_of(info.name));
     fact("limits", info.limits);
     fact("source", info.source);
     return out;
+}
+
+/// What a type's opaque part offers, where its declaration says so in a section of its own: an interface that is no field, role or
+/// command.
+std::string manual_of(const Schema& schema)
+{
+    std::string out;
+    for (const Field& f : schema.fields())
+        if (f.kind == FieldKind::Scratch && f.doc.starts_with("\n#### ")) out += f.doc;
+    return out;
+}
+
+std::string reference_of(model::TypeSource& types, const std::string& name)
+{
+    const std::string title = "### " + name + "\n\n";
+    const auto type = types.require(name);
+    if (!type) return title + "Cannot be loaded: " + type.error().text() + "\n";
+    const model::ComponentType& t = **type;
+    return title + t.info.doc + "\n\n" + facts_of(t.info) + roles_of(t.schema) + fields_of(t.schema) + commands_of(t.info) + manual_of(t.schema);
 }
 
 }  // namespace
@@ -111,17 +133,24 @@ std::string write_reference(model::TypeSource& types)
     for (const std::string& name : types.names())
     {
         if (const std::string its = name.substr(0, name.find('/')); its != kind) out += "\n## " + (kind = its) + "\n";
-        out += "\n### " + name + "\n\n";
-        const auto type = types.require(name);
-        if (!type)
-        {
-            out += "Cannot be loaded: " + type.error().text() + "\n";
-            continue;
-        }
-        const model::ComponentType& t = **type;
-        out += t.info.doc + "\n\n" + facts_of(t.info) + roles_of(t.schema) + fields_of(t.schema) + commands_of(t.info);
+        out += "\n" + reference_of(types, name);
     }
     return out;
+}
+
+Result<std::string> write_reference(model::TypeSource& types, const std::string& which)
+{
+    const std::vector<std::string> names = types.names();
+    const std::string kind = which.ends_with('/') ? which : which + "/";
+    std::string out;
+    for (const std::string& name : names)
+        if (name.starts_with(kind)) out += (out.empty() ? "" : "\n") + reference_of(types, name);
+    if (!out.empty()) return out;
+    auto name = model::full_type_name(which, names, {});
+    if (!name) return name.errors();
+    if (std::find(names.begin(), names.end(), *name) == names.end())
+        return reason("unknown type " + model::quoted(which) + model::did_you_mean(which, names));
+    return reference_of(types, *name);
 }
 
 }  // namespace plab::blueprint

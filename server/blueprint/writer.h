@@ -17,6 +17,8 @@ std::string write_long_form(const model::SceneSpec& scene, model::TypeSource& ty
 /// The reference manual of all types that `types` knows, in Markdown, by kind and name. A type that cannot be loaded
 /// stands there with the reason.
 std::string write_reference(model::TypeSource& types);
+/// The same of one type, which may be written short ("Rows"), or of all whose names begin with `which` ("Response").
+Result<std::string> write_reference(model::TypeSource& types, const std::string& which);
 
 /// Text for XML; characters that XML cannot hold become U+FFFD.
 std::string escape_text(std::string_view text);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "publish/observer.h"
 
@@ -18,6 +19,13 @@ struct BusOptions
     /// want to show where it stands). Called on a thread of the bus; must not wait.
     void (*wake)(void*) = nullptr;
     void* wake_argument = nullptr;
+    /// A client asks for the end of the server: the step thread, which may be at a step that takes long, learns it at once. Called on
+    /// a thread of the bus; the request itself comes by take().
+    void (*end)(void*) = nullptr;
+    void* end_argument = nullptr;
+    /// "" or what a step or trial that takes long is at, for the server's own topic. Asked on a thread of the bus. Null: nobody tells.
+    std::string (*busy)(void*) = nullptr;
+    void* busy_argument = nullptr;
     /// A line for the server's log about trouble on the bus, at most a few in a second. Called on a thread of the bus.
     /// Null: standard error.
     void (*log)(void*, const char* line) = nullptr;

@@ -27,7 +27,7 @@ void Presence::push(const publish::Status& status)
     ring_.end_push();
 }
 
-void Presence::send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble)
+void Presence::send(Clock::time_point now, std::span<const wire::Dropped> dropped, const std::string& busy, Trouble& trouble)
 {
     bool is_new = false;
     while (publish::Status* status = ring_.begin_pop())
@@ -37,6 +37,7 @@ void Presence::send(Clock::time_point now, std::span<const wire::Dropped> droppe
     }
     if (!status_ || (!is_new && now - written_ < kHeartbeat)) return;
     written_ = now;
+    status_->busy = busy;
     (void)trouble.check(wire::topic_of<plab_v2_Server>().name, writer_.write(sample_.of(identity_, *status_, dropped)));
 }
 

@@ -22,7 +22,8 @@ public:
     /// Step thread.
     void push(const publish::Status& status);
     /// The newest status if there is a new one, and the last one again when nobody heard of it for a second.
-    void send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble);
+    /// `busy`: what the step thread is at, where that takes long.
+    void send(Clock::time_point now, std::span<const wire::Dropped> dropped, const std::string& busy, Trouble& trouble);
     /// Until send() is due without a new status.
     Clock::duration due_in(Clock::time_point now) const;
     /// Why this server has to go, if it has: the first one keeps the name.

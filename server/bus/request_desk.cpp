@@ -49,7 +49,7 @@ RequestDesk::Received RequestDesk::receive(Clock::time_point now)
     Received received;
     const auto handle = [&](const plab_v2_Request& request, const dds_sample_info_t& info)
     {
-        if (info.valid_data) receive_one(request, now, received.any_new);
+        if (info.valid_data) receive_one(request, now, received);
     };
     const dds_return_t n = reader_.take(handle, kMostAtATime);
     (void)trouble_->check(wire::topic_of<plab_v2_Request>().name, n < 0 ? n : DDS_RETCODE_OK);
@@ -57,7 +57,7 @@ RequestDesk::Received RequestDesk::receive(Clock::time_point now)
     return received;
 }
 
-void RequestDesk::receive_one(const plab_v2_Request& request, Clock::time_point now, bool& any_new)
+void RequestDesk::receive_one(const plab_v2_Request& request, Clock::time_point now, Received& received)
 {
     auto text = read_request(request);
     const std::optional<Error> wrong = text ? std::nullopt : std::optional<Error>(text.error());
@@ -70,7 +70,8 @@ void RequestDesk::receive_one(const plab_v2_Request& request, Clock::time_point 
             text->arrived_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch()).count();
             requests_.begin_push() = text.take();
             requests_.end_push();
-            any_new = true;
+            received.any_new = true;
+            received.shutdown = received.shutdown || load.shutdown;
             break;
         case RequestBook::Verdict::Waiting:
             break;

@@ -26,6 +26,7 @@ public:
     struct Received
     {
         bool any_new = false;  ///< for the step thread
+        bool shutdown = false;  ///< one of them is to end the server
         bool more = false;     ///< not all has been read
     };
     Received receive(Clock::time_point now);
@@ -37,7 +38,7 @@ public:
     dds_entity_t writer() const { return writer_.entity().get(); }
 
 private:
-    void receive_one(const plab_v2_Request& request, Clock::time_point now, bool& any_new);
+    void receive_one(const plab_v2_Request& request, Clock::time_point now, Received& received);
 
     Trouble* trouble_;
     RequestBook book_;

@@ -37,7 +37,7 @@ bool ServerBus::pass()
     if (matched_.exchange(false, std::memory_order_acquire)) look_at_readers();
     send_catalogue();
     const std::vector<wire::Dropped> given_up = dropped();
-    presence_.send(now, given_up, trouble_);
+    presence_.send(now, given_up, options_.busy != nullptr ? options_.busy(options_.busy_argument) : std::string(), trouble_);
     desk_.retry(now);
     // The catalogue was handed over before the answer: whoever has the reply finds in it what the request did.
     while (desk_.next_answer()) send_catalogue(), desk_.send_answer(now);
@@ -55,6 +55,7 @@ bool ServerBus::receive(Clock::time_point now)
 {
     if (!arrived_.exchange(false, std::memory_order_acquire)) return false;
     const RequestDesk::Received received = desk_.receive(now);
+    if (received.shutdown && options_.end != nullptr) options_.end(options_.end_argument);
     if (received.any_new && options_.wake != nullptr) options_.wake(options_.wake_argument);
     if (received.more) arrived_.store(true, std::memory_order_relaxed);
     if (auto rival = presence_.look_for_rival(); rival && !is_lost_.load(std::memory_order_relaxed))

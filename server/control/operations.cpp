@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "blueprint/reader.h"
@@ -18,6 +19,13 @@ namespace
 using publish::OperationText;
 using simulation::Operation;
 
+/// What a scene that comes with a request is compiled with.
+struct Compiling
+{
+    model::TypeSource* types;
+    const model::CompileLimits* limits;
+};
+
 /// What a verb uses; whatever else is filled is a mistake of the client's, not to be passed over.
 struct Verb
 {
@@ -27,7 +35,7 @@ struct Verb
     bool argument_optional = false;
     bool blueprint = false;
     bool values = false;
-    Result<Operation> (*make)(const OperationText&, model::TypeSource&) = nullptr;
+    Result<Operation> (*make)(const OperationText&, const Compiling&) = nullptr;
 };
 
 std::vector<simulation::NamedValue> named_values(const OperationText& op)
@@ -64,26 +72,26 @@ Result<Vec3> parse_impulse(const std::string& text)
     return parse_vector(text, unit::newton_second);
 }
 
-Result<Operation> make_add(const OperationText& op, model::TypeSource&)
+Result<Operation> make_add(const OperationText& op, const Compiling&)
 {
     auto blueprint = blueprint::read_blueprint(op.blueprint, op.argument.empty() ? "request" : op.argument);
     if (!blueprint) return blueprint.errors();
     return Operation{simulation::AddBlueprintOperation{blueprint.take()}};
 }
-Result<Operation> make_load(const OperationText& op, model::TypeSource& types)
+Result<Operation> make_load(const OperationText& op, const Compiling& with)
 {
     auto blueprint = blueprint::read_blueprint(op.blueprint, op.argument.empty() ? "request" : op.argument);
     if (!blueprint) return blueprint.errors();
-    auto scene = model::compile(*blueprint, types);
+    auto scene = model::compile(*blueprint, *with.types, nullptr, *with.limits);
     if (!scene) return scene.errors();
     return Operation{simulation::LoadOperation{scene.take()}};
 }
-Result<Operation> make_remove(const OperationText& op, model::TypeSource&) { return Operation{simulation::RemoveOperation{op.target}}; }
-Result<Operation> make_swap(const OperationText& op, model::TypeSource&)
+Result<Operation> make_remove(const OperationText& op, const Compiling&) { return Operation{simulation::RemoveOperation{op.target}}; }
+Result<Operation> make_swap(const OperationText& op, const Compiling&)
 {
     return Operation{simulation::SwapOperation{op.target, op.argument, named_values(op)}};
 }
-Result<Operation> make_push(const OperationText& op, model::TypeSource&)
+Result<Operation> make_push(const OperationText& op, const Compiling&)
 {
     simulation::PushOperation push{op.target, {}, {}};
     bool given = false;
@@ -101,10 +109,10 @@ Result<Operation> make_push(const OperationText& op, model::TypeSource&)
     if (!given) return reason("needs the value impulse: three numbers in N s, or one in N m s for a shaft");
     return Operation{push};
 }
-Result<Operation> make_pause(const OperationText&, model::TypeSource&) { return Operation{simulation::PauseOperation{}}; }
-Result<Operation> make_resume(const OperationText&, model::TypeSource&) { return Operation{simulation::ResumeOperation{}}; }
-Result<Operation> make_reset(const OperationText&, model::TypeSource&) { return Operation{simulation::ResetOperation{}}; }
-Result<Operation> make_step(const OperationText& op, model::TypeSource&)
+Result<Operation> make_pause(const OperationText&, const Compiling&) { return Operation{simulation::PauseOperation{}}; }
+Result<Operation> make_resume(const OperationText&, const Compiling&) { return Operation{simulation::ResumeOperation{}}; }
+Result<Operation> make_reset(const OperationText&, const Compiling&) { return Operation{simulation::ResetOperation{}}; }
+Result<Operation> make_step(const OperationText& op, const Compiling&)
 {
     std::int64_t steps = 0;
     const char* const end = op.argument.data() + op.argument.size();
@@ -112,28 +120,28 @@ Result<Operation> make_step(const OperationText& op, model::TypeSource&)
     if (error != std::errc() || stop != end || steps < 1) return reason("'" + op.argument + "' is no number of steps: 1 or more");
     return Operation{simulation::StepOperation{steps}};
 }
-Result<Operation> make_rate(const OperationText& op, model::TypeSource&)
+Result<Operation> make_rate(const OperationText& op, const Compiling&)
 {
     auto factor = parse_rate(op.argument);
     if (!factor) return factor.errors();
     return Operation{simulation::RateOperation{*factor}};
 }
-Result<Operation> make_dt(const OperationText& op, model::TypeSource&)
+Result<Operation> make_dt(const OperationText& op, const Compiling&)
 {
     auto dt = model::parse_step_length(op.argument);
     if (!dt) return dt.errors();
     return Operation{simulation::StepLengthOperation{*dt}};
 }
-Result<Operation> make_snapshot(const OperationText& op, model::TypeSource&)
+Result<Operation> make_snapshot(const OperationText& op, const Compiling&)
 {
     if (!is_snapshot_name(op.target))
         return reason("'" + op.target.substr(0, 64) + "' is no name of a snapshot: 1 to 64 letters, digits, '.', '_' or '-'");
     return Operation{simulation::SnapshotOperation{op.target}};
 }
-Result<Operation> make_restore(const OperationText& op, model::TypeSource&) { return Operation{simulation::RestoreOperation{op.target}}; }
-Result<Operation> make_forget(const OperationText& op, model::TypeSource&) { return Operation{simulation::ForgetOperation{op.target}}; }
+Result<Operation> make_restore(const OperationText& op, const Compiling&) { return Operation{simulation::RestoreOperation{op.target}}; }
+Result<Operation> make_forget(const OperationText& op, const Compiling&) { return Operation{simulation::ForgetOperation{op.target}}; }
 /// "2.5 s" is a time of the run, "back 2.5 s" counts back from now.
-Result<Operation> make_rewind(const OperationText& op, model::TypeSource&)
+Result<Operation> make_rewind(const OperationText& op, const Compiling&)
 {
     constexpr std::string_view kBack = "back ";
     const bool back = op.argument.starts_with(kBack);
@@ -147,9 +155,9 @@ Result<Operation> make_rewind(const OperationText& op, model::TypeSource&)
     return Operation{simulation::RewindOperation{time, back}};
 }
 /// Only a place in the table: set makes one operation of each value, shutdown none.
-Result<Operation> make_nothing(const OperationText&, model::TypeSource&) { return reason("is no operation"); }
+Result<Operation> make_nothing(const OperationText&, const Compiling&) { return reason("is no operation"); }
 
-constexpr std::array<Verb, 17> kVerbs{{
+constexpr std::array<Verb, 20> kVerbs{{
     {"add", "", "the file's name for messages", true, true, false, &make_add},
     {"remove", "the component", "", false, false, false, &make_remove},
     {"swap", "the component", "the new type", false, false, true, &make_swap},
@@ -167,6 +175,9 @@ constexpr std::array<Verb, 17> kVerbs{{
     {"forget", "the snapshot's name", "", false, false, false, &make_forget},
     {"rewind", "", "a time of the run, or back and how far", false, false, false, &make_rewind},
     {"shutdown", "", "", false, false, false, &make_nothing},
+    {"trial", "", "none, a time in ms, and or refuse", false, false, false, &make_nothing},
+    {"energy", "", "a factor, or any", false, false, false, &make_nothing},
+    {"cancel", "", "a request: client:number", false, false, false, &make_nothing},
 }};
 
 const Verb* find_verb(const std::string& name)
@@ -206,7 +217,31 @@ std::string given_too_little(const Verb& verb, const OperationText& op)
     return {};
 }
 
-Result<void> append(const OperationText& op, model::TypeSource& types, Wanted& out)
+/// trial and energy change nothing themselves: they say how the request they stand in is proved.
+Result<void> choose_proof(const OperationText& op, simulation::TrialChoice& choice)
+{
+    if (op.verb == "trial")
+    {
+        auto trial = parse_trial(op.argument);
+        if (!trial) return trial.errors();
+        choice.budget = trial->budget, choice.ns = trial->ns, choice.must = trial->must;
+        return {};
+    }
+    if (op.argument == "any")
+    {
+        choice.energy_factor = std::numeric_limits<double>::infinity();
+        return {};
+    }
+    Field field;
+    field.type = FieldType::Real;
+    auto factor = model::parse_value(op.argument, field);
+    if (!factor) return factor.errors();
+    choice.energy_factor = std::get<double>(*factor);
+    if (!(choice.energy_factor >= 1)) return reason("'" + op.argument + "' is no factor of the energy: 1 or more, or any");
+    return {};
+}
+
+Result<void> append(const OperationText& op, const Compiling& with, Wanted& out)
 {
     const Verb* verb = find_verb(op.verb);
     if (!verb) return unknown_verb(op.verb);
@@ -217,18 +252,83 @@ Result<void> append(const OperationText& op, model::TypeSource& types, Wanted& o
         out.shutdown = true;
         return {};
     }
+    if (op.verb == "trial" || op.verb == "energy") return choose_proof(op, out.request.trial);
+    if (op.verb == "cancel")
+    {
+        auto name = parse_request_name(op.argument);
+        if (!name) return name.errors();
+        out.cancel = *name;
+        return {};
+    }
     if (op.verb == "set")
     {
         for (const auto& [name, text] : op.values) out.request.operations.push_back(simulation::SetOperation{op.target, name, text});
         return {};
     }
-    auto made = verb->make(op, types);
+    auto made = verb->make(op, with);
     if (!made) return made.errors();
     out.request.operations.push_back(made.take());
     return {};
 }
 
 }  // namespace
+
+Result<simulation::TrialChoice> parse_trial(const std::string& text)
+{
+    using Budget = simulation::TrialChoice::Budget;
+    constexpr std::string_view kRefuse = "or refuse";
+    simulation::TrialChoice out;
+    out.budget = Budget::Automatic;
+    std::string_view time = text;
+    if (time.ends_with(kRefuse))
+    {
+        out.must = true;
+        time.remove_suffix(kRefuse.size());
+    }
+    while (time.ends_with(' ')) time.remove_suffix(1);
+    if (time.empty() && out.must) return out;
+    if (time == "none" && !out.must)
+    {
+        out.budget = Budget::None;
+        return out;
+    }
+    if (time == "unlimited" && !out.must)
+    {
+        out.budget = Budget::Unlimited;
+        return out;
+    }
+    constexpr double kMost = 1e9;  // ms
+    double ms = 0;
+    std::string_view number = time;
+    if (number.ends_with("ms")) number.remove_suffix(2);
+    while (number.ends_with(' ')) number.remove_suffix(1);
+    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), ms);
+    if (error != std::errc() || stop != number.data() + number.size() || !(ms > 0) || !(ms <= kMost))
+        return reason("'" + text.substr(0, 64) + "' is no budget of a trial: none, unlimited, or a time in ms, with 'or refuse' behind it where it has to be proved");
+    out.budget = Budget::Given, out.ns = 1e6 * ms;
+    return out;
+}
+
+Result<Wanted::Cancelled> parse_request_name(const std::string& text)
+{
+    Wanted::Cancelled out;
+    const std::size_t digits = 2 * out.client.size();
+    bool fine = text.size() > digits + 1 && text[digits] == ':';
+    for (std::size_t i = 0; fine && i < out.client.size(); ++i)
+    {
+        const char* const from = text.data() + 2 * i;
+        const auto [stop, error] = std::from_chars(from, from + 2, out.client[i], 16);
+        fine = error == std::errc() && stop == from + 2;
+    }
+    if (fine)
+    {
+        const char* const end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data() + digits + 1, end, out.number);
+        fine = error == std::errc() && stop == end && out.number > 0;
+    }
+    if (!fine) return reason("'" + text.substr(0, 64) + "' names no request: 32 hexadecimal digits of the client, ':', and the number");
+    return out;
+}
 
 Description description_of(const simulation::Operation& operation)
 {
@@ -309,13 +409,15 @@ Result<double> parse_rate(const std::string& text)
     return factor;
 }
 
-Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types)
+Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types, const model::CompileLimits& limits)
 {
     Wanted out;
+    // Whoever asks on the bus asks a loop that others watch: a trial may not hold it up for long.
+    out.request.trial.budget = simulation::TrialChoice::Budget::Automatic;
     Errors errors;
     for (std::size_t i = 0; i < text.operations.size(); ++i)
     {
-        auto done = append(text.operations[i], types, out);
+        auto done = append(text.operations[i], {&types, &limits}, out);
         if (done) continue;
         for (Error e : done.errors())
         {
@@ -329,6 +431,8 @@ Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& ty
     if (errors.empty() && out.shutdown && text.operations.size() > 1) errors.push_back(reason("shutdown stands alone in a request"));
     if (errors.empty() && out.shutdown && (text.at >= 0 || text.revision >= 0))
         errors.push_back(reason("shutdown takes effect at once: it names no step and no revision"));
+    if (errors.empty() && out.cancel && (text.operations.size() > 1 || text.at >= 0 || text.revision >= 0))
+        errors.push_back(reason("cancel stands alone in a request, and takes effect at once: it names no step and no revision"));
     if (!errors.empty()) return errors;
     if (text.at >= 0) out.request.at = text.at;
     if (text.revision >= 0) out.request.revision = static_cast<std::uint64_t>(text.revision);

@@ -1,7 +1,9 @@
 /// Requests in words, as clients send them, turned into operations. The words are described in server/docs/requests.md.
 #pragma once
 
-#include "model/type_registry.h"
+#include <optional>
+
+#include "model/compile.h"
 #include "publish/records.h"
 #include "simulation/requests/requests.h"
 
@@ -12,12 +14,18 @@ struct Wanted
 {
     simulation::Request request;  ///< without id
     bool shutdown = false;        ///< the server is to end; then there are no operations
+    struct Cancelled
+    {
+        publish::ClientId client{};
+        std::uint64_t number = 0;
+    };
+    std::optional<Cancelled> cancel;  ///< a request that waits is taken back; then there are no operations
 };
 
 /// Checks words, names and numbers that need no scene; the rest is checked when the request takes effect. A <plab> that
 /// is loaded is compiled here (its plugins are loaded), one that is added when the request takes effect.
 /// Each error names the operation: "operation 2 (swap): needs an argument: the new type".
-Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types);
+Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types, const model::CompileLimits& limits = {});
 
 /// An operation in words again, for log lines and events.
 struct Description
@@ -31,6 +39,12 @@ publish::OperationText text_of(const simulation::Operation& operation);
 
 /// reset, load, restore, rewind.
 bool begins_a_run(const std::vector<publish::OperationText>& operations);
+
+/// "none", "20 ms", "20 ms or refuse", "or refuse", "unlimited": how a swap is proved.
+Result<simulation::TrialChoice> parse_trial(const std::string& text);
+
+/// "3f..00:7", 32 hexadecimal digits and a number: which request of which client.
+Result<Wanted::Cancelled> parse_request_name(const std::string& text);
 
 /// "real" (1), "max" (0), or a factor of real time from 1e-6 to 1e9.
 Result<double> parse_rate(const std::string& text);

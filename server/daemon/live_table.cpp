@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 
+#include "publish/error_probe.h"
 #include "publish/figures.h"
 
 namespace plab::daemon
@@ -50,15 +52,17 @@ std::string objects_text(const world::World& world)
 
 std::string interactions_text(const simulation::Simulation& s)
 {
-    std::string out = line_of("%-26s %-34s %16s  %s\n", "interactions", "algorithm", "cost per step", "error");
-    const std::vector<double> costs = publish::cost_of_rows(s);
+    std::string out = line_of("%-26s %-34s %16s  %-10s %s\n", "interactions", "algorithm", "cost per step", "error", "unit");
+    const publish::Costs costs(s);
     std::size_t rows = 0;
     for (const std::uint32_t i : s.world().in_id_order())
     {
         if (!publish::is_interaction(s.world().component(i)) || ++rows > kRows) continue;
         const world::Component& c = s.world().component(i);
-        out += line_of("  %-24.24s %-34.34s %13.0f ns  %.2e%s\n", c.id.c_str(), s.world().type_of(i)->info.name.c_str(),
-                       publish::cost_of(costs, c), s.error_of(i), c.quarantined ? "  quarantined" : "");
+        const publish::ErrorFigure error = publish::own_error(s, i);
+        out += line_of("  %-24.24s %-34.34s %13.0f ns  %-10s %s%s\n", c.id.c_str(), s.world().type_of(i)->info.name.c_str(),
+                       costs.of(i).last.median,
+                       std::isnan(error.value) ? "-" : line_of("%.2e", error.value).c_str(), error.unit.c_str(), c.quarantined ? "  quarantined" : "");
     }
     return out + more_text(rows);
 }
@@ -124,8 +128,20 @@ void LiveTable::show(const simulation::Simulation& s, bool last)
     if (!lines_.empty()) text += "latest events\n";
     for (const std::string& line : lines_) text += "  " + line + "\n";
     if (terminal_ && !footer_.empty()) text += footer_ + "\n";
+    const std::lock_guard lock(output_);
     if (terminal_) std::fputs("\x1b[H\x1b[J", stdout);
     std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+}
+
+void LiveTable::show_busy(const publish::Busy& busy)
+{
+    const auto now = std::chrono::steady_clock::now();
+    constexpr std::chrono::seconds kEvery(1);  // what is no terminal keeps each line
+    if (!wanted_ || (!terminal_ && now - busy_shown_ < kEvery)) return;
+    busy_shown_ = now;
+    const std::lock_guard lock(output_);
+    std::printf(terminal_ ? "\r\x1b[K%s" : "%s\n", ("in work: " + publish::text_of(busy)).c_str());
     std::fflush(stdout);
 }
 

@@ -3,8 +3,10 @@
 
 #include <chrono>
 #include <deque>
+#include <mutex>
 #include <string>
 
+#include "publish/busy.h"
 #include "simulation/simulation.h"
 
 namespace plab::daemon
@@ -19,11 +21,15 @@ public:
     void note(const simulation::Simulation& simulation);
     void note(std::string line);
     void show(const simulation::Simulation& simulation, bool last = false);
+    /// While a step is in work, from another thread: what it is at.
+    void show_busy(const publish::Busy& busy);
 
 private:
+    std::mutex output_;  ///< one writes at a time
     bool wanted_, terminal_;
     std::string footer_;
     std::chrono::steady_clock::time_point shown_{};
+    std::chrono::steady_clock::time_point busy_shown_{};
     double next_ = 0;
     Tick shown_tick_ = -1;
     std::deque<std::string> lines_;

@@ -2,9 +2,6 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <atomic>
-#include <csignal>
-
 #include "blueprint/reader.h"
 #include "blueprint/writer.h"
 #include "daemon/explain.h"
@@ -14,23 +11,15 @@
 #include "daemon/shadow.h"
 #include "model/compile.h"
 #include "plugins/library.h"
+#include "program/interruption.h"
 #include "simulation/snapshot/history.h"
 
 namespace
 {
 
-std::atomic<bool> stop{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
-
-// The loop sleeps: a signal must wake it. Writing to an eventfd is allowed in a handler.
-std::atomic<const plab::daemon::Wake*> sleeper{nullptr};
-static_assert(std::atomic<const plab::daemon::Wake*>::is_always_lock_free);
-
-extern "C" void on_signal(int)
-{
-    stop = true;
-    if (const plab::daemon::Wake* wake = sleeper) wake->wake();
-}
+/// What is in work when a signal comes: a step, a trial, the way back to an earlier time.
+plab::Interruption work;
+void interrupt_work() { work.ask(plab::daemon::kGrace); }
 
 int fail(const plab::Errors& errors)
 {
@@ -43,13 +32,17 @@ int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLib
 {
     auto wake = plab::daemon::Wake::make();
     if (!wake) return fail(wake.errors());
-    sleeper = &*wake;
+    // Until here a signal ends the process as usual: there is nothing yet to end in order.
+    plab::program::call_on_signal(interrupt_work);
+    plab::program::catch_signals();
+    plab::program::wake_on_signal(wake->descriptor());
+    simulation.obey(&work);
     int code = 0;
     {
         plab::daemon::Service service(simulation, library, options);
         if (options.bus)
         {
-            if (auto opened = service.open_bus(options, *wake); !opened) return fail(opened.errors());
+            if (auto opened = service.open_bus(options, *wake, work); !opened) return fail(opened.errors());
             const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
             spdlog::info("server '{}' in domain {}, {}; ready after {:.1f} ms", options.name, options.domain,
                          options.network_interface.empty() ? "this host only" : "interface " + options.network_interface, took.count());
@@ -59,9 +52,9 @@ int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLib
         if (!options.record.file.empty())
             if (auto opened = service.open_recording(options); !opened) return fail(opened.errors());
         if (auto taken = service.take_over(waiting); !taken) return fail(taken.errors());
-        code = plab::daemon::run(simulation, service, options, *wake, stop);
+        code = plab::daemon::run(simulation, service, options, *wake, plab::program::interruption());
     }
-    sleeper = nullptr;
+    plab::program::wake_on_signal(-1);
     return code;
 }
 
@@ -71,6 +64,7 @@ int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::Options& op
     auto snapshot = plab::daemon::read_snapshot(options.load, library);
     if (!snapshot) return fail(snapshot.errors());
     plab::simulation::Simulation simulation(library, options.threads);
+    simulation.limit(plab::daemon::limits_of(options));
     simulation.history().configure(plab::daemon::history_of(options));
     if (auto restored = simulation.restore(snapshot->snapshot); !restored) return fail(restored.errors());
     if (options.until >= 0 && options.until < simulation.time() - 0.5 * simulation.dt())
@@ -89,17 +83,26 @@ int carry_out(const plab::daemon::Options& options)
     for (const plab::Error& e : library.problems()) spdlog::warn("{}", e.text());
     if (options.task == plab::daemon::Task::Reference)
     {
-        std::fputs(plab::blueprint::write_reference(library).c_str(), stdout);
+        const auto text = options.reference.empty() ? plab::Result<std::string>(plab::blueprint::write_reference(library))
+                                                    : plab::blueprint::write_reference(library, options.reference);
+        if (!text) return fail(text.errors());
+        std::fputs(text->c_str(), stdout);
         return 0;
     }
-    if (options.task == plab::daemon::Task::Replay) return plab::daemon::replay_recording(library, options, stop);
-    if (options.task == plab::daemon::Task::Shadow) return plab::daemon::run_shadow(library, options, stop);
+    if (options.task == plab::daemon::Task::Replay || options.task == plab::daemon::Task::Shadow)
+    {
+        plab::program::call_on_signal(interrupt_work);
+        const std::atomic<bool>& stop = plab::program::interruption();
+        return options.task == plab::daemon::Task::Replay ? plab::daemon::replay_recording(library, options, stop, work)
+                                                          : plab::daemon::run_shadow(library, options, stop, work);
+    }
     if (!options.load.empty()) return go_on(library, options, start);
     auto blueprint = plab::blueprint::read_blueprint_file(options.scene);
     if (!blueprint) return fail(blueprint.errors());
-    auto scene = plab::model::compile(*blueprint, library);
+    auto scene = plab::model::compile(*blueprint, library, nullptr, plab::daemon::limits_of(options));
     if (!scene) return fail(scene.errors());
     plab::simulation::Simulation simulation(library, options.threads);
+    simulation.limit(plab::daemon::limits_of(options));
     simulation.history().configure(plab::daemon::history_of(options));
     if (auto loaded = simulation.load(*scene); !loaded) return fail(loaded.errors());
     switch (options.task)
@@ -133,10 +136,6 @@ int main(int argc, char** argv)
     spdlog::set_default_logger(spdlog::stderr_color_mt("plabd"));
     spdlog::set_pattern("%^%l%$ %v");
     spdlog::set_level(spdlog::level::from_str(options.log_level));
-    std::signal(SIGINT, on_signal);
-    std::signal(SIGTERM, on_signal);
-    std::signal(SIGHUP, on_signal);  // the terminal has gone
-    std::signal(SIGPIPE, SIG_IGN);   // whoever read the table has gone; the run goes on
-    std::signal(SIGXFSZ, SIG_IGN);   // a file at its limit is an error of that file, not of the run
+    plab::program::ignore_write_signals();  // whoever read the table has gone, a file is at its limit: the run goes on
     return carry_out(options);
 }

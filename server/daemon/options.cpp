@@ -102,6 +102,8 @@ void add_past_options(CLI::App& app, Options& o)
         ->check(&not_seconds, "")
         ->group(group);
     app.add_option("--replay", o.replay.file, "make the runs in the recording FILE again")->type_name("FILE")->group(group);
+    app.add_flag("--progress", o.progress, "with --replay, --shadow: a line every five seconds, also where standard error is no terminal")
+        ->group(group);
     app.add_flag("--verify", o.replay.verify, "with --replay: compare the state's hash after each step")->group(group);
     app.add_option("--from", o.replay.from, "with --replay: begin at the last snapshot at or before this step")->group(group);
     app.add_option("--run", o.replay.run, "with --replay: only this run of the recording")->group(group);
@@ -168,6 +170,13 @@ std::string take_past_options(const CLI::App& app, const std::string& states, Op
 
 }  // namespace
 
+model::CompileLimits limits_of(const Options& options)
+{
+    model::CompileLimits limits;
+    limits.components = options.max_components, limits.raised_by = "--max-components N";
+    return limits;
+}
+
 Result<ScheduledOperation> parse_swap(const std::string& text)
 {
     std::string_view rest = text;
@@ -207,6 +216,13 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     app.add_option("--trace", options.trace, "write the course as CSV to FILE")->type_name("FILE");
     app.add_option("--every", options.every, "simulated seconds between rows of --trace; default: each step")->check(&not_seconds, "");
     app.add_option("--threads", options.threads, "threads that step; the result is the same for any number")->check(CLI::Range(1, 256));
+    app.add_option("--max-components", options.max_components, "components that a scene may have, generated ones among them")
+        ->check(CLI::Range(1, 100'000'000))
+        ->capture_default_str();
+    app.add_option("--errors", options.error_share,
+                   "share of the time that shadow steps may take, which measure errors while somebody watches metrics; 0: none")
+        ->check(CLI::Range(0.0, 0.5))
+        ->capture_default_str();
     app.add_option("--log-level", options.log_level, "what goes to standard error")
         ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
     app.add_flag("--table", options.table, "show a live table of the scene's course");
@@ -219,11 +235,13 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
         ->take_all()
         ->allow_extra_args(false);
     app.add_option("--set", sets, "[STEP:]ID.name=value: set a parameter or state (may be repeated)")->take_all()->allow_extra_args(false);
-    bool check = false, expand = false, explain = false, reference = false;
+    bool check = false, expand = false, explain = false;
     app.add_flag("--check", check, "only check the blueprint");
     app.add_flag("--expand", expand, "print the long form of the blueprint");
     app.add_flag("--explain", explain, "print what is loaded, resolved and left out, and why");
-    app.add_flag("--reference", reference, "print the reference of all component types");
+    app.add_option("--reference", options.reference, "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
+        ->expected(0, 1)
+        ->type_name("[TYPE]");
     app.add_flag("--paused", options.paused, "wait before the first step until a client says resume or step");
     bool no_bus = false;
     std::string states;
@@ -241,6 +259,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
         const int code = app.exit(e, out, err);
         return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
     }
+    const bool reference = app.count("--reference") > 0;
     if (int(check) + int(expand) + int(explain) + int(reference) > 1)
         return ParseEnd{2, "plabd: --check, --expand, --explain and --reference exclude one another\n"};
     options.task = check ? Task::Check : expand ? Task::Expand : explain ? Task::Explain : reference ? Task::Reference : Task::Run;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/compile.h"
 #include "plab/result.h"
 #include "simulation/requests/requests.h"
 
@@ -17,7 +18,7 @@ enum class Task
     Check,      ///< load, build, and say whether it holds
     Expand,     ///< print the long form
     Explain,    ///< print what is loaded, resolved and left out, and why
-    Reference,  ///< print the manual of all types
+    Reference,  ///< print the manual of all types, or of some
     Replay,     ///< make a recorded run again
     Shadow,     ///< a snapshot's future with another algorithm beside the one without
 };
@@ -62,12 +63,15 @@ struct Options
 {
     Task task = Task::Run;
     std::string scene;
+    std::string reference;  ///< of which types; "": all
     double until = -1;  ///< s; < 0: until a signal
     std::string out;    ///< JSON of the end state; "-" is standard output
     std::string trace;  ///< CSV over time
     double every = 0;   ///< s between trace rows; 0: each step
     double rate = -1;   ///< 1: real time; 0: as fast as it goes; < 0: not given
     int threads = 1;
+    std::size_t max_components = model::CompileLimits().components;
+    double error_share = 0.01;  ///< of real time for shadow steps
     bool table = false;
     bool maps = false;    ///< print the mapped libraries at the end
     bool hashes = false;  ///< print the state hash of each step
@@ -77,6 +81,7 @@ struct Options
     std::string save;     ///< snapshot of the end state
     double history = -1;  ///< s between snapshots that a rewind needs; 0: none; < 0: not given
     RecordChoice record;
+    bool progress = false;  ///< of a replay: a line every few seconds, also where standard error is no terminal
     ReplayChoice replay;
     ShadowChoice shadow;
 
@@ -87,6 +92,9 @@ struct Options
     double states_per_second = 60;  ///< of real time; 0: each step
     bool paused = false;            ///< waits at step 0
 };
+
+/// What scenes and requests may ask for.
+model::CompileLimits limits_of(const Options& options);
 
 /// Fills options, or tells what to print and the exit code (0 after --help and --version, 2 for a wrong use).
 struct ParseEnd

@@ -3,10 +3,10 @@
 #include <spdlog/spdlog.h>
 
 #include <cerrno>
-#include <cinttypes>
-#include <cmath>
 #include <cstring>
 
+#include "daemon/figures_text.h"
+#include "publish/error_probe.h"
 #include "publish/figures.h"
 #include "world/host_tables.h"
 
@@ -14,14 +14,6 @@ namespace plab::daemon
 {
 namespace
 {
-
-std::string number(double v)
-{
-    if (!std::isfinite(v)) return "null";
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", v);
-    return text;
-}
 
 std::string quoted(const std::string& s)
 {
@@ -43,16 +35,12 @@ std::string quoted(const std::string& s)
 }
 
 std::string array(const Vec3& v) { return "[" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + "]"; }
-std::string array(const Quat& q) { return "[" + number(q.w) + ", " + number(q.x) + ", " + number(q.y) + ", " + number(q.z) + "]"; }
-
-/// What stands under "interactions": solvers have their groups (--explain).
-bool is_listed(const world::World& world, std::uint32_t i)
+std::string quartiles(const simulation::Spread& s)
 {
-    return publish::is_interaction(world.component(i)) && !publish::is_solver(world, i);
+    if (s.samples == 0) return "null";
+    return "[" + number(s.low) + ", " + number(s.median) + ", " + number(s.high) + "]";
 }
-
-/// What has motion, or values, of its own.
-bool is_told(const world::Component& c) { return publish::is_object(c) || c.facet == Facet::Quantities; }
+std::string array(const Quat& q) { return "[" + number(q.w) + ", " + number(q.x) + ", " + number(q.y) + ", " + number(q.z) + "]"; }
 
 std::string object_json(const world::World& world, std::uint32_t i)
 {
@@ -73,11 +61,13 @@ std::string object_json(const world::World& world, std::uint32_t i)
            ", \"angular_velocity\": " + array(std::get<Vec3>(hosted("angular_velocity"))) + "}";
 }
 
-std::string interaction_json(const simulation::Simulation& s, std::uint32_t i, double cost)
+std::string interaction_json(const simulation::Simulation& s, std::uint32_t i, const publish::Cost& cost)
 {
     const world::World& world = s.world();
-    std::string out = "{\"type\": " + quoted(world.type_of(i)->info.name) + ", \"cost_ns_per_step\": " + number(cost) +
-                      ", \"work\": " + number(s.stepper().work()[i]) + ", \"error\": " + number(s.error_of(i));
+    const publish::ErrorFigure error = publish::own_error(s, i);
+    std::string out = "{\"type\": " + quoted(world.type_of(i)->info.name) + ", \"cost_ns_per_step\": " + number(cost.mean) +
+                      ", \"cost_quartiles_ns\": " + quartiles(cost.last) + ", \"cost_shared_by\": " + std::to_string(cost.shared) +
+                      ", \"work\": " + number(s.stepper().work()[i]) + ", \"error\": " + number(error.value) + ", \"error_unit\": " + quoted(error.unit) + ", \"error_meaning\": " + quoted(error.meaning);
     for (const Field& field : world.table_of(i).schema().fields())
     {
         if (field.kind != FieldKind::Output) continue;
@@ -109,20 +99,13 @@ std::string contacts_json(const simulation::Simulation& s)
     return out;
 }
 
-std::string hash_text(std::uint64_t h)
-{
-    char text[20];
-    std::snprintf(text, sizeof text, "%016" PRIx64, h);
-    return text;
-}
-
 }  // namespace
 
 std::string end_state_json(const simulation::Simulation& s)
 {
     const world::World& world = s.world();
     const simulation::Totals totals = s.totals();
-    const std::vector<double> costs = publish::cost_of_rows(s);
+    const publish::Costs costs(s);
     std::string objects, interactions;
     for (const std::uint32_t i : world.in_id_order())
     {
@@ -130,10 +113,9 @@ std::string end_state_json(const simulation::Simulation& s)
             objects += (objects.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + object_json(world, i);
         if (is_listed(world, i))
             interactions += (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " +
-                            interaction_json(s, i, publish::cost_of(costs, world.component(i)));
+                            interaction_json(s, i, costs.of(i));
     }
-    const auto& cost = s.stepper().cost();
-    const double per_step = cost.steps == 0 ? 0 : static_cast<double>(cost.total) / static_cast<double>(cost.steps);
+    const simulation::CostBook& cost = s.stepper().cost();
     std::string out = "{\n  \"time\": " + number(s.time()) + ",\n  \"step\": " + std::to_string(s.tick());
     out += ",\n  \"hash\": " + quoted(hash_text(s.state_hash()));
     out += ",\n  \"energy\": " + number(totals.kinetic + totals.stored);
@@ -146,83 +128,10 @@ std::string end_state_json(const simulation::Simulation& s)
            ", \"work_of_removed\": " + number(s.stepper().departed_work()) +
            ", \"unexplained\": " + number(publish::unexplained(s, totals)) + "}";
     out += ",\n  \"contacts\": [" + contacts_json(s) + "\n  ]";
-    out += ",\n  \"cost_ns_per_step\": " + number(per_step);
+    out += ",\n  \"cost_ns_per_step\": " + number(cost.mean()) + ",\n  \"cost_quartiles_ns\": " + quartiles(cost.step()) +
+           ",\n  \"cost_of_server_ns_per_step\": " + number(cost.mean_of_host());
     out += ",\n  \"objects\": {" + objects + "\n  },\n  \"interactions\": {" + interactions + "\n  }\n}\n";
     return out;
-}
-
-Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simulation::Simulation& s, double every)
-{
-    std::unique_ptr<Trace> trace(new Trace);
-    trace->file_.reset(std::fopen(file.c_str(), "w"));
-    if (!trace->file_) return reason("cannot write " + file + ": " + std::strerror(errno));
-    trace->every_ = every;
-    std::string header = "time,step,hash,energy,kinetic,momentum_x,momentum_y,momentum_z";
-    for (const std::uint32_t i : s.world().in_id_order())
-    {
-        const world::Component& c = s.world().component(i);
-        if (!is_told(c)) continue;
-        if (c.facet == Facet::Quantities)
-        {
-            const std::size_t count = s.world().host().quantities.value[c.host_index].size();
-            trace->objects_.push_back({c.id, count});
-            for (std::size_t k = 1; k <= count; ++k) header += "," + c.id + ".values." + std::to_string(k);
-            continue;
-        }
-        trace->objects_.push_back({c.id, c.facet == Facet::Shaft ? 2u : 13u});
-        const char* const shaft[] = {"angle", "angular_velocity"};
-        const char* const body[] = {"position.x",        "position.y",        "position.z",         "orientation.w",
-                                    "orientation.x",     "orientation.y",     "orientation.z",      "linear_velocity.x",
-                                    "linear_velocity.y", "linear_velocity.z", "angular_velocity.x", "angular_velocity.y",
-                                    "angular_velocity.z"};
-        if (c.facet == Facet::Shaft)
-            for (const char* name : shaft) header += "," + c.id + "." + name;
-        else
-            for (const char* name : body) header += "," + c.id + "." + name;
-    }
-    std::fprintf(trace->file_.get(), "%s\n", header.c_str());
-    return trace;
-}
-
-void Trace::sample(const simulation::Simulation& s, bool last)
-{
-    if (s.tick() == last_ || (!last && s.time() < next_ * (1 - 1e-12))) return;
-    last_ = s.tick();
-    while (every_ > 0 && next_ <= s.time() * (1 + 1e-12)) next_ += every_;
-    const simulation::Totals t = s.totals();
-    std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + hash_text(s.state_hash()) + "," +
-                      number(t.kinetic + t.stored) + "," + number(t.kinetic) + "," + number(t.momentum.x) + "," + number(t.momentum.y) +
-                      "," + number(t.momentum.z);
-    for (const auto& [id, columns] : objects_)
-    {
-        const std::uint32_t i = s.world().find(id);
-        const bool there = i != kNoIndex && is_told(s.world().component(i));
-        if (there && s.world().component(i).facet == Facet::Quantities)
-        {
-            const std::vector<double>& values = s.world().host().quantities.value[s.world().component(i).host_index];
-            for (std::size_t k = 0; k < columns; ++k) row += "," + (k < values.size() ? number(values[k]) : std::string());
-            continue;
-        }
-        if (!there)
-        {
-            row += std::string(columns, ',');  // gone: its columns stay empty
-            continue;
-        }
-        const world::Component& c = s.world().component(i);
-        if (c.facet == Facet::Shaft)
-        {
-            row += "," + number(s.world().host().shafts.angle[c.host_index]) + "," + number(s.world().host().shafts.speed[c.host_index]);
-            continue;
-        }
-        const auto hosted = [&](const char* name) { return world::get_hosted(s.world().host(), Facet::Body, c.host_index, name); };
-        const auto add = [&](const Vec3& v) { row += "," + number(v.x) + "," + number(v.y) + "," + number(v.z); };
-        const Quat q = std::get<Quat>(hosted("orientation"));
-        add(std::get<Vec3>(hosted("position")));
-        row += "," + number(q.w) + "," + number(q.x) + "," + number(q.y) + "," + number(q.z);
-        add(std::get<Vec3>(hosted("linear_velocity")));
-        add(std::get<Vec3>(hosted("angular_velocity")));
-    }
-    std::fprintf(file_.get(), "%s\n", row.c_str());
 }
 
 bool write_end_state(const simulation::Simulation& s, const std::string& file)

@@ -4,10 +4,14 @@
 
 #include <cinttypes>
 #include <cstdio>
+#include <limits>
 
 #include "daemon/output.h"
 #include "daemon/recording.h"
+#include "daemon/trace.h"
 #include "model/values.h"
+#include "program/interruption.h"
+#include "program/progress.h"
 #include "replay/replay.h"
 #include "simulation/snapshot/build.h"
 
@@ -67,11 +71,26 @@ std::string why_nothing(const record::RunLog& log, const replay::ReplayReport& r
     return "the recording ends at step " + std::to_string(last.last) + ", where it begins";
 }
 
+/// Interrupted is not verified.
+void print_how_far(const replay::ReplayReport& report, const Options& options)
+{
+    if (report.made.empty())
+        std::printf("interrupted by %s before the first step", program::name_of_interruption().c_str());
+    else
+        std::printf("interrupted by %s after step %" PRId64 " of run %" PRIu64, program::name_of_interruption().c_str(),
+                    report.made.back().last, report.made.back().run);
+    if (options.replay.verify)
+        std::printf(": NOT VERIFIED; %" PRId64 " state hashes were the same until then\n", report.verified);
+    else
+        std::printf(": the rest was not made again\n");
+}
+
 void print_report(const replay::ReplayReport& report, const Options& options)
 {
     std::printf("%s: %" PRIu64 " run%s, %" PRId64 " steps made again, %" PRIu64 " requests\n", options.replay.file.c_str(), report.runs,
                 report.runs == 1 ? "" : "s", report.steps, report.requests);
-    if (!options.replay.verify) return;
+    if (report.interrupted) print_how_far(report, options);
+    if (!options.replay.verify || report.interrupted) return;
     if (report.mismatch)
         std::printf("DIFFERENT after %" PRId64 " steps that are the same\n%s", report.verified, report.mismatch->text().c_str());
     else if (report.verified > 0)
@@ -80,8 +99,35 @@ void print_report(const replay::ReplayReport& report, const Options& options)
 
 }  // namespace
 
-int replay_recording(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop)
+/// "step 1200 of run 2, t = 5 s, 1200 state hashes are the same"
+class ReplayProgress
 {
+public:
+    explicit ReplayProgress(const Options& options)
+        : line_(options.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal), verifies_(options.replay.verify)
+    {
+    }
+    void note(const simulation::Simulation& s)
+    {
+        ++steps_;
+        if (!line_.is_due()) return;
+        char text[160];
+        std::snprintf(text, sizeof text, "run %" PRIu64 ", step %" PRId64 ", t = %.6g s; %" PRId64 " steps made again%s  (Ctrl-C ends)",
+                      s.run(), s.tick(), s.time(), steps_, verifies_ ? ", all the same" : "");
+        line_.show(text);
+    }
+    void end() { line_.clear(); }
+
+private:
+    program::Progress line_;
+    bool verifies_;
+    std::int64_t steps_ = 0;
+};
+
+int replay_recording(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop,
+                     const Interruption& interruption)
+{
+    program::catch_signals();
     auto module = RecordModule::load_for_reading();
     if (!module) return fail(module.errors());
     auto log = module->read(options.replay.file);
@@ -90,7 +136,13 @@ int replay_recording(plugins::PluginLibrary& library, const Options& options, co
     warn_of_another_build(**log, library);
 
     simulation::Simulation simulation(library, options.threads);
+    simulation.obey(&interruption);
+    // Whatever was recorded was allowed when it was recorded.
+    model::CompileLimits recorded;
+    recorded.components = std::numeric_limits<std::uint32_t>::max();
+    simulation.limit(recorded);
     std::unique_ptr<Trace> trace;
+    ReplayProgress progress(options);
     replay::ReplayOptions how;
     how.verify = options.replay.verify, how.from = options.replay.from, how.run = options.replay.run;
     if (options.until >= 0) how.until = options.until;
@@ -99,6 +151,7 @@ int replay_recording(plugins::PluginLibrary& library, const Options& options, co
     {
         if (options.hashes) std::printf("%" PRId64 " %016" PRIx64 "\n", simulation.tick(), simulation.state_hash());
         if (trace) trace->sample(simulation);
+        progress.note(simulation);
     };
     how.begun = [&](double)
     {
@@ -110,12 +163,25 @@ int replay_recording(plugins::PluginLibrary& library, const Options& options, co
             spdlog::error("{}", opened.error().reason);
     };
     auto report = replay::replay(**log, simulation, library, how);
+    progress.end();
+    if (!report && stop)
+    {
+        // A request of the journal was given up in work.
+        for (const Error& e : report.errors()) (void)std::fprintf(stderr, "%s\n", e.text().c_str());
+        std::printf("interrupted by %s: NOT VERIFIED\n", program::name_of_interruption().c_str());
+        return program::code_of_interruption();
+    }
     if (!report) return fail(report.errors());
     if (trace) trace->sample(simulation, true);
     print_report(*report, options);
     for (const std::string& doubt : report->doubts) std::printf("%s: %s\n", report->mismatch ? "the cause may be" : "note", doubt.c_str());
-    const std::string beyond = stop ? std::string() : beyond_the_end(*report, options);
-    const bool nothing = options.replay.verify && report->verified == 0 && !report->mismatch && !stop;
+    if (report->interrupted)
+    {
+        if (!options.save.empty() || !options.out.empty()) spdlog::warn("--save and --out are not written: the end was not reached");
+        return program::code_of_interruption();
+    }
+    const std::string beyond = beyond_the_end(*report, options);
+    const bool nothing = options.replay.verify && report->verified == 0 && !report->mismatch;
     if (!beyond.empty())
         (void)std::fprintf(stderr, "%s\n", beyond.c_str());
     else if (nothing)

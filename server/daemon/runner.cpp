@@ -4,11 +4,16 @@
 
 #include <cinttypes>
 #include <fstream>
+#include <optional>
 #include <set>
 
 #include "daemon/live_table.h"
 #include "daemon/output.h"
+#include "daemon/overseer.h"
 #include "daemon/pacer.h"
+#include "daemon/trace.h"
+#include "program/interruption.h"
+#include "simulation/clock.h"
 
 namespace plab::daemon
 {
@@ -65,13 +70,14 @@ public:
 private:
     Result<void> open_trace();
     void begin();
-    bool over() const
-    {
-        return stop_ || service_.shutdown_wanted() || (options_.until >= 0 && s_.time() >= options_.until - 0.5 * s_.dt());
-    }
+    bool is_at_end() const { return options_.until >= 0 && s_.time() >= options_.until - 0.5 * s_.dt(); }
+    bool over() const { return stop_ || s_.gave_up() || service_.shutdown_wanted() || is_at_end(); }
+    /// A signal is a server's ordinary end. A run that has an end of its own did not get there.
+    bool is_cut() const { return stop_ && options_.until >= 0 && !is_at_end(); }
     bool serve();
     void step();
     void tell_rate(Clock::time_point now);
+    void tell_given_up();
     bool save();
     bool finish();
 
@@ -135,7 +141,11 @@ bool Run::serve()
 
 void Run::step()
 {
-    if (!s_.step()) return;
+    if (!s_.step())
+    {
+        if (s_.gave_up()) tell_given_up();
+        return;
+    }
     if (options_.hashes) std::printf("%" PRId64 " %016" PRIx64 "\n", s_.tick(), s_.state_hash());
     report_events(s_);
     service_.publish(true);
@@ -154,6 +164,14 @@ void Run::tell_rate(Clock::time_point now)
     if (pacer_.slipped() == told_slip_ || now - told_ < std::chrono::seconds(1)) return;
     told_ = now, told_slip_ = pacer_.slipped();
     spdlog::warn("too slow for the rate: {:.3f} s slipped so far", told_slip_);
+}
+
+/// The run ends where the step began; a shutdown that did it is answered.
+void Run::tell_given_up()
+{
+    const publish::Busy busy = publish::words_of(s_.progress().look(), simulation::now_ns());
+    spdlog::error("{}: given up, since the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy), s_.time());
+    service_.take_requests();
 }
 
 /// What still waits goes with the snapshot. True if there is one now.
@@ -194,6 +212,8 @@ int Run::go()
         spdlog::error("{}", opened.error().reason);
         return 1;
     }
+    std::optional<Overseer> overseer;
+    if (options_.table) overseer.emplace(s_.progress(), [this](const publish::Busy& busy) { table_.show_busy(busy); });
     begin();
     while (!over() && service_.lost().empty())
     {
@@ -217,7 +237,12 @@ int Run::go()
         }
         step();
     }
-    return finish() ? 0 : 1;
+    overseer.reset();
+    if (!finish()) return 1;
+    if (!is_cut()) return s_.gave_up() ? kExitGaveUp : 0;
+    spdlog::warn("interrupted by {} at t = {:.9g} s, step {}: --until {:.9g} was not reached, and files end there",
+                 program::name_of_interruption(), s_.time(), s_.tick(), options_.until);
+    return program::code_of_interruption();
 }
 
 }  // namespace

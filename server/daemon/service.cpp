@@ -2,6 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/runner.h"
+#include "publish/busy.h"
 #include "simulation/clock.h"
 #include "simulation/requests/request_words.h"
 #include "simulation/snapshot/history.h"
@@ -30,6 +35,7 @@ void log_swap(const simulation::Reply& r, const simulation::SwapReport& swap)
     std::string fields;
     for (const simulation::FieldFate& f : swap.fields) fields += fmt::format(" {} {}", f.field, simulation::name_of(f.fate));
     spdlog::info("step {}: {} {} -> {}; pause {:.1f} us;{}", r.step, swap.id, swap.from, swap.to, r.pause_ns * 1e-3, fields);
+    if (std::isnan(swap.with_new.energy)) return;  // not tried
     spdlog::info("  first step: energy {:.9g} J -> {:.9g} J (old: {:.9g} J), error {:.3g} (old: {:.3g}), cost {:.1f} us (old: {:.1f} us)",
                  swap.energy_before, swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error,
                  swap.with_new.cost_ns * 1e-3, swap.with_old.cost_ns * 1e-3);
@@ -39,6 +45,7 @@ publish::CollectorOptions collector_options(const Options& options)
 {
     publish::CollectorOptions out;
     out.states_per_second = options.states_per_second;
+    out.error_share = options.error_share;
     return out;
 }
 
@@ -59,7 +66,7 @@ Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& lib
 {
 }
 
-Result<void> Service::open_bus(const Options& options, const Wake& wake)
+Result<void> Service::open_bus(const Options& options, const Wake& wake, Interruption& interruption)
 {
     auto module = plugins::open_module("bus", bus::kEntryName, plugins::PluginLibrary::default_directories());
     if (!module) return module.errors();
@@ -67,6 +74,14 @@ Result<void> Service::open_bus(const Options& options, const Wake& wake)
     bus.name = options.name, bus.version = PLAB_VERSION, bus.domain = options.domain;
     bus.network_interface = options.network_interface;
     bus.log = [](void*, const char* line) { spdlog::warn("bus: {}", line); };
+    bus.end = [](void* to) { static_cast<Interruption*>(to)->ask(kGrace); };
+    bus.end_argument = &interruption;
+    bus.busy = [](void* of)
+    {
+        const publish::Busy busy = publish::busy_of(*static_cast<const simulation::Progress*>(of));
+        return busy.what.empty() ? std::string() : publish::text_of(busy);
+    };
+    bus.busy_argument = const_cast<simulation::Progress*>(&simulation_->progress());
     bus.wake = &wake_up, bus.wake_argument = const_cast<Wake*>(&wake);
     Error error;
     auto opened = reinterpret_cast<bus::Open>(module->entry)(bus, error);
@@ -101,12 +116,14 @@ void Service::take_requests()
     while (bus_->take(text))
     {
         const std::uint64_t begin = simulation::now_ns();
-        auto wanted = control::wanted_of(text, *library_);
+        auto wanted = control::wanted_of(text, *library_, simulation_->limits());
         const auto read_ns = static_cast<double>(simulation::now_ns() - begin);
         if (!wanted)
             refuse(text, wanted.errors(), read_ns);
         else if (wanted->shutdown)
             shut_down(text);
+        else if (wanted->cancel)
+            cancel(text, *wanted->cancel);
         else
             accept(text, wanted.take(), read_ns);
     }
@@ -161,6 +178,30 @@ void Service::shut_down(const publish::RequestText& text)
     ++done_;
     answer_client(origin, std::move(reply));
     shutdown_ = true;
+}
+
+/// Whoever waits for the request hears that it was taken back.
+void Service::cancel(const publish::RequestText& text, const control::Wanted::Cancelled& which)
+{
+    const auto waits = std::find_if(waiting_.begin(), waiting_.end(),
+                                    [&](const auto& w) { return w.second.client == which.client && w.second.number == which.number; });
+    if (waits == waiting_.end() || !simulation_->withdraw(waits->first))
+        return refuse(text, Errors{reason("no such request waits: it took effect, was refused, or never came")}, 0);
+    simulation::Reply taken_back;
+    taken_back.step = simulation_->tick(), taken_back.revision = simulation_->revision();
+    taken_back.errors = {reason("taken back before it took effect")};
+    const Origin origin = std::move(waiting_.extract(waits).mapped());
+    note(origin, taken_back);
+    ++refused_;
+    answer_client(origin, std::move(taken_back));
+    Origin asker;
+    asker.from_bus = true, asker.client = text.client, asker.number = text.number, asker.arrived_ns = text.arrived_ns;
+    asker.operations = {{"cancel", "", text.operations.front().argument}};
+    simulation::Reply reply;
+    reply.done = true, reply.step = simulation_->tick(), reply.revision = simulation_->revision();
+    note(asker, reply);
+    ++done_;
+    answer_client(asker, std::move(reply));
 }
 
 void Service::refuse(const publish::RequestText& text, Errors errors, double read_ns)
@@ -224,15 +265,16 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
         collector_.note(*simulation_, std::move(event));
         return;
     }
-    std::size_t swaps = 0;
     for (const control::Description& op : origin.operations)
     {
+        if (op.verb == "swap") continue;
         event.kind = "request." + op.verb, event.component = op.target, event.message = op.argument;
-        if (op.verb == "swap" && swaps < reply.swaps.size())
-        {
-            event.message = reply.swaps[swaps].from + " -> " + reply.swaps[swaps].to;
-            ++swaps;
-        }
+        collector_.note(*simulation_, event);
+    }
+    // One request may exchange many: a pattern names none of them.
+    for (const simulation::SwapReport& swap : reply.swaps)
+    {
+        event.kind = "request.swap", event.component = swap.id, event.message = swap.from + " -> " + swap.to;
         collector_.note(*simulation_, event);
     }
 }

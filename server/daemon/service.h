@@ -21,8 +21,8 @@ class Service final : public ImageSink
 public:
     Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const Options& options);
 
-    /// Loads bus.so and joins. `wake` must outlive this.
-    Result<void> open_bus(const Options& options, const Wake& wake);
+    /// Loads bus.so and joins. `wake` must outlive this, and `interruption`, which a client's shutdown asks.
+    Result<void> open_bus(const Options& options, const Wake& wake, Interruption& interruption);
 
     /// Loads record.so and begins to write the recording that the options name.
     Result<void> open_recording(const Options& options);
@@ -74,6 +74,7 @@ private:
     void refuse(const publish::RequestText& text, Errors errors, double read_ns);
     void answer_client(const Origin& origin, simulation::Reply reply);
     void shut_down(const publish::RequestText& text);
+    void cancel(const publish::RequestText& text, const control::Wanted::Cancelled& which);
     void note(const Origin& origin, const simulation::Reply& reply);
     void post(simulation::Request request, Origin origin);
     std::optional<Origin> origin_of(std::uint64_t request);

@@ -46,7 +46,7 @@ Result<void> Service::take_over(const std::vector<std::string>& waiting)
     {
         auto text = control::read_request(words);
         if (!text) return text.errors();
-        auto wanted = control::wanted_of(*text, *library_);
+        auto wanted = control::wanted_of(*text, *library_, simulation_->limits());
         if (!wanted) return wanted.errors();
         Origin origin;
         origin.texts = std::move(text->operations);

@@ -9,6 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/recording.h"
+#include "daemon/runner.h"
+#include "program/interruption.h"
+#include "program/progress.h"
 #include "simulation/requests/request_words.h"
 
 namespace plab::daemon
@@ -72,7 +75,7 @@ struct Future
     }
     void step(const std::string& id)
     {
-        simulation.step_once();
+        if (!simulation.step_once()) return;
         for (const Event& e : simulation.events()) ++events[e.kind];
         if (const std::uint32_t i = simulation.world().find(id); i != kNoIndex)
             worst_error = std::fmax(worst_error, simulation.error_of(i));
@@ -176,11 +179,13 @@ void print(const Outcome& o, const Future& without, const Future& with, const Sh
 
 }  // namespace
 
-int run_shadow(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop)
+int run_shadow(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop,
+               const Interruption& interruption)
 {
     auto snapshot = read_snapshot(options.load, library);
     if (!snapshot) return fail(snapshot.errors());
     Future without(library, options.threads), with(library, options.threads);
+    for (Future* future : {&without, &with}) future->simulation.obey(&interruption);
     for (Future* future : {&without, &with})
         if (auto restored = future->simulation.restore(snapshot->snapshot); !restored) return fail(restored.errors());
     Outcome outcome;
@@ -192,8 +197,12 @@ int run_shadow(plugins::PluginLibrary& library, const Options& options, const st
 
     const auto steps = static_cast<std::int64_t>(std::llround(options.shadow.seconds / without.simulation.dt()));
     const std::int64_t every = std::max<std::int64_t>(1, steps / kRows);
-    while (outcome.steps < steps && !stop)
+    program::catch_signals();
+    program::Progress progress(options.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal);
+    const auto gave_up = [&] { return without.simulation.gave_up() || with.simulation.gave_up(); };
+    while (outcome.steps < steps && !stop && !gave_up())
     {
+        progress.show_share("shadow of " + options.shadow.id, static_cast<double>(outcome.steps) / static_cast<double>(steps));
         // A piece ends where a row is told; the first row is that of the first step.
         const std::int64_t to_row = outcome.steps == 0 ? 1 : every - outcome.steps % every;
         const std::int64_t piece = std::min({kPiece, to_row, steps - outcome.steps});
@@ -201,14 +210,25 @@ int run_shadow(plugins::PluginLibrary& library, const Options& options, const st
         const bool turn = without.costs.size() % 2 == 0;
         (turn ? without : with).go(piece, options.shadow.id);
         (turn ? with : without).go(piece, options.shadow.id);
+        if (gave_up()) break;
         outcome.steps += piece;
         if (outcome.steps % every == 0 || outcome.steps == 1) outcome.course.push_back(gap_between(without, with));
     }
+    progress.clear();
+    const bool is_cut = outcome.steps < steps;
     if (options.shadow.json)
-        std::printf("%s\n", json_of(outcome, without, with, options.shadow).dump(2).c_str());
+    {
+        nlohmann::json json = json_of(outcome, without, with, options.shadow);
+        json["interrupted"] = is_cut;
+        std::printf("%s\n", json.dump(2).c_str());
+    }
     else
         print(outcome, without, with, options.shadow);
-    return 0;
+    if (gave_up()) (void)std::fprintf(stderr, "a step was given up: what is told ends before it\n");
+    if (!is_cut) return 0;
+    (void)std::fprintf(stderr, "plabd: interrupted by %s after %" PRId64 " of %" PRId64 " steps\n", program::name_of_interruption().c_str(),
+                       outcome.steps, steps);
+    return program::code_of_interruption();
 }
 
 }  // namespace plab::daemon

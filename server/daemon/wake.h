@@ -24,6 +24,8 @@ public:
     void wake() const;
     /// Until somebody wakes, or `due`. True if somebody did, also before this call.
     bool wait_until(Clock::time_point due) const;
+    /// An eventfd: who adds 1 to it wakes.
+    int descriptor() const { return descriptor_; }
 
 private:
     explicit Wake(int descriptor) : descriptor_(descriptor) {}

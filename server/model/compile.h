@@ -10,7 +10,10 @@ namespace plab::model
 
 struct CompileLimits
 {
-    std::size_t components = 1'000'000;
+    /// Of a scene, generated ones among them: 100,000 bodies take 0.5 GB. Where counts come in (<repeat>, files, requests)
+    /// this is what keeps a slip of the hand from filling the memory.
+    std::size_t components = 100'000;
+    std::string raised_by;     ///< what a user would write to raise it ("--max-components N"), for the message; may be empty
     std::size_t errors = 100;  ///< reported at once; the rest are counted
 };
 

@@ -1,6 +1,8 @@
 /// Which components there are: ids, types, nesting, comprefs.
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "model/compile_internal.h"
 #include "model/repeat.h"
@@ -32,16 +34,9 @@ bool is_alias(const ComponentNode& node)
     return node.type.empty() && node.references.size() == 1 && node.children.empty() && node.values.empty();
 }
 
-bool too_many(Compilation& c)
-{
-    if (c.directory.drafts.size() < c.limits.components) return false;
-    c.report.add(c.blueprint->where, {}, "the scene has more than " + std::to_string(c.limits.components) + " components");
-    return true;
-}
-
 void declare(Compilation& c, const ComponentNode& node, std::size_t parent, const Cell* cell)
 {
-    if (too_many(c)) return;
+    if (c.limit_told || too_many(c, 1, node.where, node.id.empty() ? "component" : node.id)) return;
     Draft d;
     d.id = component_id(cell, node.id);
     d.name = node.name;
@@ -87,8 +82,10 @@ void declare_repeat(Compilation& c, const RepeatNode& node)
     Names& components = c.repeated_names.emplace_back();
     Names& commands = c.repeated_names.emplace_back();
     const std::size_t per_cell = std::max<std::size_t>(1, collect_names(node.components, components, commands));
-    if (repeat->cells() > (c.limits.components - std::min(c.limits.components, c.directory.drafts.size())) / per_cell)
-        return c.report.add(node.where, "repeat", "the scene has more than " + std::to_string(c.limits.components) + " components");
+    // Three counts of at most 1e6 each: the product of more than one cell's components would not fit 64 bits.
+    const bool overflows = repeat->cells() > std::numeric_limits<std::size_t>::max() / 16 / per_cell;
+    const std::size_t wanted = overflows ? std::numeric_limits<std::size_t>::max() / 16 : repeat->cells() * per_cell;
+    if (c.limit_told || too_many(c, wanted, node.where, "repeat")) return;
     std::size_t group = kNone;
     if (!repeat->id.empty())
     {
@@ -177,6 +174,18 @@ void flatten_aliases(Compilation& c)
 
 }  // namespace
 
+bool too_many(Compilation& c, std::size_t more, const SourceLocation& where, const std::string& element)
+{
+    const std::size_t before = c.directory.drafts.size(), most = c.limits.components;
+    if (more <= most - std::min(most, before)) return false;
+    std::string why = more == 1 ? "is one component too many" : "makes " + std::to_string(more) + " components";
+    if (before > 0 && more > 1) why += " beside the " + std::to_string(before) + " before it";
+    why += ": a scene has at most " + std::to_string(most);
+    if (!c.limits.raised_by.empty()) why += " (" + c.limits.raised_by + " raises that)";
+    if (!std::exchange(c.limit_told, true)) c.report.add(where, element, why);
+    return true;
+}
+
 std::string Compilation::element(std::size_t i) const
 {
     const Draft& d = directory.drafts[i];
@@ -189,6 +198,12 @@ bool Compilation::is_type_name(const std::string& name)
 {
     if (type_names.empty()) type_names = types->names();
     return std::binary_search(type_names.begin(), type_names.end(), name);
+}
+
+Result<std::string> Compilation::full_type_name(const std::string& written, const std::string& within)
+{
+    if (is_type_name(written)) return written;
+    return model::full_type_name(written, type_names, within);
 }
 
 const Result<const ComponentType*>& Compilation::require(const std::string& type)
@@ -223,6 +238,13 @@ void bind_type(Compilation& c, std::size_t i)
 {
     Draft& d = c.draft(i);
     if (d.type_name.empty()) return;
+    Result<std::string> name = c.full_type_name(d.type_name);
+    if (!name)
+    {
+        d.broken = true;
+        return c.complain(i, d.where, name.error().reason);
+    }
+    d.type_name = name.take();
     const Result<const ComponentType*>& type = c.require(d.type_name);
     if (!type)
     {

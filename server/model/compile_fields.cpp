@@ -127,7 +127,7 @@ void read_ids(Compilation& c, const TextNode& text, const Cell* cell, GivenRole&
         return;
     }
     const std::vector<std::string_view> words = split_words(whole);
-    given.may_be_type = words.size() == 1 && whole.find('/') != std::string::npos;
+    given.may_be_type = words.size() == 1;
     for (const std::string_view word : words) given.references.push_back({component_id(cell, std::string(word)), text.where});
 }
 

@@ -182,6 +182,7 @@ struct Compilation
     SceneSettings settings;
     SourceLocation solver_place;
     bool solver_broken = false;
+    bool limit_told = false;  ///< too many components: said once, at the first that has no room
     Directory directory;
     std::deque<Cell> cells;
     std::deque<Names> repeated_names;
@@ -194,11 +195,15 @@ struct Compilation
     /// "red (State/RigidBody)", for messages.
     std::string element(std::size_t i) const;
     bool is_type_name(const std::string& name);
+    /// Of a type that may be written short; `within`: what its name would begin with.
+    Result<std::string> full_type_name(const std::string& written, const std::string& within = {});
     /// The type, loaded at most once.
     const Result<const ComponentType*>& require(const std::string& type);
     void complain(std::size_t i, const SourceLocation& where, std::string why) { report.add(where, element(i), std::move(why)); }
 };
 
+/// Whether `more` components are too many beside those that there are; then it complains at `where`.
+bool too_many(Compilation& c, std::size_t more, const SourceLocation& where, const std::string& element);
 /// Adds a draft; enters its id, refusing empty, ill-formed and used ones.
 std::size_t add_draft(Compilation& c, Draft draft);
 /// Loads the draft's type and sizes its roles; complains and marks it as broken if there is none.

@@ -184,8 +184,7 @@ void make_part(Compilation& c, std::size_t i, std::size_t k, const std::string& 
     given.may_be_type = false;
     given.where = where;
     given.references.assign(1, {part.id, where});
-    if (c.directory.drafts.size() >= c.limits.components)
-        return c.report.add(c.blueprint->where, {}, "the scene has more than " + std::to_string(c.limits.components) + " components");
+    if (c.limit_told || too_many(c, 1, where, part.id)) return;
     bind_type(c, add_draft(c, std::move(part)));
 }
 
@@ -203,8 +202,21 @@ void make_named_part(Compilation& c, std::size_t i, std::size_t k)
 {
     GivenRole& given = c.draft(i).roles[k];
     const Role& role = c.draft(i).type->schema.roles()[k];
-    const std::string written = given.references.front().id;
+    std::string written = given.references.front().id;
     if (c.directory.find(written) != kNone) return;
+    if (Result<std::string> name = c.full_type_name(written, role.family); !name)
+    {
+        given.unresolved = true;
+        return c.complain(i, given.where, role.name + ": " + name.error().reason);
+    }
+    else if (*name != written)
+    {
+        // A word that is short for a type which does not fit here is an id that nobody has.
+        const Result<const ComponentType*>& type = c.require(*name);
+        if (!type || !accepts(role, **type)) return;
+        written = name.take();
+    }
+    if (written.find('/') == std::string::npos) return;
     const std::size_t own = find_written_part(c, i, role);
     if (own == kNone) return make_part(c, i, k, written, given.where);
     if (c.draft(own).type_name != written)

@@ -129,7 +129,7 @@ void read_settings(Compilation& c)
 void settle_solver(Compilation& c)
 {
     if (c.existing || c.settings.solver == SceneSettings{}.solver) return;
-    const std::string written = c.settings.solver;
+    std::string written = c.settings.solver;
     const std::size_t found = c.directory.follow(c.directory.find(written));
     if (found != kNone)
     {
@@ -139,6 +139,7 @@ void settle_solver(Compilation& c)
         return c.report.add(c.solver_place, "scene", "solver " + quoted(written) + " is no component of type Solver/...");
     }
     c.solver_broken = true;
+    if (Result<std::string> name = c.full_type_name(written, "Solver/")) written = name.take();
     if (written.find('/') == std::string::npos)
         return c.report.add_unknown_id(c.solver_place, "scene", "solver: no component has the id " + quoted(written), written);
     if (!written.starts_with("Solver/"))

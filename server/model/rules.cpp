@@ -7,6 +7,7 @@
 
 #include "model/text.h"
 #include "model/values.h"
+#include "plab/limits.h"
 
 namespace plab::model
 {
@@ -60,13 +61,27 @@ std::vector<double> all_numbers(const Value& value)
     return out;
 }
 
+/// Only the ratios of its numbers count.
+bool is_direction(const Field& field)
+{
+    return std::any_of(field.rules.begin(), field.rules.end(), [](const Rule& r) { return r.kind == Rule::Kind::UnitLength; });
+}
+
 Result<void> check_finite(const Value& value, const Field& field)
 {
+    const bool whole = std::holds_alternative<std::int64_t>(value) || std::holds_alternative<Integers>(value);
     for (const double x : all_numbers(value))
     {
         if (std::isnan(x)) return reason(subject(field) + " must be a number, not nan");
         if (std::isinf(x) && !field.may_be_infinite) return reason(subject(field) + " must be finite, not " + format_real(x));
+        const bool measured = field.type != FieldType::Rotation && field.type != FieldType::EntryList && !is_direction(field);
+        if (!whole && measured && std::isfinite(x) && std::fabs(x) > kLargestGiven)
+            return reason(subject(field) + " must be at most " + format_real(kLargestGiven) + " in size, not " + format_real(x) +
+                          ": its square would leave the numbers");
     }
+    if (const auto* v = std::get_if<Vec3>(&value))
+        if (const int n = std::isinf(v->x) + std::isinf(v->y) + std::isinf(v->z); n == 1 || n == 2)
+            return reason(subject(field) + " must have three finite numbers, or three infinite ones: not given");
     return {};
 }
 
@@ -83,6 +98,8 @@ Result<void> check_bound(const Value& value, const Field& field, const Rule& rul
             return broken(field, rule.bound == 0 ? "0 or more" : "at least " + format_real(rule.bound), x);
         if (rule.kind == Rule::Kind::MoreThan && !(x > rule.bound))
             return broken(field, rule.bound == 0 ? "positive" : "more than " + format_real(rule.bound), x);
+        if (rule.kind == Rule::Kind::MoreThan && rule.bound == 0 && x < kLeastGiven)
+            return broken(field, "at least " + format_real(kLeastGiven), x);
         if (rule.kind == Rule::Kind::AtMost && !(x <= rule.bound)) return broken(field, "at most " + format_real(rule.bound), x);
     }
     return {};

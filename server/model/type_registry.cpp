@@ -38,6 +38,16 @@ bool is_type_name(std::string_view name)
     return !begins && (parts == 2 || parts == 3);
 }
 
+/// Names that begin with `within` and whose last words are `written`.
+std::vector<std::string> names_ending_in(std::string_view written, const std::vector<std::string>& names, std::string_view within)
+{
+    const std::string ending = "/" + std::string(written);
+    std::vector<std::string> out;
+    for (const std::string& name : names)
+        if (name.starts_with(within) && name.ends_with(ending)) out.push_back(name);
+    return out;
+}
+
 /// Collects what is wrong with one type.
 class TypeCheck
 {
@@ -107,6 +117,15 @@ std::string role_list(const Schema& schema)
 }
 
 }  // namespace
+
+Result<std::string> full_type_name(std::string_view written, const std::vector<std::string>& names, std::string_view within)
+{
+    if (written.empty() || std::find(names.begin(), names.end(), written) != names.end()) return std::string(written);
+    std::vector<std::string> fitting = names_ending_in(written, names, within);
+    if (fitting.empty()) fitting = names_ending_in(written, names, {});
+    if (fitting.size() > 1) return reason("type " + quoted(written) + " can be " + quoted_list(fitting, "or") + ": give the whole name");
+    return fitting.empty() ? std::string(written) : fitting.front();
+}
 
 int ComponentType::find_command(std::string_view name) const
 {

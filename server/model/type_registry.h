@@ -39,6 +39,11 @@ public:
     virtual std::vector<std::string> names() const = 0;
 };
 
+/// The type that a user means by `written`: the one of that name in `names`; else the only one whose name ends in "/" +
+/// `written`, looked for first among those that begin with `within` ("Rows" within "Response/": "Response/Rows").
+/// `written` itself where nothing fits; an error where several do.
+Result<std::string> full_type_name(std::string_view written, const std::vector<std::string>& names, std::string_view within);
+
 /// Types that have been registered, by name.
 class TypeRegistry
 {

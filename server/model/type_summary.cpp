@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "model/measured_costs.h"
 #include "model/values.h"
 
 namespace plab::model
@@ -92,7 +93,10 @@ TypeSummary summary_of(const ComponentType& type)
     out.name = type.info.name, out.family = type.info.family, out.doc = type.info.doc, out.plugin = type.plugin;
     out.loaded = true, out.order = type.info.order;
     out.accuracy = type.info.accuracy, out.strengths = type.info.strengths;
-    out.cost = type.info.cost, out.limits = type.info.limits, out.source = type.info.source;
+    out.cost = type.info.cost;
+    if (const std::string measured = measured_cost_of(type.info.name); !measured.empty())
+        out.cost += (out.cost.empty() ? "" : "; ") + ("measured, a step: " + measured);
+    out.limits = type.info.limits, out.source = type.info.source;
     for (const Role& role : type.schema.roles()) out.roles.push_back(summary_of(role));
     for (const Field& field : type.schema.fields())
         if (field.kind != FieldKind::Scratch) out.fields.push_back(summary_of(field));

@@ -39,20 +39,17 @@ PluginLibrary::PluginLibrary(const std::vector<std::string>& directories)
 
 std::vector<std::string> PluginLibrary::default_directories()
 {
-    const char* given = std::getenv("PLAB_PLUGIN_PATH");
-    if (!given || !*given)
-    {
-        const std::string installed = installed_plugin_directory();
-        return installed.empty() ? std::vector<std::string>{} : std::vector<std::string>{installed};
-    }
     std::vector<std::string> out;
-    const std::string path = given;
+    const char* const given = std::getenv("PLAB_PLUGIN_PATH");
+    const std::string path = given ? given : "";
     for (std::size_t begin = 0; begin <= path.size();)
     {
         const std::size_t end = std::min(path.find(':', begin), path.size());
         if (end > begin) out.push_back(path.substr(begin, end - begin));
         begin = end + 1;
     }
+    // What was built with the program is always there: a plugin of one's own is for scenes that need the others as well.
+    if (const std::string installed = installed_plugin_directory(); !installed.empty()) out.push_back(installed);
     return out;
 }
 

@@ -33,7 +33,7 @@ public:
     PluginLibrary& operator=(PluginLibrary&&) = delete;
     ~PluginLibrary() override = default;
 
-    /// PLAB_PLUGIN_PATH (folders separated by colons) if set, else the folder that belongs to this program.
+    /// The folders of PLAB_PLUGIN_PATH (separated by colons), then the one that belongs to this program.
     static std::vector<std::string> default_directories();
 
     Result<const model::ComponentType*> require(const std::string& name) override;

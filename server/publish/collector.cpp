@@ -29,6 +29,7 @@ auto matter_of(const Status& s)
 Collector::Collector(const CollectorOptions& options, std::vector<model::TypeSummary> types)
     : options_(options),
       catalogue_(std::move(types)),
+      sampler_(options.error_share),
       states_(options.states_per_second),
       metrics_(options.metrics_per_second),
       scripted_(options.metrics_per_second),

@@ -18,6 +18,7 @@ struct CollectorOptions
 {
     double states_per_second = 60;         ///< of real time; 0: each step
     double metrics_per_second = 4;         ///< of real time
+    double error_share = 0.01;             ///< of real time that shadow steps may take, while somebody watches metrics
     double seconds_between_snapshots = 5;  ///< of real time, for observers without an interval of their own
 };
 

@@ -1,6 +1,6 @@
 #include "publish/figures.h"
 
-#include <numeric>
+#include <algorithm>
 
 namespace plab::publish
 {
@@ -15,26 +15,30 @@ bool is_solver(const world::World& world, std::uint32_t component)
     return type && type->info.name.starts_with("Solver/");
 }
 
-std::vector<double> cost_of_rows(const simulation::Simulation& simulation, const simulation::CostBook& since)
+Costs::Costs(const simulation::Simulation& simulation) : simulation_(&simulation)
 {
     const simulation::CostBook& book = simulation.stepper().cost();
-    std::vector<double> out(book.by_table.size(), 0.0);
-    if (book.steps <= since.steps) return out;
-    const auto steps = static_cast<double>(book.steps - since.steps);
-    const auto sum = [](const auto& phases) { return std::accumulate(phases.begin(), phases.end(), std::uint64_t{0}); };
-    for (std::size_t t = 0; t < out.size(); ++t)
+    const auto& tables = simulation.world().tables();
+    by_table_.resize(tables.size());
+    for (std::uint32_t t = 0; t < tables.size(); ++t)
     {
-        double rows = 0;
-        for (const std::uint32_t owner : simulation.world().tables()[t]->component_of_row()) rows += owner != kNoIndex ? 1 : 0;
-        const std::uint64_t before = t < since.by_table.size() ? sum(since.by_table[t]) : 0;
-        if (rows > 0) out[t] = static_cast<double>(sum(book.by_table[t]) - before) / rows / steps;
+        const auto owners = tables[t]->component_of_row();
+        const auto rows = std::count_if(owners.begin(), owners.end(), [](std::uint32_t owner) { return owner != kNoIndex; });
+        if (rows == 0) continue;
+        const double share = 1 / static_cast<double>(rows);
+        Cost& cost = by_table_[t];
+        cost.last = book.of_table(t);
+        cost.last.median *= share, cost.last.low *= share, cost.last.high *= share;
+        cost.mean = book.mean_of_table(t) * share, cost.shared = static_cast<std::uint32_t>(rows);
     }
-    return out;
 }
 
-double cost_of(const std::vector<double>& cost_of_rows, const world::Component& c)
+Cost Costs::of(std::uint32_t component) const
 {
-    return c.table < cost_of_rows.size() ? cost_of_rows[c.table] : 0.0;
+    const world::Component& c = simulation_->world().component(component);
+    const simulation::CostBook& book = simulation_->stepper().cost();
+    if (book.owns(component)) return {book.of_component(component), book.mean_of_component(component), 1};
+    return c.table < by_table_.size() ? by_table_[c.table] : Cost{};
 }
 
 double unexplained(const simulation::Simulation& simulation, const simulation::Totals& totals)

@@ -15,11 +15,24 @@ bool is_object(const world::Component& component);
 bool is_interaction(const world::Component& component);
 bool is_solver(const world::World& world, std::uint32_t component);
 
-/// CPU time that one row of each table took per step, ns, from an earlier reading of the book until now. A type's cost is
-/// measured per phase; an instance's share is by rows.
-std::vector<double> cost_of_rows(const simulation::Simulation& simulation, const simulation::CostBook& since = {});
-/// The entry for a component; 0 for a group.
-double cost_of(const std::vector<double>& cost_of_rows, const world::Component& component);
+/// CPU time of a component per step, ns.
+struct Cost
+{
+    simulation::Spread last;   ///< of the last steps; no samples: no step has been made yet
+    double mean = 0;           ///< since the scene was built
+    std::uint32_t shared = 1;  ///< so many components of its type share what the type costs; 1: measured by itself
+};
+/// By directory index; nothing for groups.
+class Costs
+{
+public:
+    explicit Costs(const simulation::Simulation& simulation);
+    Cost of(std::uint32_t component) const;
+
+private:
+    const simulation::Simulation* simulation_;
+    std::vector<Cost> by_table_;  ///< of one row
+};
 
 /// kinetic - kinetic at start - work: what the methods lost or made up, J.
 double unexplained(const simulation::Simulation& simulation, const simulation::Totals& totals);

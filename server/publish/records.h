@@ -137,8 +137,13 @@ struct Batch
 struct InteractionMetrics
 {
     std::string component, requested, resolved;
-    double cost_ns = 0, error = 0, work = 0;
+    double cost_ns = 0;  ///< median of the last steps; 0 before the first
+    double error = 0;    ///< 0 where none is known: then there is no account of it
+    double work = 0;
     bool quarantined = false;
+    /// Outputs, and accounts (kind "account") that say what the figures above are: cost_quartiles (ns), cost_steps (how many the
+    /// median is of), cost_shared_by (so many components of its type share what the type costs; 1: measured by itself), and error
+    /// (its unit; the text is its meaning) or, where none is known, no_error (why).
     std::vector<Parameter> outputs;
 };
 
@@ -147,7 +152,8 @@ struct Metrics
     std::uint64_t run = 0, revision = 0;
     Tick step = 0;
     double time = 0;
-    double step_ns = 0, real_time_factor = 0;
+    double step_ns = 0;           ///< median of the last steps; 0 until the first one of a run
+    double real_time_factor = 0;  ///< 0: not known yet
     double kinetic = 0, stored = 0, work = 0, of_requests = 0, unexplained = 0;
     Vec3 momentum, angular_momentum;
     double residual = 0, deepest = 0;
@@ -184,6 +190,7 @@ struct Status
     bool paused = false;
     double rate_asked = 0, rate_reached = 0, slipped = 0;
     bool slipping = false;
+    std::string busy;              ///< "" or what a step or trial that takes long is at
     double states_per_second = 0;  ///< 0: each step
     std::uint32_t threads = 1;
     std::uint64_t last_event = 0, last_collision = 0;

@@ -1,7 +1,10 @@
 #include "publish/sampler.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include "model/values.h"
 #include "publish/entries.h"
 #include "publish/figures.h"
 
@@ -21,34 +24,30 @@ void fill_ledger(const simulation::Simulation& s, Metrics& out)
     out.momentum = totals.momentum, out.angular_momentum = totals.angular_momentum;
 }
 
-InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, std::string resolved, double cost)
+InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, std::string resolved, const Cost& cost, ErrorFigure error)
 {
     const world::World& world = s.world();
     InteractionMetrics out;
     out.component = world.id_of(i), out.requested = world.type_of(i)->info.name, out.resolved = std::move(resolved);
-    out.cost_ns = cost, out.error = s.error_of(i);
+    out.cost_ns = cost.last.median;
+    if (!std::isnan(error.value)) out.error = error.value;
     out.work = i < s.stepper().work().size() ? s.stepper().work()[i] : 0.0;
     out.quarantined = world.component(i).quarantined;
     out.outputs = parameters_of(world, i, world::kind_bit(FieldKind::Output));
+    const auto account = [&](const char* name, std::string text, std::string unit) { out.outputs.push_back({name, std::move(text), std::move(unit), "account"}); };
+    account("cost_quartiles", model::format_real(cost.last.low) + " " + model::format_real(cost.last.high), "ns");
+    account("cost_steps", std::to_string(cost.last.samples), "");
+    account("cost_shared_by", std::to_string(cost.shared), "");
+    account(std::isnan(error.value) ? "no_error" : "error", std::move(error.meaning), std::move(error.unit));
     return out;
 }
 
 }  // namespace
 
-void Sampler::read_costs(const simulation::Simulation& s)
-{
-    const simulation::CostBook& book = s.stepper().cost();
-    if (run_ != s.run() || book.steps < since_.steps) since_ = {}, cost_of_rows_.clear(), step_ns_ = 0;
-    run_ = s.run();
-    // Between two steps nothing is known that was not known before.
-    if (book.steps == since_.steps) return;
-    cost_of_rows_ = cost_of_rows(s, since_);
-    step_ns_ = static_cast<double>(book.total - since_.total) / static_cast<double>(book.steps - since_.steps);
-    since_ = book;
-}
-
 void Sampler::read_rate(const simulation::Simulation& s, Nanoseconds now)
 {
+    // A rate across a reset, a restore or a rewind is one of nothing.
+    if (std::exchange(run_, s.run()) != s.run()) rate_since_ = 0, real_time_factor_ = 0;
     const Nanoseconds passed = now - rate_since_;
     if (rate_since_ != 0 && passed < kShortestWindow && s.time() >= rate_from_) return;
     const bool known = rate_since_ != 0 && s.time() >= rate_from_;
@@ -58,11 +57,12 @@ void Sampler::read_rate(const simulation::Simulation& s, Nanoseconds now)
 
 Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
 {
-    read_costs(s);
     read_rate(s, now);
+    errors_.follow(s, now);
     Metrics out;
     out.run = s.run(), out.revision = s.revision(), out.step = s.tick(), out.time = s.time();
-    out.step_ns = step_ns_, out.real_time_factor = real_time_factor_;
+    out.step_ns = s.stepper().cost().step().median;
+    out.real_time_factor = real_time_factor_;
     fill_ledger(s, out);
     out.residual = s.stepper().report().worst_residual, out.deepest = s.stepper().report().deepest;
     const simulation::ContactCache& contacts = s.stepper().contacts();
@@ -70,10 +70,11 @@ Metrics Sampler::sample(const simulation::Simulation& s, Nanoseconds now)
     out.contacts = static_cast<std::uint32_t>(
         static_cast<std::size_t>(std::count_if(contacts.pairs().begin(), contacts.pairs().end(), touches)) + contacts.force_pairs().size());
     std::vector<std::string> resolved = resolved_algorithms(s);
+    const Costs costs(s);
     for (const std::uint32_t i : s.world().in_id_order())
     {
         const world::Component& c = s.world().component(i);
-        if (is_interaction(c)) out.interactions.push_back(metrics_of(s, i, std::move(resolved[i]), cost_of(cost_of_rows_, c)));
+        if (is_interaction(c)) out.interactions.push_back(metrics_of(s, i, std::move(resolved[i]), costs.of(i), errors_.of(s, i)));
     }
     return out;
 }

@@ -1,6 +1,7 @@
 /// Metrics: cost since the last sample, error, work, outputs of each interaction; the ledger.
 #pragma once
 
+#include "publish/error_probe.h"
 #include "publish/pace.h"
 #include "publish/records.h"
 #include "simulation/simulation.h"
@@ -11,16 +12,15 @@ namespace plab::publish
 class Sampler
 {
 public:
+    /// `error_share`: of real time that looks at errors may take.
+    explicit Sampler(double error_share) : errors_(error_share) {}
     Metrics sample(const simulation::Simulation& simulation, Nanoseconds now);
 
 private:
-    void read_costs(const simulation::Simulation& simulation);
     void read_rate(const simulation::Simulation& simulation, Nanoseconds now);
 
+    ErrorProbe errors_;
     std::uint64_t run_ = 0;
-    simulation::CostBook since_;
-    std::vector<double> cost_of_rows_;
-    double step_ns_ = 0;
     Nanoseconds rate_since_ = 0;
     double rate_from_ = 0;  ///< s, simulated
     double real_time_factor_ = 0;

@@ -43,7 +43,7 @@ Result<void> go_to(Tick step, simulation::Simulation& s, const std::function<Res
     while (s.tick() < step)
     {
         if (auto asked = ask(); !asked) return asked;
-        s.step_once();
+        if (!s.step_once()) return reason("given up at step " + std::to_string(s.tick()) + ": the replay is to end");
     }
     return {};
 }

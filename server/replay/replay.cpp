@@ -96,7 +96,11 @@ private:
     void look_for_gaps(std::uint64_t run);
     Result<void> ask_what_is_due();
     Result<void> verify(std::uint64_t run);
-    bool over() const { return (options_->stop && options_->stop()) || report_.mismatch; }
+    bool over()
+    {
+        if (!report_.mismatch && options_->stop && options_->stop()) report_.interrupted = true;
+        return report_.interrupted || report_.mismatch;
+    }
 
     record::RunLog* log_;
     simulation::Simulation* s_;
@@ -161,9 +165,11 @@ Result<void> Replay::ask_what_is_due()
         if (entry.step < s_->tick()) continue;  // before the snapshot
         publish::RequestText text;
         text.operations = entry.operations;
-        auto wanted = control::wanted_of(text, *types_);
+        auto wanted = control::wanted_of(text, *types_, s_->limits());
         if (!wanted) return wanted.errors();
         if (wanted->shutdown || !simulation::concerns_the_course(wanted->request)) continue;
+        // It took effect, whatever its trial came to, which the clock may have decided.
+        wanted->request.trial.budget = simulation::TrialChoice::Budget::None;
         const simulation::Reply reply = s_->carry_out_now(wanted->request);
         ++report_.requests;
         if (!reply.done)
@@ -203,14 +209,18 @@ Result<void> Replay::run(std::uint64_t run)
     ++report_.runs;
     report_.made.push_back({run, s_->tick(), s_->tick(), s_->time()});
     if (options_->begun) options_->begun(s_->time());
-    while (!over())
+    while (!report_.mismatch)
     {
         if (options_->until && s_->time() >= *options_->until - 0.5 * s_->dt()) break;
         auto more = hashes_.more_after(s_->tick());
         if (!more) return more.errors();
-        if (!*more) break;
+        if (!*more || over()) break;  // at its end a run is not interrupted any more
         if (auto asked = ask_what_is_due(); !asked) return asked;
-        s_->step_once();
+        if (!s_->step_once())
+        {
+            report_.interrupted = true;  // given up in work: it is not made, whatever was verified until then
+            break;
+        }
         ++report_.steps, report_.made.back().last = s_->tick();
         if (options_->verify)
             if (auto verified = verify(run); !verified) return verified;

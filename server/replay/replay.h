@@ -20,7 +20,7 @@ struct ReplayOptions
     std::optional<Tick> from;           ///< begin at the last snapshot at or before this step
     std::optional<std::uint64_t> run;   ///< only this one; else all runs of the recording, one after the other
     std::optional<double> until;        ///< s, of each run's time
-    std::function<bool()> stop;         ///< asked between steps
+    std::function<bool()> stop;         ///< asked between steps; true: the rest is not wanted
     std::function<void()> stepped;      ///< after each step
     std::function<void(double)> begun;  ///< a run begins at this time, s
 };
@@ -55,6 +55,7 @@ struct ReplayReport
     std::uint64_t runs = 0, requests = 0;
     std::int64_t steps = 0;     ///< made
     std::int64_t verified = 0;  ///< of them with a recorded hash
+    bool interrupted = false;   ///< ReplayOptions::stop said so before the end: what came after was not made
     std::optional<Mismatch> mismatch;
     std::uint64_t last_hash = 0;
     std::vector<ReplayedRun> made;

@@ -1,8 +1,10 @@
 #include "simulation/simulation.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
+#include "simulation/clock.h"
 #include "simulation/requests/field_change.h"
 #include "simulation/requests/transaction.h"
 #include "simulation/snapshot/history.h"
@@ -39,6 +41,7 @@ void Simulation::begin_run(Live live, std::shared_ptr<const model::SceneSpec> sc
     stepper_ = std::move(live.stepper);
     world_ = std::move(live.world);
     stepper_->on_changes(&Simulation::apply_script_changes, this);
+    stepper_->obey(interruption_, &progress_);
     loaded_ = std::move(scene);
     dt_ = loaded_->settings.dt;
     tick_ = base_tick_ = 0;
@@ -68,6 +71,11 @@ double Simulation::time_at(Tick tick) const
 }
 
 void Simulation::post(Request request) { requests_.push_back({std::make_shared<const Request>(std::move(request)), run_}); }
+
+bool Simulation::withdraw(std::uint64_t request)
+{
+    return std::erase_if(requests_, [&](const Waiting& w) { return w.request->id == request; }) > 0;
+}
 
 std::vector<Reply> Simulation::take_replies()
 {
@@ -137,17 +145,24 @@ bool Simulation::step()
 {
     (void)apply_due();
     if (paused()) return false;
-    run_step(false);
+    if (!run_step()) return false;
     ++tick_;
     if (steps_left_ > 0) --steps_left_;
     history_->follow(*this);
     return true;
 }
 
-void Simulation::step_once()
+bool Simulation::step_once()
 {
-    run_step(false);
+    if (!run_step()) return false;
     ++tick_;
+    return true;
+}
+
+void Simulation::obey(const Interruption* interruption)
+{
+    interruption_ = interruption;
+    if (stepper_) stepper_->obey(interruption_, &progress_);
 }
 
 void Simulation::forget_late_requests()
@@ -155,18 +170,44 @@ void Simulation::forget_late_requests()
     std::erase_if(requests_, [&](const Waiting& w) { return w.run == run_ && w.request->at && *w.request->at < tick_; });
 }
 
-void Simulation::run_step(bool trial)
+bool Simulation::run_step()
 {
-    changed_by_scripts_.clear();
+    changed_by_scripts_.clear(), script_changes_.clear();
+    gave_up_ = false;
+    const bool may_be_given_up = interruption_ != nullptr;
+    if (may_be_given_up) step_start_.save(*world_, *stepper_);
     const double start = time_at(tick_);
-    stepper_->draw_for(trial ? nullptr : images_);
-    if (!trial) watch_->before_step(*this);
+    stepper_->draw_for(images_);
+    watch_->before_step(*this);
+    const std::uint64_t begin = now_ns();
+    progress_.begin(Activity::Step, tick_, begin);
     stepper_->step(tick_, start, time_at(tick_ + 1) - start);
-    if (trial) return;
+    if (may_be_given_up && stepper_->gave_up()) take_back_step();
+    progress_.end();
+    if (gave_up_) return false;
+    note_cost(static_cast<double>(now_ns() - begin));
     events_ = stepper_->events();
     watch_->after_step(*this, events_);
     freeze_lost_objects();
     quarantine_failed();
+    return true;
+}
+
+void Simulation::note_cost(double ns)
+{
+    // Of all steps while they are few, then of about the last hundred.
+    constexpr std::uint64_t kMost = 100;
+    steps_timed_ = std::min(steps_timed_ + 1, kMost);
+    mean_step_ns_ += (ns - mean_step_ns_) / static_cast<double>(steps_timed_);
+}
+
+void Simulation::take_back_step()
+{
+    gave_up_ = true;
+    for (auto change = script_changes_.rbegin(); change != script_changes_.rend(); ++change)
+        (void)set_field(*world_, change->component, change->name, change->before, changed_by_scripts_);
+    step_start_.restore(*world_, *stepper_);
+    events_.clear();
 }
 
 void Simulation::freeze_lost_objects()
@@ -180,7 +221,27 @@ void Simulation::freeze_lost_objects()
         world_->quarantine(host.component_of(ref), true);
         changes_.touched.push_back(world_->id_of(ref));
     }
-    (void)stepper_->rebuild();  // fewer moving parts cannot contradict one another
+    if (!stepper_->rebuild()) release_lost_objects();
+}
+
+/// What stands still now may not be coupled to what is prescribed, or to another that stands: such couplings are taken out, too.
+void Simulation::release_lost_objects()
+{
+    for (const Ref ref : stepper_->report().frozen)
+        for (const std::uint32_t i : world_->referrers(world_->host().component_of(ref)))
+        {
+            const model::ComponentType* type = world_->type_of(i);
+            if (world_->component(i).quarantined || !type || !type->takes_part(Phase::Connect)) continue;
+            world_->quarantine(i, true);
+            changes_.touched.push_back(world_->id_of(i));
+            Event e;
+            e.time = time_at(tick_ + 1), e.kind = "state.not_finite", e.severity = Severity::Warning, e.component = i;
+            e.message = "takes no part any more: it couples " + world_->id_of(ref) + ", which left the numbers";
+            events_.push_back(std::move(e));
+        }
+    const auto rebuilt = stepper_->rebuild();
+    assert(rebuilt.ok());  // nobody that stands is coupled to anybody
+    (void)rebuilt;
 }
 
 void Simulation::quarantine_failed()
@@ -210,6 +271,7 @@ void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& 
                                   : set_field(*s.world_, i, change.name, change.value, s.changed_by_scripts_);
         if (done)
         {
+            s.script_changes_.push_back({i, change.name, before});
             s.changes_.by_scripts.insert(i);
             s.watch_->begin_anew();
             structure = structure || s.world_->type_of(i)->takes_part(Phase::Connect) || s.world_->component(i).facet != Facet::Component;
@@ -224,60 +286,10 @@ void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& 
     if (structure) (void)s.stepper_->rebuild();
 }
 
-Totals Simulation::totals() const
-{
-    Totals t;
-    t.work = stepper_->departed_work() + stepper_->requests_work();
-    const world::HostTables& host = world_->host();
-    for (const std::uint32_t i : world_->in_id_order())
-    {
-        const world::Component& c = world_->component(i);
-        if (c.facet == Facet::Body && host.bodies.dynamic(c.host_index))
-        {
-            const std::uint32_t b = c.host_index;
-            t.kinetic += host.bodies.kinetic_energy(b);
-            const Vec3 p = host.bodies.velocity[b] * host.bodies.mass[b];
-            t.momentum += p;
-            t.angular_momentum += cross(host.bodies.position[b], p) + host.bodies.angular_momentum[b];
-        }
-        if (c.facet == Facet::Shaft && host.shafts.dynamic(c.host_index))
-        {
-            t.kinetic += host.shafts.kinetic_energy(c.host_index);
-            t.shaft_momentum += host.shafts.inertia[c.host_index] * host.shafts.speed[c.host_index];
-        }
-        // Whoever came within a transaction has no account before the stepper is rebuilt, and has done nothing.
-        if (i < stepper_->work().size()) t.work += stepper_->work()[i];
-    }
-    t.stored = stored_energy();
-    return t;
-}
+Totals Simulation::totals() const { return totals_of(*world_, *stepper_, time(), tick_); }
 
-double Simulation::stored_energy() const
-{
-    StoredEnergy stored;
-    PhaseCall call;
-    StepContext context;
-    context.time = time(), context.tick = tick_;
-    call.context = &context, call.stored = &stored;
-    call.bodies = &world_->host().bodies, call.shafts = &world_->host().shafts, call.shapes = &world_->host().shapes;
-    for (const Block& block : stepper_->schedule().of(Phase::Potential))
-    {
-        const world::Table& table = *world_->tables()[block.table];
-        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-        call.rows = block.rows;
-        (void)block.command->run(call, table.rows());
-    }
-    return stored.joule;
-}
+double Simulation::stored_energy() const { return stored_energy_of(*world_, *stepper_, time(), tick_); }
 
-double Simulation::error_of(std::uint32_t component) const
-{
-    double worst = 0;
-    if (world_->component(component).table == kNoIndex) return worst;
-    for (const Field& field : world_->table_of(component).schema().fields())
-        if (const auto* column = field.is_error ? dynamic_cast<const Column<double>*>(field.column) : nullptr)
-            worst = std::max(worst, std::fabs((*column)[world_->component(component).row]));
-    return worst;
-}
+double Simulation::error_of(std::uint32_t component) const { return world_->largest_error(component); }
 
 }  // namespace plab::simulation

@@ -5,23 +5,14 @@
 #include <memory>
 #include <set>
 
+#include "model/compile.h"
 #include "simulation/requests/requests.h"
 #include "simulation/snapshot/snapshot.h"
-#include "simulation/step/stepper.h"
+#include "simulation/step/step_memento.h"
+#include "simulation/totals.h"
 
 namespace plab::simulation
 {
-
-/// Mechanical totals of the scene at one time.
-struct Totals
-{
-    double kinetic = 0;         ///< J
-    double stored = 0;          ///< J, of components that say so (Phase::Potential)
-    double work = 0;            ///< J, done by all interactions since the run began
-    Vec3 momentum;              ///< N s, of dynamic bodies
-    Vec3 angular_momentum;      ///< N m s about the origin of W, of dynamic bodies
-    double shaft_momentum = 0;  ///< N m s, sum over shafts about their own axles
-};
 
 class History;
 
@@ -32,6 +23,10 @@ public:
     ~Simulation();
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
+
+    /// For what requests add.
+    void limit(const model::CompileLimits& limits) { limits_ = limits; }
+    const model::CompileLimits& limits() const { return limits_; }
 
     /// Replaces whatever is there. On error what was there goes on.
     Result<void> load(const model::SceneSpec& scene);
@@ -49,10 +44,18 @@ public:
     void post(Request request);
     /// Carries a request out at the present boundary, between two steps.
     Reply carry_out_now(const Request& request) { return carry_out(request); }
-    /// Requests that are due take effect; then, unless paused, one step. False if paused.
+    /// Who may have steps and trials given up while they are in work; must outlive this. Null: nobody can.
+    void obey(const Interruption* interruption);
+    /// Requests that are due take effect; then, unless paused, one step. False if paused, or if the step was given up.
     bool step();
-    /// One step, paused or not; nothing that waits takes effect. For steps of the past that are made again.
-    void step_once();
+    /// One step, paused or not; nothing that waits takes effect. For steps of the past that are made again. False: given up.
+    bool step_once();
+    /// The last step was given up: all is as it was before it, bit for bit.
+    bool gave_up() const { return gave_up_; }
+    /// What the step thread is at; for any thread.
+    const Progress& progress() const { return progress_; }
+    /// A request that waits is taken back: nobody answers it. False: there is none of this id.
+    bool withdraw(std::uint64_t request);
     /// Requests that wait for their step.
     std::size_t pending_requests() const { return requests_.size(); }
     /// Requests that are due take effect now, at the boundary between two steps, paused or not. True if there were any.
@@ -106,15 +109,19 @@ private:
     void continue_from(const SnapshotContent& from);
     Reply carry_out(const Request& request);
     Reply outlived(const Request& request) const;
-    void run_step(bool trial);
+    bool run_step();
+    void note_cost(double ns);
+    void take_back_step();
     void forget_late_requests();
     void freeze_lost_objects();
+    void release_lost_objects();
     void quarantine_failed();
     double time_at(Tick tick) const;
     static void apply_script_changes(void* self, std::vector<ParameterChange>& changes);
 
     model::TypeSource* types_;
     int threads_;
+    model::CompileLimits limits_;
     std::unique_ptr<world::World> world_;
     std::unique_ptr<Stepper> stepper_;
     std::shared_ptr<const model::SceneSpec> loaded_;
@@ -140,6 +147,19 @@ private:
     ImageSink* images_ = nullptr;
     std::vector<Event> events_;
     std::set<std::uint32_t> changed_by_scripts_;
+    struct ScriptChange
+    {
+        std::uint32_t component;
+        std::string name;
+        Value before;
+    };
+    std::vector<ScriptChange> script_changes_;  ///< of the step in work
+    const Interruption* interruption_ = nullptr;
+    Progress progress_;
+    StepMemento step_start_;  ///< of the step in work, where it can be given up
+    bool gave_up_ = false;
+    double mean_step_ns_ = 0;  ///< of late; 0: no step was made yet
+    std::uint64_t steps_timed_ = 0;
     std::unique_ptr<DivergenceWatch> watch_;
     std::unique_ptr<History> history_;
 };

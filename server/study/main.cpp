@@ -1,11 +1,12 @@
 // plab-study: error against run time, offline. Put together here: command line, plugins, scene, study, files.
-#include <unistd.h>
-
 #include <cstdio>
+#include <optional>
 
 #include "blueprint/reader.h"
 #include "model/compile.h"
 #include "plugins/library.h"
+#include "program/interruption.h"
+#include "program/progress.h"
 #include "study/allocations.h"
 #include "study/exact/exact.h"
 #include "study/options.h"
@@ -17,24 +18,39 @@ namespace
 
 using namespace plab;
 
+/// A signal gives up whatever run is in work, in the middle of a step.
+Interruption work;
+
 int fail(const Errors& errors, int code = 1)
 {
     for (const Error& e : errors) std::fprintf(stderr, "plab-study: %s\n", e.text().c_str());
-    return code;
+    return program::is_interrupted() ? program::code_of_interruption() : code;
 }
 
-/// One line that is written over on a terminal, a line each elsewhere.
-void show_progress(const std::string& text)
+program::ProgressTo progress_to(const study::Options& options)
 {
-    if (isatty(STDERR_FILENO) != 0)
-        std::fprintf(stderr, "\r\x1b[K%.110s", text.c_str());
+    return options.quiet ? program::ProgressTo::Nowhere : options.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal;
+}
+
+/// What a study tells while it runs.
+std::function<void(const std::string&)> shown_by(program::Progress& line)
+{
+    return [&line](const std::string& text)
+    {
+        if (line.is_due()) line.show(text + "  (Ctrl-C ends)");
+    };
+}
+
+std::string duration_text(double seconds)
+{
+    char text[48];
+    if (seconds < 100)
+        std::snprintf(text, sizeof text, "%.2g s", std::max(seconds, 0.1));
+    else if (seconds < 6000)
+        std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
     else
-        std::fprintf(stderr, "%s\n", text.c_str());
-}
-
-void end_progress()
-{
-    if (isatty(STDERR_FILENO) != 0) std::fputs("\r\x1b[K", stderr);
+        std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+    return text;
 }
 
 int list_exact()
@@ -58,6 +74,29 @@ int list(const study::Plan& plan, model::TypeSource& types)
     return 0;
 }
 
+/// "22 studies, 583 combinations, each run 1 + 3 times: about 2 h of CPU time, by the first steps of each"
+std::string workload_text(const std::vector<study::SuiteLine>& lines, int repeat)
+{
+    study::Workload all;
+    for (const study::SuiteLine& line : lines) all.cells += line.work.cells, all.seconds += line.work.seconds;
+    return std::to_string(lines.size()) + (lines.size() == 1 ? " study, " : " studies, ") + std::to_string(all.cells) +
+           " combinations, each run 1 + " + std::to_string(repeat) + " times: about " + duration_text(all.seconds) +
+           " of CPU time, by the first steps of each";
+}
+
+int list_suite(const std::vector<study::SuiteLine>& lines, int repeat)
+{
+    std::size_t width = 5;
+    for (const study::SuiteLine& line : lines) width = std::max(width, line.entry->name.size());
+    std::printf("%-*s  %12s  %10s  %s\n", static_cast<int>(width), "study", "combinations", "about", "title");
+    for (const study::SuiteLine& line : lines)
+        std::printf("%-*s  %12zu  %10s  %s%s\n", static_cast<int>(width), line.entry->name.c_str(), line.work.cells,
+                    line.trouble.empty() ? duration_text(line.work.seconds).c_str() : "-", line.entry->title.c_str(),
+                    line.trouble.empty() ? "" : ("; cannot be studied: " + line.trouble).c_str());
+    std::printf("%s\n", workload_text(lines, repeat).c_str());
+    return 0;
+}
+
 study::Plan plan_of(const study::Options& options, model::SceneSpec scene)
 {
     study::Plan plan;
@@ -65,7 +104,7 @@ study::Plan plan_of(const study::Options& options, model::SceneSpec scene)
     plan.reference = options.reference, plan.repeat = options.repeat, plan.scales = options.scales;
     plan.run.until = options.until, plan.run.quantities = options.quantities, plan.swaps = options.swaps;
     plan.run.floor = options.floor, plan.run.budget = options.budget, plan.run.allocations = &study::allocations;
-    if (!options.quiet) plan.progress = &show_progress;
+    plan.run.stop = &work;
     return plan;
 }
 
@@ -81,10 +120,15 @@ int run_suite(const study::Options& options, model::TypeSource& types)
     if (!suite) return fail(suite.errors());
     study::SuiteOptions how;
     how.repeat = options.repeat, how.budget = options.budget, how.tolerance = options.tolerance, how.command = options.command;
-    how.allocations = &study::allocations;
-    if (!options.quiet) how.progress = &show_progress;
+    how.allocations = &study::allocations, how.stop = &work;
+    const auto lines = study::workload_of(types, *suite, how);
+    if (program::is_interrupted()) return fail({reason("interrupted; nothing was run")});
+    if (options.list) return list_suite(lines, how.repeat);
+    if (!options.quiet) std::fprintf(stderr, "plab-study: %s\n", workload_text(lines, how.repeat).c_str());
+    program::Progress line(progress_to(options), std::chrono::milliseconds(0));
+    how.progress = shown_by(line);
     auto done = study::run_suite(types, *suite, how, options.out);
-    end_progress();
+    line.clear();
     if (!done) return fail(done.errors());
     print_findings(*done, options.out);
     return 0;
@@ -99,11 +143,13 @@ int carry_out(const study::Options& options)
     if (!blueprint) return fail(blueprint.errors());
     auto scene = model::compile(*blueprint, library);
     if (!scene) return fail(scene.errors());
-    const study::Plan plan = plan_of(options, scene.take());
+    study::Plan plan = plan_of(options, scene.take());
     if (options.list) return list(plan, library);
     if (auto fine = study::check_swaps(library, plan); !fine) return fail(fine.errors(), 2);
+    program::Progress line(progress_to(options), std::chrono::milliseconds(0));
+    plan.progress = shown_by(line);
     auto result = study::run_study(library, plan);
-    end_progress();
+    line.clear();
     if (!result) return fail(result.errors());
     if (auto written = study::write_all(*result, options.out); !written) return fail(written.errors());
     print_findings(study::findings(*result), options.out);
@@ -120,5 +166,7 @@ int main(int argc, char** argv)
         std::fputs(end->text.c_str(), end->exit_code == 0 ? stdout : stderr);
         return end->exit_code;
     }
+    program::call_on_signal([] { work.ask(); });
+    program::catch_signals();
     return options.list_exact ? list_exact() : carry_out(options);
 }

@@ -1,6 +1,7 @@
 #include "study/options.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "model/numbers.h"
 
@@ -18,10 +19,11 @@ constexpr const char* kExamples = R"(Examples:
   plab-study SCENE --rung "penalty: contact.response=Penalty contact.resolution=None" --rung "impulse: contact.response=Impulse"
              --vary dt=1/60,1/240 --until 5 -o out
   plab-study SCENE --swap 2s:contact.response=None --vary dt=1/60,1/120 --until 5 -o out
-  plab-study --suite scenes/studies/suite.json -o out
+  plab-study --suite -o out                                       the catalogue of this installation; --list says how much it is
+  plab-study --suite my/suite.json --repeat 1 -o out
 
 DIR then holds report.html (open it in a browser), results.csv, results.json, reference.csv and the pictures.
-Exit codes: 0 done (a run that fails is a result), 1 nothing could be studied, 2 wrong use.)";
+Exit codes: 0 done (a run that fails is a result), 1 nothing could be studied, 2 wrong use, 130 Ctrl-C, 143 SIGTERM.)";
 
 /// Texts as they come, before they are understood.
 struct Texts
@@ -91,6 +93,20 @@ Result<void> understand(const Texts& texts, Options& out)
     return {};
 }
 
+constexpr const char* kUsualSuite = "scenes/studies/suite.json";
+
+/// The catalogue of the folder that one is in, or of the tree or installation that the program belongs to; "": there is none.
+std::string usual_suite()
+{
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    if (fs::exists(kUsualSuite, ignored)) return kUsualSuite;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+    for (const char* up : {"..", "../..", "../share/plab"})
+        if (const fs::path file = (folder / up / kUsualSuite).lexically_normal(); fs::exists(file, ignored)) return file.string();
+    return {};
+}
+
 std::string typed(int argc, char** argv)
 {
     std::string out = "plab-study";
@@ -132,11 +148,17 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
          "STEP:ID=TYPE or TIME:ID=TYPE, such as 0.5s:..: exchange a component in every run, before that step or at that time (may be "
          "repeated)");
     app.add_option("-o,--out", options.out, "folder for report.html, results.csv, results.json and the pictures")->type_name("DIR");
-    app.add_option("--suite", suite, "a catalogue of studies (JSON) instead of a scene")->type_name("FILE");
+    app.add_option("--suite", suite,
+                   "a catalogue of studies (JSON) instead of a scene; without FILE: scenes/studies/suite.json, of here or of this "
+                   "installation")
+        ->expected(0, 1)
+        ->type_name("[FILE]");
     app.add_option("--tolerance", texts.tolerance, "suite: an error up to here counts as solved; default: 1e-6");
-    app.add_flag("--list", options.list, "print the combinations and run nothing");
+    app.add_flag("--list", options.list, "print the combinations, or the studies of a suite and about how long they take, and run nothing");
     app.add_flag("--list-exact", options.list_exact, "print the closed forms that exact:NAME knows");
-    app.add_flag("--quiet", options.quiet, "no progress on standard error");
+    auto* const quiet = app.add_flag("--quiet", options.quiet, "no progress on standard error");
+    app.add_flag("--progress", options.progress, "a line every five seconds on standard error, also where that is no terminal")
+        ->excludes(quiet);
     try
     {
         app.parse(argc, argv);
@@ -147,9 +169,12 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
         const int code = app.exit(e, out, err);
         return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
     }
-    if (!suite.empty() && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite names its scenes itself: leave SCENE out\n"};
-    options.suite = !suite.empty();
-    if (options.suite) options.scene = suite;
+    options.suite = app.count("--suite") > 0;
+    if (options.suite && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite names its scenes itself: leave SCENE out\n"};
+    if (options.suite) options.scene = suite.empty() ? usual_suite() : suite;
+    if (options.suite && options.scene.empty())
+        return ParseEnd{
+            2, std::string("plab-study: --suite without FILE: neither here nor in this installation is there a ") + kUsualSuite + "\n"};
     if (options.list_exact) return {};
     if (options.scene.empty()) return ParseEnd{2, "plab-study: needs a scene; see plab-study --help\n"};
     if (auto understood = understand(texts, options); !understood) return ParseEnd{2, "plab-study: " + understood.error().text() + "\n"};

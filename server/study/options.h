@@ -17,7 +17,7 @@ struct Options
     bool suite = false;
     bool list = false;
     bool list_exact = false;
-    bool quiet = false;
+    bool quiet = false, progress = false;  ///< nothing on standard error; lines also where that is no terminal
     std::vector<Rung> rungs;
     std::vector<std::vector<Setting>> varied;
     ReferencePlan reference;

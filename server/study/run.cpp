@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/values.h"
+#include "plab/number_text.h"
 #include "study/observe.h"
 
 namespace plab::study
@@ -96,8 +97,9 @@ private:
         if (options_.allocations && s_.tick() > warm_from_) out_.allocations = out_.allocations.value_or(0) + made;
         if (!out_.ok()) return;
         check();
+        if (options_.is_stopped()) return fail(Outcome::Interrupted, "interrupted");
         if (s_.tick() % kStepsPerLook == 0 && thread_cpu_seconds() - begin > options_.budget)
-            fail(Outcome::TooSlow, "cut after " + std::to_string(options_.budget) + " s of CPU time");
+            fail(Outcome::TooSlow, "cut after " + number_text(options_.budget) + " s of CPU time");
     }
     /// How many swaps were answered before this step.
     std::size_t take_replies()
@@ -158,8 +160,8 @@ double thread_cpu_seconds()
 
 std::string_view name_of(Outcome outcome)
 {
-    constexpr std::string_view names[] = {"completed",    "refused",  "not finite", "blew up",     "component failed",
-                                          "fell through", "too slow", "frozen",     "swap refused"};
+    constexpr std::string_view names[] = {"completed",    "refused",  "not finite", "blew up",      "component failed",
+                                          "fell through", "too slow", "frozen",     "swap refused", "interrupted"};
     return names[static_cast<int>(outcome)];
 }
 
@@ -169,6 +171,7 @@ RunRecord record_run(model::TypeSource& types, const model::SceneSpec& scene, co
     out.dt = scene.settings.dt.seconds;
     const auto refuse = [&](std::string why) { out.outcome = Outcome::Refused, out.why = std::move(why); };
     simulation::Simulation s(types, 1);
+    s.obey(options.stop);
     if (auto loaded = s.load(scene); !loaded) return refuse(join(loaded.errors())), out;
     for (const std::string& text : options.quantities)
     {
@@ -181,10 +184,28 @@ RunRecord record_run(model::TypeSource& types, const model::SceneSpec& scene, co
     return out;
 }
 
+double seconds_of_a_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options)
+{
+    constexpr double kEnough = 5e-3;  // s
+    constexpr Tick kFewest = 2;
+    const double loading = thread_cpu_seconds();
+    simulation::Simulation s(types, 1);
+    s.obey(options.stop);
+    if (!s.load(scene)) return 0;
+    const double begin = thread_cpu_seconds();
+    const Tick last = std::max<Tick>(kFewest, static_cast<Tick>(std::llround(options.until / s.dt())));
+    while (s.tick() < last && (s.tick() < kFewest || thread_cpu_seconds() - begin < kEnough))
+        if (!s.step() || lost(s) || options.is_stopped()) break;
+    const double of_steps = thread_cpu_seconds() - begin;
+    const double whole = of_steps * static_cast<double>(last) / static_cast<double>(std::max<Tick>(1, s.tick()));
+    return begin - loading + std::min(whole, options.budget);
+}
+
 Timing time_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options)
 {
     Timing out;
     simulation::Simulation s(types, 1);
+    s.obey(options.stop);
     if (!s.load(scene))
     {
         out.outcome = Outcome::Refused;
@@ -197,7 +218,10 @@ Timing time_run(model::TypeSource& types, const model::SceneSpec& scene, const R
     {
         const Tick stop = std::min(last, s.tick() + kStepsPerLook);
         while (s.tick() < stop && out.outcome == Outcome::Completed)
+        {
             if (!s.step() || lost(s)) out.outcome = lost(s) ? Outcome::NotFinite : Outcome::Frozen;
+            if (options.is_stopped()) out.outcome = Outcome::Interrupted;
+        }
         if (out.outcome == Outcome::Completed && thread_cpu_seconds() - begin > options.budget) out.outcome = Outcome::TooSlow;
     }
     out.cpu = thread_cpu_seconds() - begin;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "model/type_registry.h"
+#include "plab/interruption.h"
 #include "simulation/simulation.h"
 #include "study/quantity.h"
 
@@ -35,6 +36,9 @@ struct RunOptions
     std::optional<double> floor;                              ///< m: a dynamic body whose centre of mass gets below this z fell through
     double budget = std::numeric_limits<double>::infinity();  ///< s of CPU time for the steps of one run
     std::uint64_t (*allocations)() = nullptr;                 ///< calls of operator new so far, where the program counts them
+    const Interruption* stop = nullptr;                       ///< asked: nobody wants the rest, nor the step in work
+
+    bool is_stopped() const { return stop != nullptr && stop->asked(); }
 };
 
 enum class Outcome : std::uint8_t
@@ -48,6 +52,7 @@ enum class Outcome : std::uint8_t
     TooSlow,      ///< cut when the budget was used up
     Frozen,       ///< steps did nothing: the run was paused
     SwapRefused,  ///< a swap was refused, or its step never came
+    Interrupted,  ///< RunOptions::stop: no result
 };
 std::string_view name_of(Outcome outcome);
 
@@ -124,6 +129,10 @@ struct Timing
 
 RunRecord record_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options);
 Timing time_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options);
+
+/// What a whole run will cost, s of CPU time, from its first steps: 5 ms of them, at least two. What happens later in the scene,
+/// and what observing it costs, is not seen. A scene that does not load costs nothing.
+double seconds_of_a_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options);
 
 /// CPU time of the calling thread, s (CLOCK_THREAD_CPUTIME_ID).
 double thread_cpu_seconds();

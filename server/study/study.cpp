@@ -51,12 +51,13 @@ private:
     Result<AutoRung> auto_rung() const;
     Result<void> make_auto();
     const Combination& finest() const;
-    void record_all();
-    void time_all();
+    Result<void> record_all();
+    Result<void> time_all();
     RunOptions options_of(std::size_t run) const;
     RunOptions timed_part(std::size_t run) const;
     void judge(Point& point);
     void tell(const std::string& what, double share);
+    Result<void> go_on(const std::string& what) const;
 
     model::TypeSource& types_;
     const Plan& plan_;
@@ -75,6 +76,13 @@ void Run::tell(const std::string& what, double share)
     char text[64] = "";
     if (share > 0.02 && passed > 1) std::snprintf(text, sizeof text, ", about %.0f s left", std::ceil(passed / share * (1 - share)));
     plan_.progress(what + text);
+}
+
+/// An error once nobody wants the rest: half a study is none.
+Result<void> Run::go_on(const std::string& what) const
+{
+    if (!plan_.run.is_stopped()) return {};
+    return reason("interrupted while " + what + "; nothing of this study is written");
 }
 
 void Run::apply_settings()
@@ -229,6 +237,7 @@ Result<void> Run::make_auto()
         options.swaps = swaps.take();
         tell("reference " + std::to_string(i + 1) + " of 3: " + rung->name, 0);
         runs.push_back(record_run(types_, rung->scene, options));
+        if (auto on = go_on("making the reference, run " + std::to_string(i + 1) + " of 3"); !on) return on;
     }
     out_.reference = auto_reference(runs, rung->name, model::format_real(dt.seconds));
     return {};
@@ -267,7 +276,7 @@ Result<void> Run::make_reference()
 }
 
 /// The first run of each is the warm-up of the machine, and the one that is recorded.
-void Run::record_all()
+Result<void> Run::record_all()
 {
     const double runs = static_cast<double>(scenes_.size() * (static_cast<std::size_t>(plan_.repeat) + 1));
     for (std::size_t i = 0; i < scenes_.size(); ++i)
@@ -281,7 +290,9 @@ void Run::record_all()
         else
             point.record.outcome = Outcome::Refused, point.record.why = scenes_[i].error().text();
         out_.points.push_back(std::move(point));
+        if (auto on = go_on("recording run " + std::to_string(i + 1) + " of " + std::to_string(scenes_.size())); !on) return on;
     }
+    return {};
 }
 
 RunOptions Run::options_of(std::size_t run) const
@@ -300,7 +311,7 @@ RunOptions Run::timed_part(std::size_t run) const
     return out;
 }
 
-void Run::time_all()
+Result<void> Run::time_all()
 {
     const std::size_t n = scenes_.size();
     std::vector<std::vector<double>> seconds(n);
@@ -315,6 +326,7 @@ void Run::time_all()
                  static_cast<double>(n + static_cast<std::size_t>(r) * n + k) /
                      static_cast<double>(n * (static_cast<std::size_t>(plan_.repeat) + 1)));
             const Timing t = time_run(types_, *scenes_[i], timed_part(i));
+            if (auto on = go_on("timing, round " + std::to_string(r + 1) + " of " + std::to_string(plan_.repeat)); !on) return on;
             if (t.outcome == Outcome::Completed || t.outcome == point.record.outcome) seconds[i].push_back(t.cpu);
         }
     for (std::size_t i = 0; i < n; ++i)
@@ -326,6 +338,7 @@ void Run::time_all()
         point.cpu_min = s.empty() ? kNaN : s.front();
         point.cpu_median = s.empty() ? kNaN : s.size() % 2 == 1 ? s[s.size() / 2] : 0.5 * (s[s.size() / 2 - 1] + s[s.size() / 2]);
     }
+    return {};
 }
 
 void Run::judge(Point& point)
@@ -359,8 +372,8 @@ Result<StudyResult> Run::go()
 {
     if (auto fine = prepare(); !fine) return fine.errors();
     if (auto made = make_reference(); !made) return made.errors();
-    record_all();
-    time_all();
+    if (auto recorded = record_all(); !recorded) return recorded.errors();
+    if (auto timed = time_all(); !timed) return timed.errors();
     for (Point& point : out_.points) judge(point);
     out_.title = plan_.title.empty() ? (plan_.scene.settings.title.empty() ? plan_.scene.file : plan_.scene.settings.title) : plan_.title;
     out_.scene_file = plan_.scene.file, out_.command = plan_.command, out_.repeat = plan_.repeat;

@@ -88,6 +88,14 @@ struct StudyResult
     bool swaps = false;
 };
 
+/// What a plan comes to before it is run.
+struct Workload
+{
+    std::size_t cells = 0, refused = 0;  ///< combinations, and those whose scene or setting does not hold
+    double seconds = 0;                  ///< CPU time, from the first steps of each: right within a factor of a few
+};
+Workload workload_of(model::TypeSource& types, const Plan& plan);
+
 /// Whether the swaps hold: their steps or times in all runs; id and type in at least one. Nothing is run.
 Result<void> check_swaps(model::TypeSource& types, const Plan& plan);
 

@@ -90,6 +90,21 @@ struct Done
     std::string trouble;
 };
 
+Result<Plan> plan_of(model::TypeSource& types, const SuiteEntry& entry, const SuiteOptions& options)
+{
+    auto blueprint = blueprint::read_blueprint_file(entry.scene);
+    if (!blueprint) return blueprint.errors();
+    auto scene = model::compile(*blueprint, types);
+    if (!scene) return scene.errors();
+    Plan plan;
+    plan.scene = scene.take(), plan.title = entry.title, plan.command = options.command;
+    plan.combinations = combine(entry.rungs, entry.varied), plan.reference = entry.reference, plan.repeat = options.repeat;
+    plan.scales = entry.scales;
+    plan.run.until = entry.until, plan.run.quantities = entry.quantities, plan.run.floor = entry.floor;
+    plan.run.budget = options.budget, plan.run.allocations = options.allocations, plan.run.stop = options.stop;
+    return plan;
+}
+
 /// `place`: "3 of 21".
 Done run_entry(model::TypeSource& types, const SuiteEntry& entry, const SuiteOptions& options, const std::string& folder,
                const std::string& place)
@@ -97,19 +112,11 @@ Done run_entry(model::TypeSource& types, const SuiteEntry& entry, const SuiteOpt
     Done out;
     out.entry = &entry;
     const auto fail = [&](const Errors& errors) { out.trouble = errors.front().text(); };
-    auto blueprint = blueprint::read_blueprint_file(entry.scene);
-    if (!blueprint) return fail(blueprint.errors()), out;
-    auto scene = model::compile(*blueprint, types);
-    if (!scene) return fail(scene.errors()), out;
-    Plan plan;
-    plan.scene = scene.take(), plan.title = entry.title, plan.command = options.command;
-    plan.combinations = combine(entry.rungs, entry.varied), plan.reference = entry.reference, plan.repeat = options.repeat;
-    plan.scales = entry.scales;
-    plan.run.until = entry.until, plan.run.quantities = entry.quantities, plan.run.floor = entry.floor;
-    plan.run.budget = options.budget, plan.run.allocations = options.allocations;
+    auto planned = plan_of(types, entry, options);
+    if (!planned) return fail(planned.errors()), out;
     if (options.progress)
-        plan.progress = [&](const std::string& text) { options.progress("study " + place + ", " + entry.name + ": " + text); };
-    auto result = run_study(types, plan);
+        planned->progress = [&](const std::string& text) { options.progress("study " + place + ", " + entry.name + ": " + text); };
+    auto result = run_study(types, *planned);
     if (!result) return fail(result.errors()), out;
     if (auto written = write_all(*result, folder + "/" + entry.name); !written) fail(written.errors());
     out.result = result.take();
@@ -305,6 +312,20 @@ Result<Suite> read_suite(const std::string& path)
     return out;
 }
 
+std::vector<SuiteLine> workload_of(model::TypeSource& types, const Suite& suite, const SuiteOptions& options)
+{
+    std::vector<SuiteLine> out;
+    for (const SuiteEntry& entry : suite.entries)
+    {
+        auto plan = plan_of(types, entry, options);
+        if (plan)
+            out.push_back({&entry, workload_of(types, *plan), ""});
+        else
+            out.push_back({&entry, {}, plan.error().text()});
+    }
+    return out;
+}
+
 Result<std::vector<std::string>> run_suite(model::TypeSource& types, const Suite& suite, const SuiteOptions& options,
                                            const std::string& folder)
 {
@@ -313,8 +334,13 @@ Result<std::vector<std::string>> run_suite(model::TypeSource& types, const Suite
     if (error) return reason("cannot make the folder " + folder + ": " + error.message());
     std::vector<Done> all;
     for (std::size_t i = 0; i < suite.entries.size(); ++i)
-        all.push_back(
-            run_entry(types, suite.entries[i], options, folder, std::to_string(i + 1) + " of " + std::to_string(suite.entries.size())));
+    {
+        const std::string place = std::to_string(i + 1) + " of " + std::to_string(suite.entries.size());
+        all.push_back(run_entry(types, suite.entries[i], options, folder, place));
+        if (options.stop != nullptr && options.stop->asked())
+            return reason("study " + place + ", " + suite.entries[i].name + ": " + all.back().trouble + ". " + std::to_string(i) +
+                          " studies of the suite are in " + folder + ", each in its folder; " + folder + "/report.html is not written");
+    }
     const std::vector<Tally> tallies = tallies_of(all, options.tolerance);
     std::vector<std::string> sentences = findings_of(all, tallies, options.tolerance);
     if (auto written = write_suite(suite, all, options, sentences, tallies, folder); !written) return written.errors();

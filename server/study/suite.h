@@ -35,11 +35,22 @@ struct SuiteOptions
     double tolerance = 1e-6;
     std::string command;
     std::uint64_t (*allocations)() = nullptr;
+    const Interruption* stop = nullptr;  ///< asked: nobody wants the rest
     std::function<void(const std::string&)> progress;
 };
 
+/// What each study of the suite comes to, without running it.
+struct SuiteLine
+{
+    const SuiteEntry* entry = nullptr;
+    Workload work;
+    std::string trouble;  ///< why it cannot be studied; "": it can
+};
+std::vector<SuiteLine> workload_of(model::TypeSource& types, const Suite& suite, const SuiteOptions& options);
+
 /// Each study in a folder of its own below `folder`, and report.html, suite.json, digits and profile in `folder`. The
-/// findings, in sentences. A study that cannot be made is listed as such.
+/// findings, in sentences. A study that cannot be made is listed as such. One that is interrupted is an error, which says what of
+/// the suite is there.
 Result<std::vector<std::string>> run_suite(model::TypeSource& types, const Suite& suite, const SuiteOptions& options,
                                            const std::string& folder);
 

@@ -99,7 +99,7 @@ const plab_v2_Server& ServerSample::of(const Identity& identity, const publish::
     wire_.run = status.run, wire_.revision = status.revision, wire_.step = status.step;
     wire_.time = status.time, wire_.dt = status.dt, wire_.paused = status.paused;
     wire_.rate_asked = status.rate_asked, wire_.rate_reached = status.rate_reached, wire_.slipped = status.slipped;
-    wire_.overload = text(status.slipping ? "slip" : "");
+    wire_.overload = text(!status.busy.empty() ? status.busy.c_str() : status.slipping ? "slip" : "");
     wire_.states_per_second = status.states_per_second, wire_.threads = status.threads;
     wire_.last_event = status.last_event, wire_.last_collision = status.last_collision;
     wire_.requests_done = status.requests_done, wire_.requests_refused = status.requests_refused;
@@ -310,6 +310,8 @@ const plab_v2_Reply& ReplySample::of(const publish::Answer& answer, bool repeate
     wire_.number = answer.number, wire_.outcome = text(r.done ? "done" : r.late ? "late" : "refused"), wire_.repeated = repeated;
     wire_.run = answer.run, wire_.revision = r.revision, wire_.step = r.step, wire_.time = answer.time;
     wire_.pause_ns = r.pause_ns, wire_.waited_ns = answer.waited_ns;
+    trial_ = simulation::text_of(r.trial);
+    wire_.trial = text(trial_);
     view(wire_.reasons, reasons_);
     view(wire_.swaps, swaps_);
     return wire_;

@@ -174,6 +174,7 @@ private:
     std::vector<char*> reasons_;
     std::vector<std::vector<plab_v2_FieldFate>> fields_;
     std::vector<plab_v2_SwapReport> swaps_;
+    std::string trial_;
 };
 
 }  // namespace plab::wire

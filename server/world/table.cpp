@@ -1,5 +1,7 @@
 #include "world/table.h"
 
+#include <algorithm>
+
 namespace plab::world
 {
 namespace
@@ -56,6 +58,12 @@ void Table::assign(Row row, std::uint32_t component, std::uint32_t host_index)
 {
     component_of_row_[row] = component;
     host_of_row_[row] = host_index;
+}
+
+bool Table::holds(unsigned kinds) const
+{
+    const auto& fields = schema_.fields();
+    return std::any_of(fields.begin(), fields.end(), [&](const Field& f) { return (kinds & kind_bit(f.kind)) && !f.hosted; });
 }
 
 void Table::save(Row row, unsigned kinds, ByteWriter& out) const

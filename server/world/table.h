@@ -33,6 +33,8 @@ public:
     std::size_t capacity() const { return component_of_row_.size(); }
 
     /// Raw bytes of the fields of one row, of the kinds in `kinds` (bit per FieldKind); hosted fields and roles left out.
+    /// Whether it has any such field.
+    bool holds(unsigned kinds) const;
     void save(Row row, unsigned kinds, ByteWriter& out) const;
     void load(Row row, unsigned kinds, ByteReader& in);
 

@@ -274,6 +274,28 @@ Backup World::backup() const
     return {directory_, scene_, parked_, host_, cells.bytes()};
 }
 
+void World::save_fields(unsigned kinds, ByteWriter& out) const
+{
+    for (const auto& table : tables_)
+    {
+        if (!table->holds(kinds)) continue;
+        const auto owners = table->component_of_row();
+        for (Row row = 0; row < owners.size(); ++row)
+            if (owners[row] != kNoIndex) table->save(row, kinds, out);
+    }
+}
+
+void World::load_fields(unsigned kinds, ByteReader& in)
+{
+    for (const auto& table : tables_)
+    {
+        if (!table->holds(kinds)) continue;
+        const auto owners = table->component_of_row();
+        for (Row row = 0; row < owners.size(); ++row)
+            if (owners[row] != kNoIndex) table->load(row, kinds, in);
+    }
+}
+
 void World::restore(const Backup& b)
 {
     const bool same_structure = directory_.same_as(b.directory) && scene_.same_as(b.scene);

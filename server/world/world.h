@@ -94,6 +94,10 @@ public:
     Backup backup() const;
     void restore(const Backup& backup);
 
+    /// The fields of these kinds (bits) of all living components, in an order that stands as long as the structure does.
+    void save_fields(unsigned kinds, ByteWriter& out) const;
+    void load_fields(unsigned kinds, ByteReader& in);
+
     /// Everything as a value (image.h), for this or another world.
     Image image() const;
     /// Makes a world without components into that of the image, under new directory indices and rows. Opaque parts are made
@@ -127,6 +131,9 @@ public:
     /// Sets a param or state field without running Prepare. The value must have the field's type.
     Result<void> set(std::uint32_t component, const std::string& field, const Value& value);
 
+    /// The largest output of a component that is declared as its error; 0 if it has none.
+    double largest_error(std::uint32_t component) const;
+
     std::vector<std::unique_ptr<Table>>& tables() { return tables_; }
     const std::vector<std::unique_ptr<Table>>& tables() const { return tables_; }
     Table& table_of(std::uint32_t i) { return *tables_[component(i).table]; }
@@ -136,7 +143,7 @@ public:
     const model::SceneSpec& scene() const { return *scene_; }
     /// Settings and file; before components are added.
     void describe(const model::SceneSettings& settings, const std::string& file);
-    model::TypeSource& types() { return *types_; }
+    model::TypeSource& types() const { return *types_; }
 
     /// Over the raw bits of all state, in id order (server/docs/determinism.md).
     std::uint64_t state_hash(std::uint64_t start) const;

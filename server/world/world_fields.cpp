@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "world/state_hash.h"
@@ -215,6 +216,16 @@ std::uint64_t hash_bytes(std::uint64_t h, std::span<const std::uint8_t> bytes)
     }
     for (; i < bytes.size(); ++i) h = (h ^ bytes[i]) * kHashPrime;
     return h;
+}
+
+double World::largest_error(std::uint32_t i) const
+{
+    double worst = 0;
+    if (component(i).table == kNoIndex) return worst;
+    for (const Field& field : table_of(i).schema().fields())
+        if (const auto* column = field.is_error ? dynamic_cast<const Column<double>*>(field.column) : nullptr)
+            worst = std::max(worst, std::fabs((*column)[component(i).row]));
+    return worst;
 }
 
 }  // namespace plab::world

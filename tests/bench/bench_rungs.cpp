@@ -1,6 +1,7 @@
 // What a step costs with each rung of the ladders, in small standard scenes: a Markdown table on standard output.
 //
 //   build/bin/bench_rungs [FAMILY ...]     families as types begin: Solver Resolution Response Manager Constraint (default: all)
+//   build/bin/bench_rungs --measured       the rows of server/model/measured_costs.h, which the reference and plabctl types print
 //
 // Types come from the registry, so a new rung appears by itself. The figure is the least mean of five runs, microseconds per step
 // of 1/240 s, one thread, no bus.
@@ -171,6 +172,68 @@ void managers()
     }
 }
 
+// Measured costs by kind of scene --------------------------------------------------------------------------------------
+
+/// us per step: median of the steps that two seconds have room for, at most 240, behind ten that warm up.
+Result<double> median_cost(const std::string& text)
+{
+    constexpr std::uint64_t kLongest = 2'000'000'000;
+    auto simulation = load_text(text, "rung.xml");
+    if (!simulation) return simulation.errors();
+    std::vector<double> us;
+    const std::uint64_t begin = simulation::now_ns();
+    for (int i = 0; i < 250 && (i < 15 || simulation::now_ns() - begin < kLongest); ++i)
+    {
+        const std::uint64_t before = simulation::now_ns();
+        (*simulation)->step();
+        if (i >= 10) us.push_back(static_cast<double>(simulation::now_ns() - before) * 1e-3);
+    }
+    std::nth_element(us.begin(), us.begin() + static_cast<std::ptrdiff_t>(us.size() / 2), us.end());
+    return us[us.size() / 2];
+}
+
+/// `stacks` stacks of `high` cubes each, 3 m apart, at rest, with friction.
+std::string stacks_on_ground(int stacks, int high, const std::string& answer)
+{
+    std::string out =
+        "<component id=\"plane\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"plane\"/>"
+        "<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.5 0.5 0.5\"/>";
+    for (int k = 0; k < stacks; ++k)
+        for (int i = 0; i < high; ++i)
+            out += "<component id=\"cube" + std::to_string(k) + "_" + std::to_string(i) +
+                   "\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"" + std::to_string(3 * k) + " 0 " + std::to_string(i) +
+                   ".5\"/>";
+    return scene(out + kGravity + contact("response.friction=\"0.6\" " + answer));
+}
+
+std::string free_bodies(int n, const std::string& solver)
+{
+    std::string out;
+    for (int i = 0; i < n; ++i) out += body("b" + std::to_string(i), std::to_string(2 * i) + " 0 0", "angular_velocity=\"0.1 5 0.1\"");
+    return scene(out + kGravity + "<component id=\"air\" type=\"Field/Drag\" between=\"*\" linear=\"0.1\"/>", "solver=\"" + solver + "\"");
+}
+
+void print_measured(const std::string& type, const std::string& few, const std::string& many, const std::string& stacks)
+{
+    const auto number = [](const Result<double>& cost) { return cost ? cell_of(cost) : std::string("-1"); };
+    std::printf("    {\"%s\", %s, %s, %s},\n", type.c_str(), number(median_cost(few)).c_str(), number(median_cost(many)).c_str(),
+                number(median_cost(stacks)).c_str());
+    std::fflush(stdout);
+}
+
+void measured()
+{
+    const auto contacts = [](const std::string& type, const std::string& answer)
+    { print_measured(type, stacks_on_ground(1, 1, answer), stacks_on_ground(64, 3, answer), stacks_on_ground(1, 20, answer)); };
+    const std::string none = "resolution=\"Resolution/None\" ";
+    for (const Rung& r : rungs_of("Manager")) contacts(r.name, none + "response=\"Response/Rows\" response.manager=\"" + r.name + "\"");
+    for (const Rung& r : rungs_of("Resolution"))
+        contacts(r.name, "resolution=\"" + r.name + "\" response=\"Response/Rows\"");
+    for (const Rung& r : rungs_of("Response"))
+        if (r.name != "Response/None") contacts(r.name, none + "response=\"" + r.name + "\"");
+    for (const Rung& r : rungs_of("Solver")) print_measured(r.name, free_bodies(1, r.name), free_bodies(192, r.name), swinging_chain(r.name));
+}
+
 /// Something that a parameter without default may be.
 std::string some_value(const Field& field)
 {
@@ -234,6 +297,7 @@ int main(int argc, char** argv)
         void (*print)();
     };
     const std::vector<std::string> wanted(argv + 1, argv + argc);
+    if (wanted == std::vector<std::string>{"--measured"}) return measured(), 0;
     for (const Family& f : {Family{"Solver", solvers}, Family{"Resolution", resolutions}, Family{"Response", responses},
                             Family{"Manager", managers}, Family{"Constraint", constraints}})
         if (wanted.empty() || std::count(wanted.begin(), wanted.end(), f.name) > 0) f.print();

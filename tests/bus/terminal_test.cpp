@@ -140,7 +140,18 @@ TEST_CASE("after Ctrl-C and after SIGTERM the terminal is as it was")
         REQUIRE(player.shows("1x  ["));
         CHECK_FALSE(player.has_lines());
         is_typed ? player.type("\003") : player.stop();
-        CHECK(player.end() == 130);
+        CHECK(player.end() == (is_typed ? 130 : 143));
         CHECK(player.has_lines());
     }
+}
+
+TEST_CASE("long work shows on a terminal how far it is, and Ctrl-C ends it")
+{
+    OnTerminal study({program("plab-study"), scene_file("studies/stack.xml"), "--vary", "dt=1/960", "--reference", "exact:rest", "--until",
+                      "1000", "-o", scratch_file("terminal_study")});
+    REQUIRE(study.shows("recording 1 of 1"));
+    REQUIRE(study.shows("(Ctrl-C ends)"));
+    study.type("\003");
+    CHECK(study.end() == 130);
+    CHECK_MESSAGE(study.shows("interrupted while recording run 1 of 1"), study.seen());
 }

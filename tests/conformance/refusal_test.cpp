@@ -136,26 +136,6 @@ std::vector<Value> bad_values(const Field& field)
     return out;
 }
 
-bool settable(const Field& field) { return field.kind == FieldKind::Param || field.kind == FieldKind::State; }
-
-template <class Nodes>
-void erase_named(Nodes& nodes, const std::string& name)
-{
-    std::erase_if(nodes, [&](const auto& n) { return n.name == name; });
-}
-
-/// The scene with one field of the subject written anew.
-model::Blueprint with_field(const Subject& subject, const std::string& name, const std::string& text)
-{
-    model::Blueprint out = subject.blueprint;
-    model::ComponentNode& node = subject_node(out);
-    erase_named(node.attributes, name), erase_named(node.parameters, name), erase_named(node.values, name);
-    model::TextNode given;
-    given.name = name, given.text = text;
-    node.parameters.push_back(given);
-    return out;
-}
-
 void check_names(const Errors& errors, const std::string& field)
 {
     const bool named = std::any_of(errors.begin(), errors.end(), [&](const Error& e) { return e.reason.find(field) != std::string::npos; });
@@ -178,13 +158,6 @@ void check_refused(simulation::Simulation& simulation, const std::string& field,
     if (!reply.done) check_names(reply.errors, field);
 }
 
-const Schema& schema_of(const Subject& subject)
-{
-    const auto type = library().require(subject.type);
-    REQUIRE(type.ok());
-    return (*type)->schema;
-}
-
 }  // namespace
 
 TEST_CASE("a blueprint with a bad value is refused, and the reason names component and field")
@@ -200,7 +173,7 @@ TEST_CASE("a blueprint with a bad value is refused, and the reason names compone
             for (const std::string& text : bad_texts(field))
             {
                 CAPTURE(text);
-                const auto scene = model::compile(with_field(subject, field.name, text), library());
+                const auto scene = model::compile(with_field(subject.blueprint, field.name, text), library());
                 CHECK(!scene.ok());
                 if (!scene) check_names(scene.errors(), field.name);
             }
@@ -213,13 +186,13 @@ TEST_CASE("a field that must be given, and one that does not exist, are named")
     for (const Subject& subject : subjects())
     {
         CAPTURE(subject.type);
-        const auto unknown = model::compile(with_field(subject, "no_such_field", "1"), library());
+        const auto unknown = model::compile(with_field(subject.blueprint, "no_such_field", "1"), library());
         REQUIRE(!unknown.ok());
         check_names(unknown.errors(), "no_such_field");
         for (const Field& field : schema_of(subject).fields())
         {
             CAPTURE(field.name);
-            model::Blueprint scene = with_field(subject, field.name, "1");
+            model::Blueprint scene = with_field(subject.blueprint, field.name, "1");
             if (field.required) subject_node(scene).parameters.pop_back();
             if (!field.required && settable(field)) continue;
             const auto refused = model::compile(scene, library());

@@ -103,6 +103,27 @@ model::ComponentNode& subject_node(model::Blueprint& blueprint)
     return *found;
 }
 
+bool settable(const Field& field) { return field.kind == FieldKind::Param || field.kind == FieldKind::State; }
+
+model::Blueprint with_field(const model::Blueprint& scene, const std::string& name, const std::string& text)
+{
+    model::Blueprint out = scene;
+    model::ComponentNode& node = subject_node(out);
+    const auto erase_named = [&](auto& nodes) { std::erase_if(nodes, [&](const auto& n) { return n.name == name; }); };
+    erase_named(node.attributes), erase_named(node.parameters), erase_named(node.values);
+    model::TextNode given;
+    given.name = name, given.text = text;
+    node.parameters.push_back(given);
+    return out;
+}
+
+const Schema& schema_of(const Subject& subject)
+{
+    const auto type = library().require(subject.type);
+    REQUIRE(type.ok());
+    return (*type)->schema;
+}
+
 model::Blueprint repeated(const Subject& subject)
 {
     model::Blueprint out = subject.blueprint;

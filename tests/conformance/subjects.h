@@ -29,6 +29,12 @@ const std::vector<std::string>& subjects_missing();
 
 /// The component under test in a blueprint.
 model::ComponentNode& subject_node(model::Blueprint& blueprint);
+/// The scene with one field of the subject written anew.
+model::Blueprint with_field(const model::Blueprint& scene, const std::string& name, const std::string& text);
+/// What the subject's type declares.
+const Schema& schema_of(const Subject& subject);
+/// Whether a blueprint may give it.
+bool settable(const Field& field);
 /// The same scene four times, 100 m apart.
 model::Blueprint repeated(const Subject& subject);
 

@@ -104,7 +104,7 @@ check_clients() {
     echo "$answer"
     [[ $(beside_server plabctl interactions) == *Constraint/AngularVelocity/Impulse* ]] || fail "the swap is not to be seen"
     within 10 in_log "$events" gears || { engine logs "$events"; fail "the logger has not seen the swap"; }
-    stop_and_expect "$events" "the logger" 0
+    stop_and_expect "$events" "the logger" 143
 }
 
 check_viewer() {

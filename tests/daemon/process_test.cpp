@@ -2,11 +2,13 @@
 #include <doctest/doctest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -149,4 +151,86 @@ TEST_CASE("help, version, check, expand, explain")
     const Outcome explain = plabd("--explain " + kScene);
     CHECK(has(explain.text, "one degree of freedom"));
     CHECK(has(explain.text, "Field/Gravity"));
+}
+
+TEST_CASE("the trace has work and outputs of interactions: forces of joints, residuals of responses")
+{
+    const std::string scene = temporary("joint.xml"), file = temporary("joint.csv");
+    std::ofstream(scene) << "<plab version=\"1\"><component id=\"bob\" type=\"State/RigidBody\" mass=\"2\" inertia=\"1 1 1\"/>"
+                            "<component id=\"hook\" type=\"State/Static\"/>"
+                            "<component id=\"weld\" type=\"Constraint/Fixed\" a=\"hook\" b=\"bob\"/>"
+                            "<component id=\"g\" type=\"Field/Gravity\" between=\"bob\"/></plab>";
+    const Outcome run = plabd(scene + " --until 0.1 --trace " + file);
+    REQUIRE_MESSAGE(run.code == 0, run.text);
+    std::istringstream lines(read(file));
+    std::string header, line, last;
+    std::getline(lines, header);
+    while (std::getline(lines, line)) last = line;
+    const auto cells = [](const std::string& text)
+    {
+        std::vector<std::string> out;
+        std::istringstream in(text);
+        for (std::string cell; std::getline(in, cell, ',');) out.push_back(cell);
+        return out;
+    };
+    const std::vector<std::string> names = cells(header), values = cells(last);
+    REQUIRE(values.size() == names.size());
+    const auto value = [&](const std::string& name)
+    {
+        const auto at = std::find(names.begin(), names.end(), name);
+        REQUIRE_MESSAGE(at != names.end(), name);
+        return std::stod(values[static_cast<std::size_t>(at - names.begin())]);
+    };
+    CHECK(value("weld.force.z") == doctest::Approx(2 * 9.81).epsilon(1e-9));
+    CHECK(std::abs(value("weld.work")) < 1e-9);
+    CHECK(std::abs(value("weld.position_error")) < 1e-9);
+    CHECK(value("bob.position.z") == doctest::Approx(0).epsilon(1e-9));
+}
+
+TEST_CASE("--reference prints one type, by its whole or short name, or a kind")
+{
+    const Outcome one = plabd("--reference Response/Rows"), same = plabd("--reference Rows"), kind = plabd("--reference Response");
+    REQUIRE_MESSAGE(one.code == 0, one.text);
+    CHECK(one.text.starts_with("### Response/Rows\n"));
+    CHECK_FALSE(has(one.text, "### Response/Impulse"));
+    CHECK(same.text == one.text);
+    CHECK(has(kind.text, "### Response/Impulse\n"));
+    CHECK(has(kind.text, one.text));
+    CHECK_FALSE(has(kind.text, "### Manager/"));
+    const Outcome unknown = plabd("--reference Rose");
+    CHECK(unknown.code == 1);
+    CHECK(has(unknown.text, "unknown type 'Rose'"));
+    CHECK(has(plabd("--reference Impulse").text, "'Constraint/AngularVelocity/Impulse' or 'Response/Impulse': give the whole name"));
+}
+
+TEST_CASE("the reference of Script/Lua lists what a script can use, with units and limits")
+{
+    const Outcome lua = plabd("--reference Lua");
+    REQUIRE(lua.code == 0);
+    for (const char* line : {"| `participant:add_force(force)` |", "| `body.velocity` | m/s |", "| `step.dt` | s |", "| `math.atan(y, x)` |",
+                             "texts of 4096 bytes"})
+        CHECK_MESSAGE(has(lua.text, line), line);
+}
+
+TEST_CASE("short names of types work on the command line and in a scene")
+{
+    const Outcome run = plabd(kScene + " --until 0.1 --swap \"10:contact.response=None\" --swap \"12:contact.resolution=LocalRoot\" --log-level info");
+    CHECK_MESSAGE(run.code == 0, run.text);
+    CHECK(has(run.text, "Response/Impulse -> Response/None"));
+    CHECK(has(run.text, "-> Resolution/LocalRoot"));
+}
+
+TEST_CASE("too many components are refused where they come in, with the place and the option that allows more")
+{
+    const std::string scene = temporary("many.xml");
+    std::ofstream(scene) << "<plab version=\"1\">\n  <repeat count=\"900000\" step=\"1 0 0\">\n    <component id=\"b\" "
+                            "type=\"State/RigidBody\" mass=\"1\"/>\n  </repeat>\n</plab>";
+    const Outcome run = plabd(scene + " --check");
+    CHECK(run.code == 1);
+    CHECK(has(run.text, "many.xml:2:"));
+    CHECK(has(run.text, "makes 900000 components: a scene has at most 100000 (--max-components N raises that)"));
+    std::ofstream(scene) << "<plab version=\"1\">\n  <repeat count=\"30\">\n    <component id=\"b\" "
+                            "type=\"State/RigidBody\" mass=\"1\"/>\n  </repeat>\n</plab>";
+    CHECK(plabd(scene + " --check --max-components 20").code == 1);
+    CHECK(plabd(scene + " --check --max-components 40").code == 0);
 }

@@ -1,5 +1,6 @@
 // plabd --replay --verify of recordings in which something is not as it was, and of those of older builds.
 #include <doctest/doctest.h>
+#include <signal.h>
 
 #include <filesystem>
 #include <set>
@@ -283,6 +284,47 @@ TEST_CASE("a recording that cannot be replayed is announced as one")
                                "plab/states,plab/snapshots,plab/journal,plab/hashes"});
     CHECK(!has(all.errors, "cannot be replayed"));
     CHECK(verify(file).code == 0);
+}
+
+TEST_CASE("interrupted is not verified: it says how far it came, and ends with 130 or 143")
+{
+    const std::string file = scratch_file("long.mcap"), out = scratch_file("long.json");
+    const Outcome made = plabd({scene_file("fan_and_balloons.xml"), "--no-bus", "--until", "400", "--record", file, "--record-states",
+                                "0.01", "--record-snapshots", "1000"});
+    REQUIRE_MESSAGE(made.code == 0, made.errors);
+    for (const int signal : {SIGINT, SIGTERM})
+    {
+        Process replay({program("plabd"), "--replay", file, "--verify", "--hashes", "--out", out});
+        REQUIRE(replay.wait_for("\n100 ", Milliseconds(20000)));
+        replay.signal(signal);
+        CHECK(replay.wait(Milliseconds(5000)) == 128 + signal);
+        const std::string text = replay.output();
+        CHECK(!has(text, "verified: "));
+        CHECK_MESSAGE(has(text, signal == SIGINT ? "interrupted by SIGINT after step " : "interrupted by SIGTERM after step "), text);
+        CHECK(has(text, "of run 1: NOT VERIFIED; "));
+        CHECK(has(text, " state hashes were the same until then"));
+        CHECK(!std::filesystem::exists(out));
+    }
+}
+
+TEST_CASE("a run that is interrupted before its --until ends with 130 or 143; a server, whose end a signal is, with 0")
+{
+    const std::string scene = scene_file("fan_and_balloons.xml");
+    for (const int signal : {SIGINT, SIGTERM})
+        for (const bool has_end : {true, false})
+        {
+            const std::string file = scratch_file("cut.mcap");
+            std::vector<std::string> command{program("plabd"), scene,      "--no-bus", "--rate",     "max",
+                                             "--hashes",       "--record", file,       "--overwrite"};
+            if (has_end) command.insert(command.end(), {"--until", "1e6"});
+            Process run(command);
+            REQUIRE(run.wait_for("\n100 ", Milliseconds(20000)));
+            run.signal(signal);
+            CHECK(run.wait(Milliseconds(10000)) == (has_end ? 128 + signal : 0));
+            CHECK(has(run.errors(), "--until 1000000 was not reached") == has_end);
+            // What is there is whole, as far as it goes.
+            CHECK(verify(file).code == 0);
+        }
 }
 
 }  // namespace plab::test

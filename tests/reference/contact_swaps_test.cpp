@@ -118,7 +118,7 @@ TEST_CASE("H2: in flight a swap of the response moves nothing; in contact it kee
         Scene s("<component id=\"sphere\" type=\"Shape/Sphere\" radius=\"0.1\"/>" +
                     ball("a", "position=\"-0.12 0 0\" linear_velocity=\"1 0.1 0\"") + ball("b", "position=\"0.12 0 0\"") +
                     "<component id=\"contact\" type=\"CDetection/ODE\" between=\"a b\" resolution=\"Resolution/LocalBisection\" "
-                    "response=\"Response/Penalty\" response.stiffness=\"1e3\"/>",
+                    "response=\"Response/Penalty\" response.stiffness=\"1e3\" response.restitution=\"1\"/>",
                 "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.step(4);

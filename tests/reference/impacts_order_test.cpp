@@ -103,7 +103,7 @@ TEST_CASE("C9: contacts that last do not do what impacts one after the other do"
                     gravity("big small") +
                     "<component id=\"contact\" type=\"CDetection/ODE\" between=\"big small ground\" response=\"Response/Penalty\" "
                     "response.stiffness=\"" +
-                    text(stiffness) + "\"/>",
+                    text(stiffness) + "\" response.restitution=\"1\"/>",
                 "dt=\"1/240\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         double top = 0;

@@ -1,4 +1,5 @@
 // Rows that may let go (limits, motors with a largest effort), and joints among contacts: what managers hold.
+#include <algorithm>
 #include <numbers>
 
 #include "support/joints.h"
@@ -69,6 +70,63 @@ TEST_CASE("a limit stops a fall along a slider, with and without rebound")
         CHECK(near(s.vec("stop", "force").z, 2 * kG, 1e-9));
         CHECK(s.real("rail", "position_error") < 1e-12);
     }
+}
+
+TEST_CASE("a limit gives its restitution back, with joints beside it, by Direct and by SoftStep")
+{
+    // Down 0.5 m: it comes at v = sqrt(g). A pendulum that is let go level comes to 0.6 rad with w^2 = 2 m g l sin(0.6) / J.
+    struct Row
+    {
+        std::string type;
+        double error;  ///< m, of the joints: SoftStep's give way
+    };
+    for (const Row& row : {Row{"Direct", 1e-6}, Row{"SoftStep", 3e-3}})
+        for (const double e : {0., .5, 1.})
+        {
+            CAPTURE(row.type);
+            CAPTURE(e);
+            const std::string bounce = "' restitution='" + text(e) + "' manager='manager'";
+            Scene s(
+                solver_is("RungeKutta4") + gravity() + manager(row.type) + body("bob", 2, {.1, .1, .1}, {0, 0, .5}) +
+                    joint("rail", "Slider", "", "bob", "axis='0 0 1' anchor_a='0 0 0'") +
+                    joint("stop", "Limit", "", "bob", "along='slide' axis='0 0 1' anchor_a='0 0 0' anchor_b='0 0 0' lower='0" + bounce) +
+                    body("weight", 1, {.1, .1, .1}, {9, 5, 0}) + joint("pivot", "Hinge", "", "weight", "anchor='8 5 0' axis='0 1 0'") +
+                    joint("end", "Limit", "", "weight", "anchor='8 5 0' axis='0 1 0' upper='0.6" + bounce),
+                dt(1000));
+            REQUIRE_MESSAGE(s.loaded(), s.error());
+            s.warnings_expected = true;
+            const double arrives = std::sqrt(kG), turns = std::sqrt(2 * kG * std::sin(.6) / 1.1);
+            double fastest = 0, most_turn = 0;
+            while (s.simulation().time() < .6)
+            {
+                s.step();
+                fastest = std::fmax(fastest, s.vec("bob", "linear_velocity").z);
+                most_turn = std::fmax(most_turn, -s.vec("weight", "angular_velocity").y);
+            }
+            MESSAGE(row.type, " e ", e, ": ", fastest / arrives - e, ", ", most_turn / turns - e);
+            CHECK(std::fabs(fastest / arrives - e) < 5e-3);
+            CHECK(std::fabs(most_turn / turns - e) < 5e-3);
+            CHECK(s.real("rail", "position_error") < row.error);
+            CHECK(s.real("pivot", "position_error") < row.error);
+        }
+}
+
+TEST_CASE("a manager that does not get there warns, with numbers that can be read")
+{
+    Scene s(gravity() + shape("cube", "Box", "half_extents='0.5 0.5 0.5'") + ground() +
+            "<component id='manager' type='Manager/SequentialImpulse' tolerance='1e-13' max_iterations='2'/>"
+            "<component id='response' type='Response/Rows' manager='manager' friction='0.5'/>"
+            "<component id='contact' type='CDetection/ODE' between='low high' against='ground' response='response'/>"
+            "<component id='low' type='State/RigidBody' mass='1' shape='cube' position='0 0 0.5'/>" +
+            "<component id='high' type='State/RigidBody' mass='1000' shape='cube' position='0.1 0 1.5'/>");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = s.keep_events = true;
+    s.step(20);
+    const auto told = std::find_if(s.events.begin(), s.events.end(), [](const Event& e) { return e.kind == "manager.not_converged"; });
+    REQUIRE(told != s.events.end());
+    CHECK(told->severity == Severity::Warning);
+    CHECK_MESSAGE(told->message.find("1e-13 would do") != std::string::npos, told->message);
+    CHECK_MESSAGE(told->message.find("0.000") == std::string::npos, told->message);
 }
 
 TEST_CASE("a pendulum comes to rest on the limit of its hinge, which bears its moment")

@@ -3,6 +3,7 @@
 #include <array>
 #include <numbers>
 
+#include "plab/random.h"
 #include "support/joints.h"
 #include "support/linkages.h"
 
@@ -94,4 +95,51 @@ TEST_CASE("E3: Bricard's linkage keeps the solver's order")
     MESSAGE("order ", order);
     CHECK(order > 3.8);
     CHECK(order < 4.3);
+}
+
+namespace
+{
+
+/// Bodies whose centres all stand at the origin, in a chain of joints whose points are there too. `chance` changes.
+std::string centred_chain(std::uint64_t& chance)
+{
+    const auto draw = [&](double size) { return (2 * next_uniform(chance) - 1) * size; };
+    const auto vector = [&](double size)
+    {
+        const double x = draw(size), y = draw(size), z = draw(size);
+        return Vec3{x, y, z};
+    };
+    const std::array<std::string, 5> solvers{"RungeKutta4", "SemiImplicitEuler", "RotationSplitting", "Automatic", "Radau5"};
+    const std::array<std::string, 4> joints{"Ball", "Hinge", "Fixed", "Slider"};
+    std::string out = solver_is(solvers[next_random(chance) % solvers.size()]) + gravity(text(vector(10)));
+    const std::size_t bodies = 1 + next_random(chance) % 3;
+    for (std::size_t i = 0; i < bodies; ++i)
+    {
+        const Vec3 axis = vector(1), spin = vector(next_random(chance) % 2 == 0 ? 5 : 0);
+        const std::string& type = joints[next_random(chance) % joints.size()];
+        out += body("b" + number(static_cast<int>(i)), 1, {.1, .2, .25}, {},
+                    "orientation='axis " + text(axis) + " 0.7' angular_velocity='" + text(spin) + "'");
+        out += joint("j" + number(static_cast<int>(i)), type, i == 0 ? "" : "b" + number(static_cast<int>(i) - 1),
+                     "b" + number(static_cast<int>(i)),
+                     "anchor='0 0 0'" + (type == "Hinge" || type == "Slider" ? " axis='" + text(vector(1)) + "'" : std::string()));
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("bodies centred on their joints at the origin do not contradict one another: rounding is no error")
+{
+    // 60 chains, 5 of which told of 1e-16 m/s or less that were left: beside speeds of rounding that is much, beside what turns
+    // and hangs there it is nothing. A speed that does not fit is found all the same (E8, and gears that contradict one another).
+    std::uint64_t chance = 7;
+    for (int i = 0; i < 120; ++i)
+    {
+        CAPTURE(i);
+        Scene s(centred_chain(chance), dt(240));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = s.keep_events = true;
+        s.step(60);
+        CHECK(s.count("constraint.contradiction") == 0);
+    }
 }

@@ -34,7 +34,8 @@ std::string contact(const std::string& id, const std::string& between, const std
 
 std::string spring(const std::string& k, const std::string& more = "")
 {
-    return "response=\"Response/Penalty\" response.stiffness=\"" + k + "\" " + more;
+    const std::string elastic = more.find("restitution") == std::string::npos ? "response.restitution=\"1\" " : "";
+    return "response=\"Response/Penalty\" response.stiffness=\"" + k + "\" " + elastic + more;
 }
 
 const char* const kHard = "resolution=\"Resolution/LocalBisection\" response=\"Response/Impulse\" response.friction=\"0.5\"";

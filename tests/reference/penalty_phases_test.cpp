@@ -32,7 +32,7 @@ double restitution(double h, double phase, double v, double half_period, const s
 TEST_CASE("B2: fifty phases of the step at every h w, undamped and damped, give the same restitution")
 {
     // m = 1, k = 1e6: w = 1e3, the contact lasts pi ms.
-    const std::string plain = "Penalty response.stiffness='1e6'", damped = plain + " response.damping_ratio='0.1'";
+    const std::string plain = "Penalty response.restitution='1' response.stiffness='1e6'", damped = plain + " response.damping_ratio='0.1'";
     double worst = 0, worst_damped = 0;
     for (const double hw : {0.1, 0.5, 1.9, 2.5, 16.0})
         for (int i = 0; i < 50; ++i)
@@ -60,14 +60,14 @@ TEST_CASE("Hunt and Crossley: what comes back obeys (1 + e) s = ln((1 + s) / (1 
                 CAPTURE(s);
                 CAPTURE(v);
                 CAPTURE(law);
-                const std::string response = "HuntCrossley " + std::string(law) + " response.dissipation='" + text(s / v) + "'";
+                const std::string response = "HuntCrossley response.restitution='1' " + std::string(law) + " response.dissipation='" + text(s / v) + "'";
                 CHECK(std::fabs(restitution(1.0 / 60, 0.4, v, 0.3, response) - e) <= 2e-7);
             }
 }
 
 TEST_CASE("within a contact too, kinetic and stored energy are what came in")
 {
-    for (const char* response : {"Penalty response.stiffness='1e4'", "HuntCrossley response.stiffness='1e6'"})
+    for (const char* response : {"Penalty response.restitution='1' response.stiffness='1e4'", "HuntCrossley response.restitution='1' response.stiffness='1e6'"})
     {
         CAPTURE(response);
         Scene s(falling(1e-3, 1, response) + "<component id='solver' type='Solver/RungeKutta4'/>", dt(1000));

@@ -26,9 +26,9 @@ double bounce_error(const SolverRung& rung, const std::string& law, int pieces, 
     return worst;
 }
 
-const char* const kSpring = "Penalty\" response.stiffness=\"1e5\"";
-const char* const kDamper = "Penalty\" response.stiffness=\"1e5\" response.damping_ratio=\"0.1\"";
-const char* const kHertz = "HuntCrossley\" response.stiffness=\"1e7\"";
+const char* const kSpring = "Penalty\" response.restitution=\"1\" response.stiffness=\"1e5\"";
+const char* const kDamper = "Penalty\" response.restitution=\"1\" response.stiffness=\"1e5\" response.damping_ratio=\"0.1\"";
+const char* const kHertz = "HuntCrossley\" response.restitution=\"1\" response.stiffness=\"1e7\"";
 
 struct SolverRow
 {

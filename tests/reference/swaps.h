@@ -64,7 +64,7 @@ inline Scene block_on_a_slope()
 {
     return Scene(gravity("4.905 0 -8.495709211125344") + solid("a", "Box' half_extents='0.2 0.2 0.1'", 1, {0, 0, 0.1}) +
                      ground_and_contact("None", "Penalty",
-                                        "response.stiffness='2e3' response.damping_ratio='1' response.tangential_damping_ratio='1' "
+                                        "response.stiffness='2e3' response.restitution='1' response.damping_ratio='1' response.tangential_damping_ratio='1' "
                                         "response.friction='0.6' response.steps_per_contact='20'"),
                  dt(60));
 }

@@ -133,7 +133,7 @@ Case penalty()
     {
         const double k = kStiffness[v], w = std::sqrt(k), gap = 1.37 * kStep;
         Trial t(ground() + ball("ball", 0.1, 1, {0, 0, 0.1 + gap}, attribute("linear_velocity", Vec3{0, 0, -1})) +
-                    contact({"", "Penalty", "", ""}, attribute("response.stiffness", k)),
+                    contact({"", "Penalty", "", ""}, attribute("response.stiffness", k) + attribute("response.restitution", 1)),
                 settings(solvers[r]), kManyEvaluations);
         t.run(0.5);
         if (!t.loaded()) return t.judge(0, {});

@@ -12,8 +12,9 @@ void CouplingRows::describe_fields(Schema& s)
     s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
     s.param(driver_teeth, "driver_teeth", unit::one, "tooth count of the driver; with driven_teeth, instead of velocity_factor")
         .or_else(0)
-        .not_negative();
-    s.param(driven_teeth, "driven_teeth", unit::one, "tooth count of the driven").or_else(0).not_negative();
+        .not_negative()
+        .at_most(1e9);
+    s.param(driven_teeth, "driven_teeth", unit::one, "tooth count of the driven").or_else(0).not_negative().at_most(1e9);
     s.param(mesh, "mesh", unit::one, "of teeth: external reverses, internal and belt keep the sense of rotation")
         .or_else("external")
         .one_of({"external", "internal", "belt"});

@@ -37,8 +37,9 @@ void GearRows::describe(Schema& s)
     s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
     s.param(driver_teeth, "driver_teeth", unit::one, "tooth count of the driver; with driven_teeth, instead of velocity_factor")
         .or_else(0)
-        .not_negative();
-    s.param(driven_teeth, "driven_teeth", unit::one, "tooth count of the driven").or_else(0).not_negative();
+        .not_negative()
+        .at_most(1e9);
+    s.param(driven_teeth, "driven_teeth", unit::one, "tooth count of the driven").or_else(0).not_negative().at_most(1e9);
     s.param(mesh, "mesh", unit::one, "of teeth: external reverses, internal and belt keep the sense of rotation")
         .or_else("external")
         .one_of({"external", "internal", "belt"});
@@ -66,8 +67,8 @@ void PlanetaryRows::describe(Schema& s)
     s.role(sun, "sun", {Facet::Body, Facet::Shaft}, "the wheel inside").writes();
     s.role(ring, "ring", {Facet::Body, Facet::Shaft}, "the wheel outside").writes();
     s.role(carrier, "carrier", {Facet::Body, Facet::Shaft}, "bears the planets between them").writes();
-    s.param(sun_teeth, "sun_teeth", unit::one, "tooth count of the sun").positive();
-    s.param(ring_teeth, "ring_teeth", unit::one, "tooth count of the ring").positive();
+    s.param(sun_teeth, "sun_teeth", unit::one, "tooth count of the sun").positive().at_most(1e9);
+    s.param(ring_teeth, "ring_teeth", unit::one, "tooth count of the ring").positive().at_most(1e9);
     sun_spin.describe_spin(s, "sun_", "the sun");
     ring_spin.describe_spin(s, "ring_", "the ring");
     carrier_spin.describe_spin(s, "carrier_", "the carrier");

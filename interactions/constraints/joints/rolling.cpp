@@ -21,6 +21,73 @@ Vec3 lowest_rate(const Vec3& semi_axes, const Vec3& m, const Vec3& m_rate)
     return g * (dot(m, g_rate) / (h * h * h)) - g_rate / h;
 }
 
+bool on_plane(const RollingRows& rows, Row row) { return rows.on[row] == "plane"; }
+bool on_cylinder(const RollingRows& rows, Row row) { return rows.on[row] == "cylinder"; }
+
+/// c.b.r still leads to the centre of the ellipsoid.
+void meet_plane(const RollingRows& rows, Row row, const Side& plane, RollingContact& c)
+{
+    const Mat3 frame = rotation_matrix(plane.q * frame_of_axis(rows.plane_normal[row]));
+    c.t1 = {frame(0, 0), frame(1, 0), frame(2, 0)}, c.t2 = {frame(0, 1), frame(1, 1), frame(2, 1)};
+    c.n = {frame(0, 2), frame(1, 2), frame(2, 2)}, c.turn = c.a.w;
+
+    const Quat q_F = c.b.q * rows.axes[row];
+    const Vec3 w_ba = c.b.w - c.a.w;
+    const Vec3 m = rotate_back(q_F, c.n), m_rate = rotate_back(q_F, cross(c.n, w_ba));
+    c.b.r += rotate(q_F, lowest(rows.semi_axes[row], m));
+    // Centres first: far from the origin they agree in most of their digits.
+    c.gap = dot(c.n, (c.b.c - c.a.c) + (c.b.r - plane.r));
+    c.r_b_rate = cross(c.b.w, c.b.r) + rotate(q_F, lowest_rate(rows.semi_axes[row], m, m_rate));
+}
+
+/// The same on a sphere or a cylinder.
+void meet_round(const RollingRows& rows, Row row, const Side& round, RollingContact& c)
+{
+    const double r = rows.semi_axes[row].x, sigma = rows.inside[row] ? -1 : 1;
+    Vec3 d = (c.b.c - c.a.c) + (c.b.r - round.r);
+    Vec3 d_rate = (c.b.v + cross(c.b.w, c.b.r)) - (round.v + cross(round.w, round.r));
+    if (on_cylinder(rows, row))
+    {
+        c.u = rotate(round.q, rows.plane_normal[row]);
+        const Vec3 u_rate = cross(round.w, c.u);
+        const double along = dot(d, c.u);
+        d_rate = d_rate - (dot(d_rate, c.u) + dot(d, u_rate)) * c.u - along * u_rate;
+        d = d - along * c.u;
+    }
+    const double distance = length(d);
+    const Vec3 N = d / distance, n_rate = (sigma / distance) * (d_rate - dot(N, d_rate) * N);
+    c.n = sigma * N, c.gap = sigma * (distance - rows.radius[row]) - r;
+    // Tangents: along the cylinder, or square to n and to an axis of W.
+    const Vec3 k = std::fabs(c.n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, square = cross(c.n, k), square_rate = cross(n_rate, k);
+    c.t1 = on_cylinder(rows, row) ? c.u : normalized(square), c.t2 = cross(c.n, c.t1);
+    const Vec3 t1_rate = on_cylinder(rows, row) ? cross(round.w, c.u) : (square_rate - dot(c.t1, square_rate) * c.t1) / length(square);
+    c.turn = 0.5 * (cross(c.n, n_rate) + cross(c.t1, t1_rate) + cross(c.t2, cross(n_rate, c.t1) + cross(c.n, t1_rate)));
+    c.r_b_rate = cross(c.b.w, c.b.r) - r * n_rate;
+    c.b.r -= r * c.n;
+}
+
+/// The ellipsoid's centre stands over the point of the surface where `normal` leads from it to b.
+Vec3 point_below(const RollingRows& rows, Row row, const Bodies& bodies)
+{
+    const Vec3 &s = rows.semi_axes[row], &n = rows.normal[row];
+    const Quat q_F = bodies.orientation[rows.b[row].index] * rows.axes[row];
+    const Vec3 centre = side_of(bodies, rows.b[row], rows.centre[row]).p;
+    if (on_plane(rows, row)) return centre + rotate(q_F, lowest(s, rotate_back(q_F, n)));
+    return centre + (rows.inside[row] ? rows.radius[row] - s.x : -(rows.radius[row] + s.x)) * n;
+}
+
+Result<void> check_rolling(const RollingRows& rows, Row row)
+{
+    const Vec3& s = rows.semi_axes[row];
+    if (!(s.x > 0 && s.y > 0 && s.z > 0)) return reason("semi_axes must be above 0");
+    if (rows.parallel[row] && !on_cylinder(rows, row)) return reason("parallel is for what rolls on a cylinder");
+    if (on_plane(rows, row)) return {};
+    if (!(s.x == s.y && s.y == s.z)) return reason("on a " + rows.on[row] + " only a ball rolls: semi_axes must be three times its radius");
+    if (!(rows.radius[row] > 0)) return reason("on a " + rows.on[row] + " it needs that one's radius, above 0");
+    if (rows.inside[row] && !(rows.radius[row] > s.x)) return reason("to roll inside, the ball must be smaller than radius");
+    return {};
+}
+
 }  // namespace
 
 void RollingRows::describe(Schema& s)
@@ -30,13 +97,27 @@ void RollingRows::describe(Schema& s)
     s.param(semi_axes, "semi_axes", unit::metre, "half lengths of the ellipsoid; a ball: three times its radius");
     s.param(centre, "centre", unit::metre, "of the ellipsoid, in the frame of b").or_else({});
     s.param(axes, "axes", unit::one, "attitude of the ellipsoid's axes in b").or_else(Quat{});
+    s.param(on, "on", unit::one, "what of a it rolls on; on a sphere or a cylinder only a ball does")
+        .or_else("plane")
+        .one_of({"plane", "sphere", "cylinder"});
+    s.param(radius, "radius", unit::metre, "of that sphere or cylinder").or_else(0).not_negative();
+    s.param(inside, "inside", unit::one, "it rolls inside of the sphere or cylinder, not outside").or_else(false);
     s.param(point, "point", unit::metre,
-            "of the plane, in the world as things are now; infinite: not given, then where the ellipsoid is lowest")
+            "of the plane, the centre of the sphere, or on the axis of the cylinder, in the world as things are now; infinite: not given, "
+            "then such that b touches, with `normal`")
         .or_else(kNotGiven)
         .may_be_infinite();
-    s.param(normal, "normal", unit::one, "of the plane, to the side of b, in the world as it is now").or_else({0, 0, 1}).unit_length();
-    s.state(plane_point, "plane_point", unit::metre, "a point of the plane in the frame of a, or of the world");
-    s.state(plane_normal, "plane_normal", unit::one, "its normal there");
+    s.param(normal, "normal", unit::one, "from the surface to b where they touch, in the world as it is now; with a sphere's or cylinder's "
+            "point it does not count")
+        .or_else({0, 0, 1})
+        .unit_length();
+    s.param(axis, "axis", unit::one, "of the cylinder, in the world as it is now").or_else({0, 1, 0}).unit_length();
+    s.param(parallel, "parallel", unit::one, "b is a cylinder that touches along a line: it stays parallel to the cylinder's axis as it is now")
+        .or_else(false);
+    s.state(plane_point, "plane_point", unit::metre, "the point in the frame of a, or of the world");
+    s.state(plane_normal, "plane_normal", unit::one, "the plane's normal there, or the cylinder's axis");
+    s.state(placed_axis, "placed_axis", unit::one, "the axis that it was taken from").initially({});
+    s.state(axis_b, "axis_b", unit::one, "the cylinder's axis in the frame of b");
     s.state(placed_point, "placed_point", unit::metre, "the point that it was taken from").initially({}).may_be_infinite();
     s.state(placed_normal, "placed_normal", unit::one, "the normal that it was taken from").initially({});
     s.state(placed, "placed", unit::one, "the plane has been taken").initially(false);
@@ -48,42 +129,28 @@ void RollingRows::describe(Schema& s)
 RollingContact contact_of(const RollingRows& rows, Row row, const Bodies& bodies)
 {
     RollingContact c;
-    const Side plane = side_of(bodies, rows.a[row], rows.plane_point[row]);
-    c.a = plane, c.b = side_of(bodies, rows.b[row], rows.centre[row]);
-    const Mat3 frame = rotation_matrix(plane.q * frame_of_axis(rows.plane_normal[row]));
-    c.t1 = {frame(0, 0), frame(1, 0), frame(2, 0)}, c.t2 = {frame(0, 1), frame(1, 1), frame(2, 1)};
-    c.n = {frame(0, 2), frame(1, 2), frame(2, 2)};
-
-    const Quat q_F = c.b.q * rows.axes[row];
-    const Vec3 w_ba = c.b.w - c.a.w;
-    const Vec3 m = rotate_back(q_F, c.n), m_rate = rotate_back(q_F, cross(c.n, w_ba));
-    c.b.r += rotate(q_F, lowest(rows.semi_axes[row], m));
+    const Side surface = side_of(bodies, rows.a[row], rows.plane_point[row]);
+    c.a = surface, c.b = side_of(bodies, rows.b[row], rows.centre[row]);
+    on_plane(rows, row) ? meet_plane(rows, row, surface, c) : meet_round(rows, row, surface, c);
     c.b.p = c.b.c + c.b.r;
-    // Centres first: far from the origin they agree in most of their digits.
-    const Vec3 apart = c.b.c - c.a.c;
-    c.gap = dot(c.n, apart + (c.b.r - plane.r));
-    c.a.r = apart + c.b.r, c.a.p = c.b.p;
+    c.a.r = (c.b.c - c.a.c) + c.b.r, c.a.p = c.b.p;
     c.slip = (c.b.v + cross(c.b.w, c.b.r)) - (c.a.v + cross(c.a.w, c.a.r));
-    c.r_b_rate = cross(c.b.w, c.b.r) + rotate(q_F, lowest_rate(rows.semi_axes[row], m, m_rate));
     c.r_a_rate = c.b.v + c.r_b_rate - c.a.v;
     return c;
 }
 
 Result<void> prepare_rolling(Row row, RollingRows& rows, const Bodies& bodies)
 {
-    const Vec3& s = rows.semi_axes[row];
-    if (!(s.x > 0 && s.y > 0 && s.z > 0)) return reason("semi_axes must be above 0");
-    if (rows.placed[row] && rows.placed_point[row] == rows.point[row] && rows.placed_normal[row] == rows.normal[row]) return {};
+    if (auto makes_sense = check_rolling(rows, row); !makes_sense) return makes_sense;
+    const bool known = rows.placed_point[row] == rows.point[row] && rows.placed_normal[row] == rows.normal[row];
+    if (rows.placed[row] && known && (!on_cylinder(rows, row) || rows.placed_axis[row] == rows.axis[row])) return {};
     const Pose pose_a = rows.a[row].valid() ? bodies.pose(rows.a[row].index) : Pose{};
-    const Vec3& n = rows.normal[row];
-    Vec3 on_plane = rows.point[row];
-    if (on_plane == kNotGiven)
-    {
-        const Quat q_F = bodies.orientation[rows.b[row].index] * rows.axes[row];
-        on_plane = side_of(bodies, rows.b[row], rows.centre[row]).p + rotate(q_F, lowest(s, rotate_back(q_F, n)));
-    }
-    rows.plane_point[row] = inverse(pose_a) * on_plane, rows.plane_normal[row] = rotate_back(pose_a.q, n);
-    rows.placed_point[row] = rows.point[row], rows.placed_normal[row] = n, rows.placed[row] = true;
+    const Vec3 fixed = on_cylinder(rows, row) ? rows.axis[row] : rows.normal[row];
+    const Vec3 point = rows.point[row] == kNotGiven ? point_below(rows, row, bodies) : rows.point[row];
+    rows.plane_point[row] = inverse(pose_a) * point, rows.plane_normal[row] = rotate_back(pose_a.q, fixed);
+    rows.axis_b[row] = rotate_back(bodies.orientation[rows.b[row].index], rows.axis[row]);
+    rows.placed_point[row] = rows.point[row], rows.placed_normal[row] = rows.normal[row], rows.placed_axis[row] = rows.axis[row];
+    rows.placed[row] = true;
     return {};
 }
 
@@ -101,9 +168,12 @@ void constrain_rolling(const StepContext& step, Rows which, const RollingRows& r
             ConstraintRow out = row_over(sides, e, -cross(c.a.r, e), cross(c.b.r, e), feature);
             out.kind = feature == 0 ? RowKind::Equality : RowKind::Rate;
             if (feature++ == 0) out.error = c.gap;
-            out.bias = -dot(e, turns) - dot(cross(c.a.w, e), c.slip);
+            out.bias = -dot(e, turns) - dot(cross(c.turn, e), c.slip);
             sink.add(out);
         }
+        if (!rows.parallel[row]) continue;
+        const Vec3 t1 = any_perpendicular(rows.plane_normal[row]), t2 = cross(rows.plane_normal[row], t1);
+        add_axis_rows(sides_of(c.a, c.b), c.u, rotate(c.b.q, rows.axis_b[row]), rotate(c.a.q, t1), rotate(c.a.q, t2), feature, sink);
     }
 }
 

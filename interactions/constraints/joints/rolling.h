@@ -1,15 +1,31 @@
-/// An ellipsoid of body b rolls on a plane of body a (of the world, if there is no a) without slipping. A ball is the
-/// ellipsoid of three equal axes. Not holonomic: two of its rows hold speeds alone.
+/// An ellipsoid of body b rolls without slipping on a plane of body a (of the world, if there is no a), or a ball on a sphere
+/// or a cylinder of it, outside or inside. A ball is the ellipsoid of three equal axes. Not holonomic: two rows hold speeds alone.
 ///
-/// F: frame of the ellipsoid's axes, fixed in b; A = diag of semi-axes; n: the plane's normal, fixed in a; m = n in F.
+/// On a plane. F: frame of the ellipsoid's axes, fixed in b; A = diag of semi-axes; n: the plane's normal, fixed in a; m = n in F.
 ///
 ///   s  = -A^2 m / h,  h = sqrt(m . A^2 m)                  lowest point, from the ellipsoid's centre, in F
 ///   s' = -A^2 m' / h + A^2 m (m . A^2 m') / h^3,  m' = -w_ba x m
-///   V  = (v_b + w_b x r_b) - (v_a + w_a x r_a) = 0         r: from the centres of mass to that point; J = [ -e, -r_a x e | e, r_b x e ]
-///   bias = -e . (w_b x r_b' - w_a x r_a') - (w_a x e) . V  r_b' = w_b x r_b + R_F s',  r_a' = v_b + r_b' - v_a,  e fixed in a
-///   phi = n . (p - plane)                                  only along n; its rate is n . V, since n . R_F s' = 0
+///   phi = n . (p - plane)
+///   n' = w_a x n
 ///
-/// Source: M. Kane, D. Levinson, "Realistic mathematical modeling of the rattleback", Int. J. Non-Linear Mech. 17 (1982).
+/// A ball of radius r on a sphere or cylinder of radius R, with centre O or axis u through O, both fixed in a; c: the ball's
+/// centre, d = c - O (cylinder: less its part along u), N = d/|d|, sigma = 1 outside, -1 inside:
+///
+///   n  = sigma N,  n' = sigma (d' - (N . d') N) / |d|      from the surface to the ball
+///   phi = sigma (|d| - R) - r                              m
+///   s  = -r n,     s' = -r n'
+///
+/// Of both, with r_a, r_b from the centres of mass to the point of contact:
+///
+///   V  = (v_b + w_b x r_b) - (v_a + w_a x r_a) = 0         m/s; J = [ -e, -r_a x e | e, r_b x e ] for e = n, t1, t2
+///   bias = -e . (w_b x r_b' - w_a x r_a') - e' . V         m/s^2; r_b' = w_b x (r_b - s) + s', r_a' = v_b + r_b' - v_a; e' = W x e, W the spin of n, t1, t2
+///   phi' = n . V                                           phi is held along n only
+///
+/// (On the plane s turns with b: s' there is w_b x s + R_F s'.) With `parallel`, b is a cylinder that touches along a line: its axis
+/// stays along u, two rows more (sides.h, turn). Then the ball is its cross-section.
+///
+/// Source: M. Kane, D. Levinson, "Realistic mathematical modeling of the rattleback", Int. J. Non-Linear Mech. 17 (1982);
+/// J. Neimark, N. Fufaev, Dynamics of nonholonomic systems (1972), on the ball in a sphere and in a cylinder.
 #pragma once
 
 #include "joints/pair.h"
@@ -20,10 +36,14 @@ namespace plab::constraints
 struct RollingRows : ReactionColumns
 {
     Column<Ref> a, b;
-    Column<Vec3> semi_axes, centre;                                       // m
-    Column<Quat> axes;                                                    // q_BF
-    Column<Vec3> point, normal;                                           // as given, in W
+    Column<Vec3> semi_axes, centre;  // m
+    Column<Quat> axes;               // q_BF
+    Column<std::string> on;
+    Column<double> radius;  // R, m
+    Column<bool> inside, parallel;
+    Column<Vec3> point, normal, axis;                                     // as given, in W
     Column<Vec3> plane_point, plane_normal, placed_point, placed_normal;  // frame of a; as given when they were taken
+    Column<Vec3> placed_axis, axis_b;                                     // as given; u in the frame of b
     Column<bool> placed;
     Column<Vec3> contact;         // m
     Column<double> normal_force;  // N
@@ -34,11 +54,13 @@ struct RollingRows : ReactionColumns
 /// Where and how the surfaces meet, at one state.
 struct RollingContact
 {
-    Side a, b;       ///< r: to the contact point
-    Vec3 n;          ///< of the plane, in W
-    Vec3 t1, t2;     ///< square to it, fixed in a
-    double gap = 0;  ///< m, along n
-    Vec3 slip;       ///< V, m/s
+    Side a, b;           ///< r: to the contact point
+    Vec3 n;              ///< from the surface to b, in W
+    Vec3 t1, t2;         ///< square to it
+    Vec3 turn;           ///< rad/s: how n, t1, t2 turn
+    Vec3 u;              ///< axis of the cylinder, in W
+    double gap = 0;      ///< phi, m, along n
+    Vec3 slip;           ///< V, m/s
     Vec3 r_a_rate, r_b_rate;
 };
 RollingContact contact_of(const RollingRows& rows, Row row, const Bodies& bodies);

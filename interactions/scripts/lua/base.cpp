@@ -156,13 +156,21 @@ int pairs_in_order(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {{"pcall", protected_call}, {"xpcall", protected_call_with_handler},
-                                         {"error", raise},          {"assert", assert_true},
-                                         {"select", select_from},   {"type", type_of_value},
-                                         {"tostring", to_text},     {"tonumber", to_number},
-                                         {"ipairs", pairs_of_list}, {"pairs", pairs_in_order}};
+constexpr NativeFunction kFunctions[] = {
+    {"assert", assert_true, "(value, message)", "the error `message` unless `value` holds"},
+    {"error", raise, "(message)", "ends the call: event script.error"},
+    {"ipairs", pairs_of_list, "(list)", "for i = 1, 2, ... until nil"},
+    {"pairs", pairs_in_order, "(table)", "number keys ascending, then texts by bytes"},
+    {"pcall", protected_call, "(f, ...)", "true and the results, or false and the error; not past a budget"},
+    {"xpcall", protected_call_with_handler, "(f, handler, ...)", "the same, with a handler of errors"},
+    {"select", select_from, "(n, ...)", "the arguments from the nth on; '#': how many"},
+    {"tonumber", to_number, "(value, base)", "the number, or nil"},
+    {"tostring", to_text, "(value)", "as text; no addresses"},
+    {"type", type_of_value, "(value)", "nil, boolean, number, string, table, function or userdata"}};
 
 }  // namespace
+
+NativeGroup base_group() { return {"", kFunctions}; }
 
 void open_base(lua_State* lua) { add_functions(lua, kFunctions); }
 

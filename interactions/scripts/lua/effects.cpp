@@ -99,9 +99,14 @@ int print(lua_State* lua)
     return 0;
 }
 
-constexpr NativeFunction kFunctions[] = {{"set", set_parameter}, {"emit", emit_event}, {"print", print}};
+constexpr NativeFunction kFunctions[] = {
+    {"set", set_parameter, "(id, name, value)", "in drive: asks for a parameter of any component to be set when the drive phase is over"},
+    {"emit", emit_event, "(kind, message, numbers...)", "in drive: an event of that kind, with values"},
+    {"print", print, "(...)", "in drive: the event script.print"}};
 
 }  // namespace
+
+NativeGroup effects_group() { return {"", kFunctions}; }
 
 void open_effects(lua_State* lua) { add_functions(lua, kFunctions); }
 

@@ -11,9 +11,6 @@ namespace plab::scripts
 namespace
 {
 
-/// Loading may build tables for the calls to come.
-constexpr std::int64_t kLoadFactor = 10;
-
 /// Notes the line that runs, so that an error for want of memory can name it: Lua's own does not.
 void note_line(Session& session)
 {
@@ -173,6 +170,7 @@ Report explain(Session& session, int status)
     {
         case Doom::Instructions:
         case Doom::Traffic:
+        case Doom::Interrupted:
             return {"script.over_budget", said};
         case Doom::Memory:
             return {"script.out_of_memory", at() + "more than memory_limit = " + std::to_string(session.arena.capacity()) + " bytes"};
@@ -296,6 +294,8 @@ void Machine::fail(const Call& call, std::string kind, std::string message)
     Failure& failure = failure_.emplace();
     failure.kind = std::move(kind), failure.message = std::move(message);
     failure.tick = call.context->tick, failure.time = call.context->time;
+    // A step that is given up never was: nothing failed, and the machine, which was stopped anywhere, is built anew.
+    failure.reported = failure.booked = session_->meter.why() == Meter::Doom::Interrupted;
 }
 
 std::int64_t Machine::take_instructions() { return std::exchange(most_instructions_, 0); }

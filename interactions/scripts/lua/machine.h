@@ -12,6 +12,9 @@
 namespace plab::scripts
 {
 
+/// manual.cpp: all that a script can use, with units and limits, in Markdown.
+std::string manual();
+
 struct Session;
 
 struct Limits

@@ -145,14 +145,30 @@ int random_number(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {{"abs", absolute},          {"sqrt", apply<std::sqrt>}, {"sin", apply<std::sin>},
-                                         {"cos", apply<std::cos>},   {"tan", apply<std::tan>},   {"asin", apply<std::asin>},
-                                         {"acos", apply<std::acos>}, {"atan", arc_tangent},      {"exp", apply<std::exp>},
-                                         {"log", logarithm},         {"floor", round_down},      {"ceil", round_up},
-                                         {"min", smallest},          {"max", largest},           {"fmod", remainder_of_division},
-                                         {"tointeger", to_integer},  {"type", number_type},      {"random", random_number}};
+constexpr NativeFunction kFunctions[] = {
+    {"abs", absolute, "(x)", "|x|"},
+    {"acos", apply<std::acos>, "(x)", "rad"},
+    {"asin", apply<std::asin>, "(x)", "rad"},
+    {"atan", arc_tangent, "(y, x)", "rad, of the point (x, y); x = 1 unless given"},
+    {"ceil", round_up, "(x)", "rounded up"},
+    {"cos", apply<std::cos>, "(angle)", "of an angle in rad"},
+    {"exp", apply<std::exp>, "(x)", "e^x"},
+    {"floor", round_down, "(x)", "rounded down"},
+    {"fmod", remainder_of_division, "(x, y)", "remainder, with the sign of x"},
+    {"log", logarithm, "(x, base)", "natural unless a base is given"},
+    {"max", largest, "(x, ...)", "the largest"},
+    {"min", smallest, "(x, ...)", "the smallest"},
+    {"random", random_number, "(low, high)", "in drive: from [0, 1), or a whole number; out of the declared state random_state"},
+    {"sin", apply<std::sin>, "(angle)", "of an angle in rad"},
+    {"sqrt", apply<std::sqrt>, "(x)", "square root"},
+    {"tan", apply<std::tan>, "(angle)", "of an angle in rad"},
+    {"tointeger", to_integer, "(x)", "the whole number, or nil"},
+    {"type", number_type, "(x)", "integer, float or nil"}};
+constexpr NativeValue kValues[] = {{"pi", "rad", "half a turn"}, {"huge", "", "infinity"}};
 
 }  // namespace
+
+NativeGroup math_group() { return {"math.", kFunctions, {std::begin(kValues), std::end(kValues)}}; }
 
 void open_math(lua_State* lua)
 {

@@ -15,6 +15,9 @@ namespace plab::scripts
 class Meter
 {
 public:
+    /// That a call may ask for, of its budget.
+    static constexpr std::uint64_t kBytesPerInstruction = 512;
+
     enum class Doom : std::uint8_t
     {
         None,
@@ -22,6 +25,7 @@ public:
         Traffic,  ///< bytes asked for in one call
         Memory,   ///< bytes held at a time
         Text,     ///< one text too long
+        Interrupted,  ///< the step is given up: nobody will see how the call ended
     };
 
     void start(std::int64_t budget)
@@ -64,7 +68,6 @@ public:
 
 private:
     static constexpr std::int64_t kFirstStride = 64, kLongestStride = 1024;
-    static constexpr std::uint64_t kBytesPerInstruction = 512;
 
     std::int64_t budget_ = 0;
     std::int64_t used_ = 0;

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lua/session.h"
 #include "plab/vector.h"
@@ -11,10 +12,21 @@
 namespace plab::scripts
 {
 
+/// A function as it is registered and as the reference manual lists it.
 struct NativeFunction
 {
     const char* name;
     lua_CFunction call;
+    const char* arguments = "";  ///< "(force)", with units in `meaning`
+    const char* meaning = "";
+};
+
+/// A value that can be read by name, for the manual.
+struct NativeValue
+{
+    const char* name;
+    const char* unit;
+    const char* meaning;
 };
 
 void add_functions(lua_State* lua, std::span<const NativeFunction> functions);
@@ -33,6 +45,22 @@ void open_vectors(lua_State* lua);
 void open_participants(lua_State* lua);
 /// records.cpp: state, parameters, and step in the registry
 void open_records(lua_State* lua);
+
+/// What these files register, by what it stands behind in a script ("math.", "body:", ...; "" for globals): manual.cpp prints it.
+struct NativeGroup
+{
+    const char* prefix;
+    std::span<const NativeFunction> functions;
+    std::vector<NativeValue> values = {};
+};
+NativeGroup base_group();
+NativeGroup effects_group();
+NativeGroup math_group();
+NativeGroup string_group();
+NativeGroup table_group();
+std::vector<NativeGroup> vector_groups();
+std::vector<NativeGroup> participant_groups();
+NativeGroup step_group();
 
 // Objects: every userdata of a machine starts with its tag, so that a wrong argument is noticed at no cost.
 

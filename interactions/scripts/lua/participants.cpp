@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <new>
+#include <vector>
 
 #include "lua/freeze.h"
 #include "lua/native.h"
@@ -47,35 +48,45 @@ const Call& readable(lua_State* lua, const ParticipantObject& p)
     return call;
 }
 
-int push_shaft_field(lua_State* lua, const Shafts& shafts, std::uint32_t i, std::string_view name)
+/// What can be read of a participant of one kind, from its host table.
+template <class Host>
+struct Reading
 {
-    if (name == "angle") return lua_pushnumber(lua, shafts.angle[i]), 1;
-    if (name == "speed") return lua_pushnumber(lua, shafts.speed[i]), 1;
-    if (name == "inertia") return lua_pushnumber(lua, shafts.inertia[i]), 1;
-    return 0;
-}
+    NativeValue value;
+    void (*push)(lua_State* lua, const Host& host, std::uint32_t i);
+};
 
-int push_quantities_field(lua_State* lua, const Quantities& quantities, std::uint32_t i, std::string_view name)
-{
-    if (name == "count") return lua_pushinteger(lua, static_cast<lua_Integer>(quantities.value[i].size())), 1;
-    return 0;
-}
+constexpr Reading<Shafts> kShaftReadings[] = {
+    {{"angle", "rad", "not wrapped"}, [](lua_State* lua, const Shafts& s, std::uint32_t i) { lua_pushnumber(lua, s.angle[i]); }},
+    {{"speed", "rad/s", ""}, [](lua_State* lua, const Shafts& s, std::uint32_t i) { lua_pushnumber(lua, s.speed[i]); }},
+    {{"inertia", "kg m2", ""}, [](lua_State* lua, const Shafts& s, std::uint32_t i) { lua_pushnumber(lua, s.inertia[i]); }}};
+constexpr Reading<Quantities> kQuantitiesReadings[] = {
+    {{"count", "", "how many values"}, [](lua_State* lua, const Quantities& q, std::uint32_t i)
+     { lua_pushinteger(lua, static_cast<lua_Integer>(q.value[i].size())); }}};
+constexpr Reading<Bodies> kBodyReadings[] = {
+    {{"position", "m", "of the centre of mass, in the world"},
+     [](lua_State* lua, const Bodies& b, std::uint32_t i) { push_vector(lua, b.position[i]); }},
+    {{"velocity", "m/s", "of the centre of mass, in the world"},
+     [](lua_State* lua, const Bodies& b, std::uint32_t i) { push_vector(lua, b.velocity[i]); }},
+    {{"angular_velocity", "rad/s", "in the world"},
+     [](lua_State* lua, const Bodies& b, std::uint32_t i) { push_vector(lua, b.angular_velocity[i]); }},
+    {{"orientation", "", "from the body's axes to the world's"},
+     [](lua_State* lua, const Bodies& b, std::uint32_t i) { push_rotation(lua, b.orientation[i]); }},
+    {{"mass", "kg", ""}, [](lua_State* lua, const Bodies& b, std::uint32_t i) { lua_pushnumber(lua, b.mass[i]); }}};
 
-int push_body_field(lua_State* lua, const Bodies& bodies, std::uint32_t i, std::string_view name)
+template <class Host>
+int push_reading(lua_State* lua, std::span<const Reading<Host>> readings, const Host& host, std::uint32_t i, std::string_view name)
 {
-    if (name == "position") return push_vector(lua, bodies.position[i]), 1;
-    if (name == "velocity") return push_vector(lua, bodies.velocity[i]), 1;
-    if (name == "angular_velocity") return push_vector(lua, bodies.angular_velocity[i]), 1;
-    if (name == "orientation") return push_rotation(lua, bodies.orientation[i]), 1;
-    if (name == "mass") return lua_pushnumber(lua, bodies.mass[i]), 1;
+    for (const Reading<Host>& r : readings)
+        if (name == r.value.name) return r.push(lua, host, i), 1;
     return 0;
 }
 
 int push_field(lua_State* lua, const Call& call, Ref ref, std::string_view name)
 {
-    if (ref.facet == Facet::Shaft) return push_shaft_field(lua, *call.shafts, ref.index, name);
-    if (ref.facet == Facet::Quantities) return push_quantities_field(lua, *call.quantities, ref.index, name);
-    return push_body_field(lua, *call.bodies, ref.index, name);
+    if (ref.facet == Facet::Shaft) return push_reading<Shafts>(lua, kShaftReadings, *call.shafts, ref.index, name);
+    if (ref.facet == Facet::Quantities) return push_reading<Quantities>(lua, kQuantitiesReadings, *call.quantities, ref.index, name);
+    return push_reading<Bodies>(lua, kBodyReadings, *call.bodies, ref.index, name);
 }
 
 int participant_index(lua_State* lua)
@@ -198,7 +209,19 @@ int add_rate(lua_State* lua)
 }
 
 constexpr NativeFunction kMethods[] = {
-    {"add_force", add_force}, {"add_force_at", add_force_at}, {"add_torque", add_torque}, {"value", value_of}, {"add_rate", add_rate}};
+    {"add_force", add_force, "(force)", "of a body, in force: N, at the centre of mass, in the world"},
+    {"add_force_at", add_force_at, "(force, point)", "of a body, in force: N, at a point of the world, m"},
+    {"add_torque", add_torque, "(torque)", "of a body, in force: a vector, N m, in the world; of a shaft: a number, N m"},
+    {"value", value_of, "(i)", "of quantities: the ith, from 1"},
+    {"add_rate", add_rate, "(i, rate)", "of quantities, in force: z_i' is the sum of the rates, per s"}};
+
+template <class Host>
+std::vector<NativeValue> values_of(std::span<const Reading<Host>> readings)
+{
+    std::vector<NativeValue> out;
+    for (const Reading<Host>& r : readings) out.push_back(r.value);
+    return out;
+}
 
 /// The global `name` is the object in `slot`, or nil without participant.
 void bind_one(lua_State* lua, int slot, const char* name, Ref ref)
@@ -259,6 +282,14 @@ void bind_participants(lua_State* lua, const Call& call)
     bind_one(lua, kDriven, "driven", call.driven);
     bind_list(lua, *call.between);
     session.driver = call.driver, session.driven = call.driven, session.between = *call.between;
+}
+
+std::vector<NativeGroup> participant_groups()
+{
+    return {{"body", {}, values_of<Bodies>(kBodyReadings)},
+            {"shaft", {}, values_of<Shafts>(kShaftReadings)},
+            {"quantities", {}, values_of<Quantities>(kQuantitiesReadings)},
+            {"participant", kMethods}};
 }
 
 void open_participants(lua_State* lua)

@@ -87,15 +87,17 @@ int entry_set(lua_State* lua)
     return 0;
 }
 
+constexpr NativeValue kStepValues[] = {{"time", "s", "where the step begins"}, {"dt", "s", "its length"}, {"tick", "", "its number"}};
+
 int step_get(lua_State* lua)
 {
     const Call& call = running_call(lua, "step");
     const std::string_view name = lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : "";
-    if (name == "time")
+    if (name == kStepValues[0].name)
         lua_pushnumber(lua, call.context->time);
-    else if (name == "dt")
+    else if (name == kStepValues[1].name)
         lua_pushnumber(lua, call.context->dt);
-    else if (name == "tick")
+    else if (name == kStepValues[2].name)
         lua_pushinteger(lua, call.context->tick);
     else
         return luaL_error(lua, "step has time, dt and tick, nothing else");
@@ -124,6 +126,8 @@ void push_window(lua_State* lua, Tag tag, int meta)
 }
 
 }  // namespace
+
+NativeGroup step_group() { return {"step", {}, {std::begin(kStepValues), std::end(kStepValues)}}; }
 
 void open_records(lua_State* lua)
 {

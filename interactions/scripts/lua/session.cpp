@@ -13,7 +13,9 @@ int end_call(lua_State* lua, int level)
 {
     const Session& session = session_of(lua);
     luaL_where(lua, level);
-    if (session.meter.why() == Meter::Doom::Traffic)
+    if (session.meter.why() == Meter::Doom::Interrupted)
+        lua_pushliteral(lua, "the step is given up");
+    else if (session.meter.why() == Meter::Doom::Traffic)
         lua_pushliteral(lua, "too much memory is asked for in one call");
     else
         lua_pushfstring(lua, "over the budget of %I instructions", static_cast<lua_Integer>(session.meter.budget()));
@@ -35,6 +37,7 @@ void count_hook(lua_State* lua, lua_Debug* at)
 {
     if (lua_getlocal(lua, at, -(kMostArguments + 1))) refuse_arguments(lua);
     Meter& meter = session_of(lua).meter;
+    if (const Call* call = session_of(lua).call; call->context && call->context->interrupted()) meter.doom(Meter::Doom::Interrupted);
     if (!meter.doomed() && meter.count_stride())
     {
         const int before = meter.stride();

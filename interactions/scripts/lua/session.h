@@ -17,6 +17,8 @@ namespace plab::scripts
 /// The longest text that a script can make. Lua compares, hashes and converts texts in single instructions, so their
 /// length must be bounded for an instruction to have a bounded cost.
 inline constexpr std::size_t kLongestText = 4096;
+/// Loading may take so many budgets: it may build tables for the calls to come.
+inline constexpr std::int64_t kLoadFactor = 10;
 /// What Lua calls the code in its messages: "code:3: ...".
 inline constexpr const char* kChunkName = "=code";
 

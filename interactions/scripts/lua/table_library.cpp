@@ -166,9 +166,15 @@ int sort(lua_State* lua)
 }
 
 constexpr NativeFunction kFunctions[] = {
-    {"insert", insert}, {"remove", remove}, {"concat", concatenate}, {"unpack", unpack}, {"sort", sort}};
+    {"concat", concatenate, "(list, between, from, to)", "the elements as one text"},
+    {"insert", insert, "(list, place, value)", "at the end without a place"},
+    {"remove", remove, "(list, place)", "the last one without a place"},
+    {"sort", sort, "(list, less)", "stable: what is equal keeps its order"},
+    {"unpack", unpack, "(list, from, to)", "the elements as several values"}};
 
 }  // namespace
+
+NativeGroup table_group() { return {"table.", kFunctions}; }
 
 void open_table(lua_State* lua)
 {

@@ -136,12 +136,18 @@ int rotation_index(lua_State* lua)
 
 int refuse_assignment(lua_State* lua) { return luaL_error(lua, "a %s does not change: make a new one", type_name(lua, 1)); }
 
-constexpr NativeFunction kVectorMethods[] = {
-    {"dot", vector_dot}, {"cross", vector_cross}, {"length", vector_length}, {"normalized", vector_normalized}};
+constexpr NativeFunction kMakers[] = {{"vec", make_vector, "(x, y, z)", "a vector; `+ - ==`, `-v`, `*` and `/` with a number"}};
+constexpr NativeFunction kVectorMethods[] = {{"dot", vector_dot, "(other)", "scalar product"},
+                                             {"cross", vector_cross, "(other)", "vector product"},
+                                             {"length", vector_length, "()", "as the vector's unit"},
+                                             {"normalized", vector_normalized, "()", "of length 1"}};
+constexpr NativeValue kVectorValues[] = {{"x", "", "component"}, {"y", "", "component"}, {"z", "", "component"}};
 constexpr NativeFunction kVectorOperators[] = {
     {"__add", vector_add},    {"__sub", vector_subtract}, {"__mul", vector_multiply},       {"__div", vector_divide},
     {"__unm", vector_negate}, {"__eq", vector_equal},     {"__newindex", refuse_assignment}};
-constexpr NativeFunction kRotationMethods[] = {{"rotate", rotation_forth}, {"rotate_back", rotation_back}};
+constexpr NativeFunction kRotationMethods[] = {{"rotate", rotation_forth, "(vector)", "from the body's axes to the world's"},
+                                               {"rotate_back", rotation_back, "(vector)", "from the world's axes to the body's"}};
+constexpr NativeValue kRotationValues[] = {{"w", "", "scalar part"}, {"x", "", "component"}, {"y", "", "component"}, {"z", "", "component"}};
 constexpr NativeFunction kRotationOperators[] = {{"__newindex", refuse_assignment}};
 
 void make_metatable(lua_State* lua, int slot, const char* name, std::span<const NativeFunction> operators,
@@ -187,12 +193,16 @@ void push_rotation(lua_State* lua, const Quat& q)
     lua_setmetatable(lua, -2);
 }
 
+std::vector<NativeGroup> vector_groups()
+{
+    return {{"", kMakers}, {"vector", kVectorMethods, {std::begin(kVectorValues), std::end(kVectorValues)}}, {"orientation", kRotationMethods, {std::begin(kRotationValues), std::end(kRotationValues)}}};
+}
+
 void open_vectors(lua_State* lua)
 {
     make_metatable(lua, kVectorMeta, "vec", kVectorOperators, kVectorMethods, vector_index);
     make_metatable(lua, kRotationMeta, "rotation", kRotationOperators, kRotationMethods, rotation_index);
-    lua_pushcfunction(lua, make_vector);
-    lua_setfield(lua, -2, "vec");
+    add_functions(lua, kMakers);
 }
 
 }  // namespace plab::scripts

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "number_text.h"
+#include "check_positive.h"
 
 namespace plab::bodies
 {
@@ -77,7 +77,8 @@ Result<void> check_inertia(const Mat3& inertia)
             text);
     if (!is_diagonal(inertia) && moments[2] > kMostCondition * moments[0])
         return reason("inertia cannot be inverted: its moments must lie within a factor of 1e15" + text);
-    if (!is_finite(inverse_inertia(inertia))) return reason("inertia is too small or too large to be inverted" + text);
+    if (!(moments[0] >= kLeastGiven && moments[2] <= kLargestGiven) || !is_finite(inverse_inertia(inertia)))
+        return reason("inertia is too small or too large to be inverted" + text);
     return {};
 }
 

@@ -1,7 +1,8 @@
 #include "rigid_body.h"
 
+#include "check_positive.h"
 #include "inertia.h"
-#include "number_text.h"
+#include "plab/surface.h"
 
 namespace plab::bodies
 {
@@ -50,6 +51,19 @@ Result<MassProperties> solid_of(const RefList& parts, const Shapes& shapes)
     return sum;
 }
 
+/// Surfaces have no thickness to be pushed at, and do not meet one another or planes.
+bool has_surface(const RefList& parts, const Shapes& shapes)
+{
+    for (const Ref part : parts)
+    {
+        const Geometry& g = shapes.geometry[part.index];
+        if (surface_of(g) != Surface::None) return true;
+        for (const std::uint32_t p : g.parts)
+            if (surface_of(shapes.geometry[p]) != Surface::None) return true;
+    }
+    return false;
+}
+
 Result<MassProperties> mass_properties_of(Row row, const RigidBodyRows& rigid, const Given& given, const Shapes& shapes)
 {
     MassProperties out{rigid.mass[row], {}, rigid.inertia[row]};
@@ -93,6 +107,10 @@ Result<void> prepare_rigid_body(const StepContext& context, Row row, const Rigid
     if (!solid) return solid.error();
     if (auto mass = check_positive("mass", solid->mass); !mass) return mass;
     if (auto inertia = check_inertia(solid->inertia); !inertia) return inertia;
+
+    if (has_surface(rigid.body.shape[row], shapes))
+        return reason("a shape that collides as a surface (bowl, bore, height field, mesh) is for bodies that forces do not move: State/Static, "
+                      "State/Kinematic");
 
     const std::uint32_t index = context.facet_of_row[row];
     bodies.motion[index] = Motion::Dynamic;

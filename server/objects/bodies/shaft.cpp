@@ -1,6 +1,6 @@
 #include "shaft.h"
 
-#include "number_text.h"
+#include "check_positive.h"
 
 namespace plab::bodies
 {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "plab/number_text.h"
 #include "volume_integration.h"
 
 namespace plab::shapes
@@ -45,7 +46,7 @@ Result<BuiltMesh> mesh_of(Row row, const GearRows& gears)
     const double r = gears.pitch_radius[row], root = r - kDedendum * module_of(r, gears.teeth[row]);
     // The gap between two teeth is a chord, which lies deeper than the roots' circle.
     const double gap = root * std::cos(std::numbers::pi / static_cast<double>(gears.teeth[row]));
-    if (!(gears.bore[row] < gap)) return reason("bore must be less than the radius at the teeth's roots, " + std::to_string(gap) + " m");
+    if (!(gears.bore[row] < gap)) return reason("bore must be less than the radius at the teeth's roots, " + rounded_text(gap, 6) + " m");
     return bored_prism(outline_of(r, gears.teeth[row]), gears.bore[row], 0.5 * gears.width[row]);
 }
 

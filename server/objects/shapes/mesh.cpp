@@ -1,5 +1,6 @@
 #include "mesh.h"
 
+#include "plab/surface.h"
 #include "volume_integration.h"
 
 namespace plab::shapes
@@ -48,6 +49,11 @@ void MeshRows::describe(Schema& schema)
         .param(hull_collides, "hull_collides", unit::one,
                "the mesh is drawn and integrated as given; it collides as its convex hull (true) or not at all (false)")
         .or_else(true);
+    schema
+        .param(surface_collides, "surface_collides", unit::one,
+               "it collides as the surface that it is, from the side from which its triangles are counter-clockwise, concave or not; "
+               "of bodies that do not move by forces only. Then hull_collides does not count")
+        .or_else(false);
 }
 
 Result<void> prepare_mesh(const StepContext& context, Row row, const MeshRows& meshes, Shapes& shapes)
@@ -62,7 +68,10 @@ Result<void> prepare_mesh(const StepContext& context, Row row, const MeshRows& m
     geometry.pose = meshes.shape.pose(row);
     geometry.vertices = vertices.take();
     geometry.triangles = triangles.take();
-    geometry.hull_collides = meshes.hull_collides[row];
+    if (meshes.surface_collides[row])
+        set_surface(geometry, Surface::Triangles);
+    else
+        geometry.hull_collides = meshes.hull_collides[row];
     shapes.geometry[context.facet_of_row[row]] = std::move(geometry);
     return {};
 }

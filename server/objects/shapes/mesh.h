@@ -1,4 +1,4 @@
-/// Shape/Mesh: triangles, drawn and integrated as given; collides as its convex hull or not at all.
+/// Shape/Mesh: triangles, drawn and integrated as given; collides as its convex hull, as the surface that it is, or not at all.
 #pragma once
 
 #include "shape_columns.h"
@@ -11,7 +11,7 @@ struct MeshRows
     ShapeColumns shape;
     Column<Reals> vertices;      ///< x y z of each, in S, m
     Column<Integers> triangles;  ///< index triples, counter-clockwise seen from outside
-    Column<bool> hull_collides;
+    Column<bool> hull_collides, surface_collides;
 
     void describe(Schema& schema);
 };

@@ -1,11 +1,14 @@
 #include "plab/plugin.h"
 
+#include "bore.h"
+#include "bowl.h"
 #include "box.h"
 #include "capsule.h"
 #include "compound.h"
 #include "convex_hull.h"
 #include "cylinder.h"
 #include "gear.h"
+#include "height_field.h"
 #include "mesh.h"
 #include "placed.h"
 #include "plane.h"
@@ -40,7 +43,7 @@ PLAB_PLUGIN("shapes", registrar)
     add_shape<prepare_plane, measure_plane, PlaneRows>(registrar, "Shape/Plane", "a half space below z = 0 of its frame",
                                                        "refused: a plane has no volume");
     add_shape<prepare_mesh, measure_mesh, MeshRows>(registrar, "Shape/Mesh",
-                                                    "triangles; drawn and integrated as given, collides as its convex hull or not at all",
+                                                    "triangles; drawn and integrated as given, collides as its convex hull, as a surface, or not at all",
                                                     "volume, centre and inertia, exact for closed triangle meshes");
     add_shape<prepare_cylinder, measure_cylinder, CylinderRows>(registrar, "Shape/Cylinder", "a solid cylinder along z",
                                                                 "volume, centre and inertia, in closed form");
@@ -56,6 +59,12 @@ PLAB_PLUGIN("shapes", registrar)
                                                     "volume, centre and inertia, exact for the wheel as drawn");
     add_shape<prepare_rotor, measure_rotor, RotorRows>(registrar, "Shape/Rotor", "a fan's wheel: hub and twisted blades, about z",
                                                        "volume, centre and inertia, exact for the wheel as drawn");
+    add_shape<prepare_bowl, measure_bowl, BowlRows>(registrar, "Shape/Bowl", "the inside of a sphere, open above a rim; what lies in it",
+                                                    "refused: a surface has no volume");
+    add_shape<prepare_bore, measure_bore, BoreRows>(registrar, "Shape/Bore", "the inside of a cylinder along z, open at both ends",
+                                                    "refused: a surface has no volume");
+    add_shape<prepare_height_field, measure_height_field, HeightFieldRows>(
+        registrar, "Shape/HeightField", "ground: heights over a grid of squares, two triangles each", "refused: a surface has no volume");
     add_shape<prepare_placed, measure_placed, PlacedRows>(registrar, "Shape/Placed", "another shape at another pose",
                                                           "those of the referred shape, moved");
 }

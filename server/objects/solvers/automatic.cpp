@@ -7,6 +7,7 @@
 
 #include "exact.h"
 #include "facts.h"
+#include "plab/number_text.h"
 #include "rotation_splitting.h"
 #include "runge_kutta4.h"
 
@@ -18,7 +19,7 @@ namespace
 constexpr double kFast = 0.05;
 constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 constexpr Tolerance kTolerance{1e-9, 1e-12};
-constexpr std::int64_t kMaxSubsteps = 100000;
+constexpr std::int64_t kMaxSubsteps = 20000;
 
 /// In order of demand.
 enum class Method : std::size_t
@@ -34,11 +35,7 @@ constexpr std::array<std::string_view, 6> kNames{"Exact", "RungeKutta4", "Rotati
 
 std::int64_t bit_of(Method method) { return std::int64_t{1} << static_cast<int>(method); }
 
-std::string number(double x)
-{
-    std::string text = std::to_string(x);
-    return x >= 1e6 ? "over 1e6" : text.substr(0, text.find('.') + 3);
-}
+std::string number(double x) { return rounded_text(x, 2); }
 
 class Choice
 {

@@ -63,8 +63,13 @@ class Factors
 public:
     /// A view of the matrix to fill; factorise() then destroys it.
     SquareMatrix<T>& matrix() { return a_; }
-    /// False if the matrix is singular or not finite.
-    bool factorise();
+    /// False if the matrix is singular or not finite, or `stop` says so, which is asked for each column.
+    template <class Stop>
+    bool factorise(Stop stop);
+    bool factorise()
+    {
+        return factorise([] { return false; });
+    }
     void solve(std::span<T> b) const;
 
 private:
@@ -74,7 +79,8 @@ private:
 };
 
 template <class T>
-bool Factors<T>::factorise()
+template <class Stop>
+bool Factors<T>::factorise(Stop stop)
 {
     const std::size_t n = a_.size();
     pivot_.resize(n), scale_.resize(n);
@@ -87,6 +93,7 @@ bool Factors<T>::factorise()
     }
     for (std::size_t k = 0; k < n; ++k)
     {
+        if (stop()) return false;
         std::size_t best = k;
         for (std::size_t i = k + 1; i < n; ++i)
             if (scale_[i] * magnitude(a_(i, k)) > scale_[best] * magnitude(a_(best, k))) best = i;

@@ -43,7 +43,7 @@ public:
     {
         double size = first_size(), last_error = 1e-4;
         bool refused_before = false;
-        while (t_ < h_ && counts_.accepted + counts_.refused < limit)
+        while (t_ < h_ && counts_.accepted + counts_.refused < limit && !flat_.interrupted())
         {
             const double left = h_ - t_;
             const bool last = size >= left * (1 - 1e-12);

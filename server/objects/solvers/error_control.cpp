@@ -1,4 +1,5 @@
 #include "error_control.h"
+#include "plab/number_text.h"
 
 #include <string>
 
@@ -19,7 +20,8 @@ void ErrorControlRows::describe_control(Schema& schema)
         .positive();
     schema.param(max_substeps, "max_substeps", unit::one, "internal steps tried within a step before it gives up")
         .or_else(100000)
-        .at_least(1);
+        .at_least(1)
+        .at_most(1e7);
     schema.output(substeps, "substeps", unit::one, "internal steps in the last step");
     schema.output(refused, "refused", unit::one, "internal steps that were tried again shorter");
     schema.output(evaluations, "evaluations", unit::one, "force evaluations in the last step");
@@ -34,7 +36,7 @@ void tell_gave_up(const StepContext& start, Row row, const SubstepCounts& counts
 {
     start.emit(row, "solver.gave_up", Severity::Warning,
                std::to_string(counts.accepted) + " internal steps (" + std::to_string(counts.refused) + " more refused) reached " +
-                   std::to_string(counts.reached) + " s of " + std::to_string(start.dt) +
+                   rounded_text(counts.reached) + " s of " + rounded_text(start.dt) +
                    " s; the group stays as it was there: " + std::string(advice),
                {counts.reached, start.dt});
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <span>
 
-#include "free_rotation.h"
+#include "plab/free_rotation.h"
 #include "plab/rotation.h"
 #include "rotation_splitting.h"
 #include "runge_kutta4.h"

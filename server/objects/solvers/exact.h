@@ -1,5 +1,5 @@
 /// Solver/Exact: closed forms, machine precision for any step, where nothing but a uniform field acts: the parabola of the
-/// centre of mass and Jacobi's free rotation (free_rotation.h), and for shafts and quantities a constant rate.
+/// centre of mass and Jacobi's free rotation (plab/free_rotation.h), and for shafts and quantities a constant rate.
 /// Groups of another kind are advanced by a stated other method, and an event says so once: RungeKutta4 where joints hold
 /// the members, RotationSplitting of order 4 where forces depend on time, place or velocity.
 #pragma once

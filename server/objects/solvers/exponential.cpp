@@ -356,7 +356,8 @@ void ExponentialRows::describe(Schema& schema)
 {
     schema.param(max_size, "max_size", unit::one, "places and speeds of a group that move, above which Radau5 is used")
         .or_else(120)
-        .at_least(1);
+        .at_least(1)
+        .at_most(2000);
     schema.output(evaluations, "evaluations", unit::one, "force evaluations in the last step");
     schema.output(linear, "linear", unit::one, "whether the forces were linear, so that the step is exact");
     told.describe(schema);

@@ -34,6 +34,8 @@ public:
     int evaluations() const { return evaluations_; }
     /// Whether component i of y is a quantity.
     bool is_quantity(std::size_t i) const { return i >= size() - system_->quantity_count(); }
+    /// As DynamicSystem: the step is given up.
+    bool interrupted() const { return system_->interrupted(); }
     bool uses_rotations() const { return system_->body_count() > 0; }
 
     void read(std::span<double> y) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "plab/number_text.h"
 #include "resolved.h"
 
 namespace plab::solvers
@@ -31,7 +32,7 @@ public:
     double run()
     {
         double part = h_, t = 0;
-        while (t < h_)
+        while (t < h_ && !flat_.interrupted())
         {
             const double size = std::min(part, h_ - t);
             if (!solve(t, size))
@@ -85,7 +86,7 @@ private:
         m_.factors.matrix().resize(n);
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = 0; j < n; ++j) m_.factors.matrix()(i, j) = (i == j ? 1.0 : 0.0) - 0.5 * h * m_.jacobian(i, j);
-        return m_.factors.factorise();
+        return m_.factors.factorise([this] { return flat_.interrupted(); });
     }
 
     /// From z (Newton) or y (fixed point) until the updates are below the tolerance, or stay below what rounding explains.
@@ -148,8 +149,8 @@ void advance_implicit_midpoint(const StepContext& context, Row row, ImplicitMidp
     rows.iterations[row] = advance.iterations(), rows.substeps[row] = advance.substeps(), rows.evaluations[row] = advance.evaluations();
     if (reached >= start.dt) return;
     start.emit(row, "solver.failed", Severity::Warning,
-               "the midpoint was not found in parts of 1/64 of the step: the group stays where it was at " + std::to_string(reached) +
-                   " s of " + std::to_string(start.dt) + " s; forces that jump, or a step that is too long",
+               "the midpoint was not found in parts of 1/64 of the step: the group stays where it was at " + rounded_text(reached) +
+                   " s of " + rounded_text(start.dt) + " s; forces that jump, or a step that is too long",
                {reached, start.dt});
 }
 

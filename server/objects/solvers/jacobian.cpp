@@ -127,7 +127,7 @@ void rough_jacobian(FlatSystem& system, const JacobianPoint& at, double relative
     const std::size_t n = system.size();
     out.resize(n);
     std::copy(at.y.begin(), at.y.end(), at.work.begin());
-    for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t j = 0; j < n && !system.interrupted(); ++j)
     {
         const double least = system.is_quantity(j) ? 1e5 * at.absolute : 1e-3 * at.units[j];
         const double d = representable(at.y[j], relative * std::max(at.sizes[j], least));
@@ -141,7 +141,7 @@ void rough_jacobian(FlatSystem& system, const JacobianPoint& at, double relative
 void fine_jacobian(FlatSystem& system, const JacobianPoint& at, SquareMatrix<double>& out)
 {
     out.resize(system.size());
-    for (std::size_t j = 0; j < system.size(); ++j) fine_column(system, at, j, out);
+    for (std::size_t j = 0; j < system.size() && !system.interrupted(); ++j) fine_column(system, at, j, out);
 }
 
 void fine_column(FlatSystem& system, const JacobianPoint& at, std::size_t column, SquareMatrix<double>& out)

@@ -29,7 +29,7 @@ void declare_fixed_steps(plab::Registrar& registrar)
         .command<advance_semi_implicit_euler>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(1)
         .elementwise()
-        .strengths("the cheapest step; energy of springs stays near its mean")
+        .strengths("one evaluation a step; energy of springs stays near its mean")
         .cost("1 force evaluation per step")
         .limits("errors shrink only with h; free rotation gains energy")
         .source("Hairer, Lubich, Wanner, Geometric numerical integration, eq. (I.1.9)");

@@ -33,7 +33,7 @@ public:
     {
         flat_.evaluate(0, m_.y, m_.f0);
         double size = h_;
-        while (t_ < h_ && counts_.accepted + counts_.refused < limit && all_finite(m_.f0))
+        while (t_ < h_ && counts_.accepted + counts_.refused < limit && all_finite(m_.f0) && !flat_.interrupted())
         {
             const double left = h_ - t_;
             const bool last = size >= left * (1 - 1e-12);

@@ -41,7 +41,8 @@ bool RadauStages::factorise(double h)
             m_.real.matrix()(i, j) = i == j ? a + kGamma / h : a;
             m_.complex.matrix()(i, j) = i == j ? Complex{a + kAlpha / h, kBeta / h} : Complex{a, 0};
         }
-    return m_.real.factorise() && m_.complex.factorise();
+    const auto stop = [this] { return flat_.interrupted(); };
+    return m_.real.factorise(stop) && m_.complex.factorise(stop);
 }
 
 void RadauStages::predict(double h, double previous)

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "free_rotation.h"
+#include "plab/free_rotation.h"
 #include "plab/rotation.h"
 
 namespace plab::solvers

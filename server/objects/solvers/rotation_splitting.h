@@ -7,7 +7,7 @@
 /// at fixed t and x), the map X(h) = K(h) C(h) B(h) A(h) and its adjoint X*(h), applied from right to left:
 ///   order 2:  X*(h/2) X(h/2)                                  McLachlan, Reich: one kick in the middle
 ///   order 4:  X*(a_12 h) X(a_11 h) ... X*(a_2 h) X(a_1 h)     Blanes, Moan: six kicks, palindromic a_i
-/// A needle's flight takes its whole free rotation in closed form instead (free_rotation.h).
+/// A needle's flight takes its whole free rotation in closed form instead (plab/free_rotation.h).
 /// Kicks whose forces do not depend on velocity are exact (and symplectic); others are integrated by the classical
 /// Runge-Kutta method, so that the order stays. Uniform forces are kicked once, in the middle, which is exact.
 /// Sources: McLachlan, SIAM J. Sci. Comput. 16 (1995) 151, section 4; Reich, Physica D 76 (1994) 375; Touma, Wisdom, Astron.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "plab/interruption.h"
 #include "plab/ref.h"
 #include "plab/value.h"
 
@@ -68,6 +69,7 @@ struct StepContext
     std::uint64_t seed = 0;
     EventSink* events = nullptr;
     std::vector<ParameterChange>* changes = nullptr;  ///< drive phase only
+    const Interruption* interruption = nullptr;       ///< what may take long asks interrupted() now and then
 
     std::span<const std::uint32_t> component_of_row;  ///< directory index of each row of this table
     std::span<const std::uint32_t> facet_of_row;      ///< host table index of each row, where the type has a facet
@@ -90,6 +92,8 @@ struct StepContext
         if (r.facet == Facet::Shaft) return active_shafts.empty() || active_shafts[r.index] != 0;
         return true;
     }
+    /// The step is given up: whoever is at work leaves off, with whatever numbers there are. Nobody will see them.
+    bool interrupted() const { return interruption && interruption->due(); }
     /// An event about the component of `row`.
     void emit(Row row, std::string kind, Severity severity, std::string message, std::vector<double> values = {}) const
     {

@@ -54,6 +54,8 @@ public:
     /// The host has cut the step for stiff forces of its own (contacts), but may not cut as often as they ask: methods that
     /// would make those steps themselves break its bound.
     virtual bool is_undersampled() const { return false; }
+    /// The step is given up: evaluate() does nothing any more, and a solver that goes on by small steps leaves off.
+    virtual bool interrupted() const { return false; }
     /// Working memory of the length of coordinates(), kept warm between steps; i < 32. Contents are undefined.
     virtual std::span<double> workspace(int i) = 0;
 };

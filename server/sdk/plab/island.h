@@ -4,6 +4,7 @@
 #include <span>
 
 #include "plab/collision.h"
+#include "plab/interruption.h"
 #include "plab/rows.h"
 
 namespace plab
@@ -38,11 +39,14 @@ struct Island
     std::span<ConstraintRow> rows;           ///< joints, limits, motors: in id order; shafts stand for their roots
     std::span<Contact> contacts;             ///< sorted by pair and feature; depth < 0: a gap that may close
     IslandMotion* motion = nullptr;
+    const Interruption* interruption = nullptr;  ///< asked in each sweep, factorisation and part of the step
     // out
     int iterations = 0;   ///< sweeps, or pivots of a direct method
     double residual = 0;  ///< m/s: largest violation left of what the contact law and the rows ask of speeds
     bool converged = true;
     bool fell_back = false;  ///< another algorithm than the one asked for had to finish
+
+    bool interrupted() const { return interruption && interruption->due(); }
 };
 
 }  // namespace plab

@@ -1,10 +1,13 @@
 // An island of groups that may touch by force, in pieces of the step.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "plab/rotation.h"
 #include "simulation/contact_forces/contact_forces.h"
+#include "simulation/contacts/shape_width.h"
 #include "simulation/step/stepper.h"
 
 namespace plab::simulation
@@ -19,6 +22,17 @@ constexpr double kFewestPerContact = 4;
 constexpr double kFewestAtRest = 8;
 constexpr int kMostTrials = 100;
 constexpr int kMostPieces = 10'000'000;
+/// Of the smaller body's radius: a gap up to this is looked at, whatever the speeds.
+constexpr double kLeastMargin = 1e-8;
+/// Of the time in which a body goes through half of another's thickness: at least twice within it somebody looks.
+constexpr double kUnseen = 0.25;
+
+/// m: half of the least width; of a hull half of the least along its axes, as it may be thinner askew.
+double thinnest(const Geometry& g)
+{
+    if (const double known = least_half_width(g); known > 0) return known;
+    return 0.5 * std::min({half_width_along(g, {1, 0, 0}), half_width_along(g, {0, 1, 0}), half_width_along(g, {0, 0, 1})});
+}
 }  // namespace
 
 void ContactForces::save(const GroupSystem& system)
@@ -66,9 +80,11 @@ double ContactForces::closing_bound(const NearPair& p) const
 
 double ContactForces::margin_for(double h) const
 {
-    double margin = 1e-9;
+    double margin = 0;
     for (const NearPair& p : pairs_)
     {
+        const double size = std::min(s_->radius_of_body_[p.a.index], s_->radius_of_body_[p.b.index]);
+        if (std::isfinite(size)) margin = std::max(margin, kLeastMargin * size);
         const double way = 2 * closing_bound(p) * h;
         if (std::isfinite(way)) margin = std::max(margin, way);
     }
@@ -84,15 +100,36 @@ double ContactForces::free_time(double most) const
     double time = most;
     for (const NearPair& p : pairs_)
     {
-        const double size = std::min(s_->radius_of_body_[p.a.index], s_->radius_of_body_[p.b.index]);
-        const double speed = closing_bound(p);
-        if (!std::isfinite(speed) || !(size > 0) || !std::isfinite(size) || speed * most <= 0.25 * size) continue;
+        const double speed = closing_bound(p), unseen = kUnseen * time_through(p);
+        if (!std::isfinite(speed) || !(unseen > 0) || most <= unseen) continue;
         double gap = margin_;
         for (const Seen& s : at_start_)
             if (s.found.contact.a == p.a && s.found.contact.b == p.b) gap = std::min(gap, -s.found.contact.depth);
-        time = std::min(time, std::max(gap, 0.25 * size) / speed);
+        time = std::min(time, std::max(gap / speed, unseen));
     }
     return time;
+}
+
+/// s: in which one of the pair goes through half the thickness of the other at their present speeds, along the way that they go; where
+/// they turn, along the way that is shortest.
+double ContactForces::time_through(const NearPair& p) const
+{
+    const world::HostTables& host = s_->world_.host();
+    const Bodies& bodies = host.bodies;
+    const Vec3 way = bodies.velocity[p.b.index] - bodies.velocity[p.a.index];
+    const double speed = length(way), turning = closing_bound(p) - speed;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Ref r : {p.a, p.b})
+        for (const Ref shape : bodies.shapes[r.index])
+        {
+            const Geometry& g = host.shapes.geometry[shape.index];
+            if (g.kind == GeometryKind::Plane) continue;
+            double rate = 0;  // 1/s
+            if (speed > 0) rate += speed / half_width_along(g, rotate_back(bodies.orientation[r.index] * g.pose.q, way * (1 / speed)));
+            if (turning > 0) rate += turning / thinnest(g);
+            if (rate > 0) least = std::min(least, 1 / rate);
+        }
+    return least;
 }
 
 /// rad/s: of the contacts that push, together. By Gershgorin: the squares of the frequencies of M^-1 J^T k J are no more than
@@ -181,7 +218,7 @@ double ContactForces::locate(Piece& piece, double high)
 {
     double low = piece.t, width = 2 * (high - low);
     at_low_ = at_start_, at_high_ = at_end_;
-    for (int i = 0; i < kMostTrials; ++i)
+    for (int i = 0; i < kMostTrials && !s_->frame_.give_up(); ++i)
     {
         double next = guess(low, high, at_low_, at_high_);
         // Where guesses creep up from one side, halve.
@@ -267,7 +304,7 @@ void ContactForces::advance_island(const Island& island, double from, double to,
     order_ = std::max(1, s_->world_.type_of(piece.solver)->info.order);
     start(from);
     // Free flight and switches come on top of what contacts may have.
-    while (piece.t < to && piece.finite && piece.pieces < kMostPieces) one_piece(piece);
+    while (piece.t < to && piece.finite && piece.pieces < kMostPieces && !s_->frame_.give_up()) one_piece(piece);
     if (piece.t < to && piece.finite) piece.finite = run(piece, to, book, trial);
     s_->finish_advance(*piece.system, piece.finite, to, trial);
 }
@@ -280,7 +317,7 @@ void ContactForces::advance_mixed(const Island& island, double from, double to, 
     order_ = 2;
     start(from);
     int pieces = 0;
-    for (double t = from; t < to && pieces < kMostPieces; ++pieces)
+    for (double t = from; t < to && pieces < kMostPieces && !s_->frame_.give_up(); ++pieces)
     {
         const double left = to - t;
         const double h = pushing_.empty() ? free_time(left) : contact_time(left, pieces);

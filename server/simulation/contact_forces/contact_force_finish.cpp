@@ -3,6 +3,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "plab/number_text.h"
 #include "simulation/contact_forces/contact_forces.h"
 #include "simulation/step/stepper.h"
 
@@ -76,7 +77,7 @@ void ContactForces::emit_stiff()
     if (stiff_ == kNoIndex || told) return;
     Event e;
     e.time = s_->frame_.start_time, e.kind = "contact.stiff", e.severity = Severity::Warning, e.component = stiff_;
-    e.message = "steps_per_contact asks for " + std::to_string(static_cast<long long>(std::ceil(std::min(pieces_needed_, 1e18)))) +
+    e.message = "steps_per_contact asks for " + rounded_text(std::ceil(pieces_needed_)) +
                 " pieces of a step, more than max_substeps; contacts are cut less finely";
     e.values = {pieces_needed_};
     s_->emit(std::move(e));

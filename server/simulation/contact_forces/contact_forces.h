@@ -184,6 +184,7 @@ private:
     double contact_time(double left, int used);
     double pieces_per_contact(const ForceContact& contact, double wanted) const;
     double free_time(double most) const;
+    double time_through(const NearPair& pair) const;
     double fastest_rate();
     double spin_rate() const;
     double closing_bound(const NearPair& pair) const;

@@ -1,6 +1,7 @@
 /// A small motion of a body that leaves its speeds alone: how overlap is taken out.
 #pragma once
 
+#include "plab/body_turn.h"
 #include "plab/rotation.h"
 #include "plab/tables.h"
 
@@ -37,8 +38,7 @@ struct Nudge
     {
         if (!bodies.dynamic(b)) return;
         bodies.position[b] += shift;
-        bodies.orientation[b] = normalized(exp_rotation(turn) * bodies.orientation[b]);
-        bodies.refresh_spin(b);
+        turn_without_work(bodies, b, exp_rotation(turn));
     }
 };
 

@@ -1,5 +1,7 @@
 #include "simulation/contacts/contact_rules.h"
 
+#include <array>
+
 namespace plab::simulation
 {
 namespace
@@ -16,6 +18,94 @@ Error refused(const world::World& world, const Detector& d, std::string why)
     e.element = world.id_of(d.component) + " (" + type_name(world, d.component) + ")";
     e.reason = std::move(why);
     return e;
+}
+
+/// How a detection takes a body: those in Between collide with one another and with those in Against.
+enum class Side : std::uint8_t
+{
+    None,
+    Between,
+    Against,
+};
+constexpr std::size_t kSides = 3;
+
+bool collide(std::size_t x, std::size_t y)
+{
+    const auto between = static_cast<std::size_t>(Side::Between), none = static_cast<std::size_t>(Side::None);
+    return (x == between && y != none) || (y == between && x != none);
+}
+
+/// By host row.
+std::vector<Side> sides_of(const world::World& world, const Detector& d)
+{
+    std::vector<Side> out(world.host().bodies.size(), Side::None);
+    const auto enter = [&](const char* name, Side side)
+    {
+        const Role* role = world.tables()[d.table]->schema().find_role(name);
+        if (!role || !role->many) return;
+        for (const Ref body : (*role->many)[d.row])
+            if (body.facet == Facet::Body && out[body.index] != Side::Between) out[body.index] = side;
+    };
+    enter("between", Side::Between), enter("against", Side::Against);
+    return out;
+}
+
+/// Bodies that two detections take alike: the first of them by id, and the next.
+struct Alike
+{
+    std::array<std::uint32_t, 2> moving{kNoIndex, kNoIndex}, fixed{kNoIndex, kNoIndex};
+
+    void add(std::uint32_t body, bool moves)
+    {
+        auto& list = moves ? moving : fixed;
+        if (list[0] == kNoIndex)
+            list[0] = body;
+        else if (list[1] == kNoIndex)
+            list[1] = body;
+    }
+};
+
+/// A pair of bodies, at least one of which forces move, that both detections look at; or nobody.
+std::array<std::uint32_t, 2> shared_pair(const world::World& world, const std::vector<Side>& first, const std::vector<Side>& second)
+{
+    std::array<Alike, kSides * kSides> classes;
+    const Bodies& bodies = world.host().bodies;
+    for (const std::uint32_t component : world.in_id_order())
+    {
+        const world::Component& c = world.component(component);
+        if (c.facet != Facet::Body || bodies.shapes[c.host_index].empty()) continue;
+        const std::uint32_t body = c.host_index;
+        classes[static_cast<std::size_t>(first[body]) * kSides + static_cast<std::size_t>(second[body])].add(body, bodies.dynamic(body));
+    }
+    for (std::size_t x = 0; x < classes.size(); ++x)
+        for (std::size_t y = 0; y < classes.size(); ++y)
+        {
+            if (!collide(x / kSides, y / kSides) || !collide(x % kSides, y % kSides)) continue;
+            const std::uint32_t a = classes[x].moving[0];
+            if (a == kNoIndex) continue;
+            const std::uint32_t other = classes[y].moving[x == y ? 1 : 0], b = other != kNoIndex ? other : classes[y].fixed[0];
+            if (b != kNoIndex) return {a, b};
+        }
+    return {kNoIndex, kNoIndex};
+}
+
+void refuse_shared_pairs(const world::World& world, std::span<const Detector> detectors, Errors& errors)
+{
+    const auto answers = [](const Detector& d) { return d.responds || d.by_rows || d.by_force; };
+    std::vector<std::vector<Side>> sides;
+    for (const Detector& d : detectors) sides.push_back(answers(d) ? sides_of(world, d) : std::vector<Side>());
+    for (std::size_t i = 0; i < detectors.size(); ++i)
+        for (std::size_t k = i + 1; k < detectors.size() && !sides[i].empty(); ++k)
+        {
+            if (sides[k].empty()) continue;
+            const auto [a, b] = shared_pair(world, sides[i], sides[k]);
+            if (a == kNoIndex) continue;
+            const auto id = [&](std::uint32_t body) { return "'" + world.id_of(Ref{Facet::Body, body}) + "'"; };
+            errors.push_back(refused(world, detectors[k],
+                                     "the pair " + id(a) + ", " + id(b) + " is answered by '" + world.id_of(detectors[i].component) +
+                                         "' as well: one pair takes one detection. Take it out of `between` or `against` of one of "
+                                         "them, or let one be a sensor, with Response/None"));
+        }
 }
 
 }  // namespace
@@ -36,6 +126,7 @@ Errors check_contacts(const world::World& world, std::span<const Detector> detec
                                      resolution + " looks for contacts inside a step by measuring gaps, which " +
                                          type_name(world, d.component) + " cannot; take Resolution/LocalBisection"));
     }
+    refuse_shared_pairs(world, detectors, errors);
     return errors;
 }
 

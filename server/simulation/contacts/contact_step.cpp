@@ -1,9 +1,10 @@
 // Contacts inside a step: looking for them, standing contacts as time stepping, impulses.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
+#include "plab/number_text.h"
 #include "plab/rotation.h"
-#include "simulation/clock.h"
 #include "simulation/contacts/island_step.h"
 #include "simulation/contacts/paradox.h"
 #include "simulation/events/speculation.h"
@@ -16,6 +17,43 @@ namespace
 
 /// Slower than this nothing meets, m/s.
 constexpr double kNoApproach = 1e-9;
+/// Of the smaller body's radius: a standing pair is never looked at as if it were closer than this.
+constexpr double kMostShare = 0.1;
+/// Steps after which a pair that touched all the while slides, and does not bounce.
+constexpr Tick kSettled = 8;
+
+/// m: radius of the most curved round shape of a body; infinite where it has none, and for what is concave.
+double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
+{
+    double least = HUGE_VAL;
+    const auto add = [&](const Geometry& g)
+    {
+        const bool round = g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder;
+        if (round) least = std::min(least, g.size.x);
+    };
+    for (const Ref shape : bodies.shapes[b])
+    {
+        const Geometry& g = shapes.geometry[shape.index];
+        add(g);
+        for (const std::uint32_t part : g.parts) add(shapes.geometry[part]);
+    }
+    return least;
+}
+
+const PairState* known_pair(const ContactCache& cache, const world::World& world, std::uint32_t detector, const Contact& c)
+{
+    const auto key = [&](std::uint32_t d, Ref a, Ref b) { return std::tuple(world.rank(d), world.rank(a), world.rank(b)); };
+    const auto at = std::lower_bound(cache.pairs().begin(), cache.pairs().end(), key(detector, c.a, c.b),
+                                     [&](const PairState& p, const auto& k) { return key(p.detector, p.a, p.b) < k; });
+    return at != cache.pairs().end() && at->detector == detector && at->a == c.a && at->b == c.b ? &*at : nullptr;
+}
+
+/// m: by how much two round bodies part while they slide along one another straight on for h: (v h)^2 / (2 (r_a + r_b)) in one step.
+/// That leaves them parting at twice this per step, and forces, which take it back, act a step later: up to 8 times as much.
+double opening_by_curves(double speed, double h, double radii)
+{
+    return 4 * speed * speed * h * h / radii;
+}
 
 }  // namespace
 
@@ -32,10 +70,10 @@ void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<co
     call.context = &context, call.rows = Rows(&detector.row, 1);
     call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
     call.contacts = &sink;
-    const std::uint64_t before = now_ns();
+    const CostScope scope(meter_, meter_.of_component(detector.component));
+    meter_.ran(detector.table, Phase::Detect);
     const auto done = detector.command->run(call, table.rows());
     if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
-    cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
 }
 
 void Stepper::detect_all(std::vector<FoundContact>& out)
@@ -49,9 +87,20 @@ void Stepper::detect_all(std::vector<FoundContact>& out)
             continue;
         }
         standing_.clear();
+        double margin = 0;
         for (const PairState& p : cache_.pairs())
-            if (p.resting && p.detector == detectors_[d].component) standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
-        detect(detectors_[d], d, standing_, false, out);
+            if (p.resting && p.detector == detectors_[d].component)
+                standing_.push_back({p.a, p.b, {}}), margin = std::max(margin, standing_margin(p));
+        const std::size_t first = out.size();
+        detect(detectors_[d], d, standing_, false, out, margin);
+        // One look has one margin, that of the widest standing pair: gaps count for standing pairs only, each up to its own.
+        const auto far = [&](const FoundContact& f)
+        {
+            if (f.contact.depth > 0) return false;
+            const PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_);
+            return !pair || !pair->resting || f.contact.depth <= -standing_margin(*pair);
+        };
+        out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
     }
     sort_contacts(out, world_);
 }
@@ -62,26 +111,34 @@ void Stepper::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& o
 {
     const Detector& detector = detectors_[index];
     const Bodies& bodies = world_.host().bodies;
-    double margin = kOverlapTolerance;
+    double margin = kOverlapTolerance, fastest = 0;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) fastest = std::max(fastest, length(bodies.velocity[b]));
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
-        if (bodies.dynamic(b) && std::isfinite(radius_of_body_[b])) margin = std::max(margin, kStandingShare * radius_of_body_[b]);
-    const double acceleration = detector.speculates ? speculative_acceleration(detector) : 0.0;
+    {
+        if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) continue;
+        // The other one is round, too, of any radius.
+        const double opens = opening_by_curves(2 * fastest, frame_.step, curve_radius(bodies, world_.host().shapes, b));
+        margin = std::max(margin, kStandingShare * radius_of_body_[b] + std::min(opens, kMostShare * radius_of_body_[b]));
+    }
+    const double acceleration = detector.speculates ? number_of(detector.resolution, "acceleration") : 0.0;
     if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, frame_.step));
     const std::size_t first = out.size();
     detect(detector, index, {}, false, out, margin);
     const auto far = [&](const FoundContact& f)
     {
-        if (f.contact.depth > -standing_margin(f.contact.a, f.contact.b)) return false;
+        const PairState* pair = known_pair(cache_, world_, detector.component, f.contact);
+        if (f.contact.depth > -(pair ? standing_margin(*pair) : standing_margin(f.contact.a, f.contact.b))) return false;
         return !detector.speculates || !may_close(bodies, radius_of_body_, f.contact, acceleration, frame_.step);
     };
     out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
 }
 
-double Stepper::speculative_acceleration(const Detector& detector) const
+/// A parameter of a component; 0 where it has none of that name.
+double Stepper::number_of(std::uint32_t component, const char* parameter) const
 {
-    const Field* field = world_.table_of(detector.resolution).schema().find_field("acceleration");
+    const Field* field = world_.table_of(component).schema().find_field(parameter);
     const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
-    return column ? (*column)[world_.component(detector.resolution).row] : 0.0;
+    return column ? (*column)[world_.component(component).row] : 0.0;
 }
 
 /// What is remembered of a contact of a known pair.
@@ -102,7 +159,11 @@ void Stepper::drop_far(std::vector<FoundContact>& out, double h) const
 {
     const Bodies& bodies = world_.host().bodies;
     const auto far = [&](const FoundContact& f)
-    { return f.contact.depth <= -standing_margin(f.contact.a, f.contact.b) && !may_close(bodies, radius_of_body_, f.contact, 0, h); };
+    {
+        const PairState* pair = known_pair(cache_, world_, detectors_[f.detector].component, f.contact);
+        const double margin = pair ? standing_margin(*pair) : standing_margin(f.contact.a, f.contact.b);
+        return f.contact.depth <= -margin && !may_close(bodies, radius_of_body_, f.contact, 0, h);
+    };
     out.erase(std::remove_if(out.begin(), out.end(), far), out.end());
 }
 
@@ -114,7 +175,6 @@ void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vect
         const std::uint32_t g = groups_.of(r);
         return g != kNoIndex && std::binary_search(groups.begin(), groups.end(), g);
     };
-    double widest = 0;
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         standing_.clear();
@@ -122,23 +182,19 @@ void Stepper::touching_pairs_of(std::span<const std::uint32_t> groups, std::vect
         for (const PairState& p : cache_.pairs())
         {
             if (!p.resting || p.detector != detectors_[d].component || !(member(p.a) || member(p.b))) continue;
-            standing_.push_back({p.a, p.b, p.normal * -standing_margin(p)});
-            margin = std::max(margin, gap_margin(p, h));
+            standing_.push_back({p.a, p.b, {}});
+            margin = std::max({margin, standing_margin(p), gap_margin(p, h)});
         }
         if (!standing_.empty()) detect(detectors_[d], d, standing_, true, out, margin);
-        widest = std::max(widest, margin);
     }
-    if (widest > 0) drop_far(out, h);
+    drop_far(out, h);
     sort_contacts(out, world_);
     for (FoundContact& f : out)
     {
         f.contact.resting = true;
-        const PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_);
         const KnownContact& known = known_contact(f);
         f.contact.id = known.id, f.contact.impulse = known.impulse;
         f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
-        // Seen with b moved towards a: half of the way back is where the two surfaces meet.
-        f.contact.point += pair->normal * (0.5 * standing_margin(*pair));
         fill_material(f);
     }
 }
@@ -161,17 +217,23 @@ SurfaceLaw Stepper::response_law(std::uint32_t detector) const
 {
     const std::uint32_t response = detectors_[detector].response;
     if (response == kNoIndex) return {};
-    const Row row = world_.component(response).row;
-    const auto number = [&](const char* name)
-    {
-        const Field* field = world_.table_of(response).schema().find_field(name);
-        const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
-        return column ? (*column)[row] : 0.0;
-    };
-    return {number("friction"), number("restitution")};
+    return {number_of(response, "friction"), number_of(response, "restitution")};
 }
 
-double Stepper::standing_margin(const PairState& pair) const { return standing_margin(pair.a, pair.b); }
+/// What slides along a curve is off it by a little more than others at the end of a step, and still held: without, it would hop.
+/// Not what touches since a few steps only, or parts faster than the curve makes it: that bounces.
+double Stepper::standing_margin(const PairState& pair) const
+{
+    const double base = standing_margin(pair.a, pair.b), radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
+    if (frame_.tick - pair.since < kSettled || !std::isfinite(radius)) return base;
+    const Bodies& bodies = world_.host().bodies;
+    const Shapes& shapes = world_.host().shapes;
+    const Vec3 v = bodies.velocity[pair.b.index] - bodies.velocity[pair.a.index];
+    const double parting = dot(v, pair.normal), along = length(v - parting * pair.normal);
+    const double curves = curve_radius(bodies, shapes, pair.a.index) + curve_radius(bodies, shapes, pair.b.index);
+    if (parting > 2 * along * along * frame_.step / curves) return base;
+    return base + std::min(opening_by_curves(along, frame_.step, curves), kMostShare * radius);
+}
 
 double Stepper::standing_margin(Ref a, Ref b) const
 {
@@ -212,6 +274,7 @@ void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, doub
         const world::Component& c = world_.component(response);
         StepContext context;
         context.time = frame_.start_time, context.dt = dt, context.tick = frame_.tick, context.events = this;
+        context.interruption = frame_.interruption;
         context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
         Impact impact;
         impact.mode = mode, impact.dt = dt, impact.contacts = impact_contacts_;
@@ -219,12 +282,14 @@ void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, doub
         call.context = &context, call.rows = Rows(&c.row, 1);
         call.bodies = &world_.host().bodies, call.impact = &impact;
         const double before = book.work ? kinetic_energy(contacts) : 0.0;
-        const std::uint64_t started = now_ns();
+        meter_.enter(meter_.of_component(response));
+        meter_.ran(c.table, Phase::Respond);
         for (const CommandInfo& command : table.type().info.commands)
             if (command.phase == Phase::Respond && command.run) (void)command.run(call, table.rows());
-        cost_.by_table[c.table][static_cast<std::size_t>(Phase::Respond)] += now_ns() - started;
+        meter_.leave();
         if (book.work) (*book.work)[response] += book.sign * (kinetic_energy(contacts) - before);
         report_.worst_residual = std::max(report_.worst_residual, impact.residual);
+        report_.swept_rows += 3 * impact_contacts_.size() * static_cast<std::size_t>(1 + impact.iterations);
         std::size_t next = 0;
         for (FoundContact& f : contacts)
             if (f.detector == d) f.contact = impact_contacts_[next++];
@@ -289,7 +354,7 @@ void Stepper::tell_paradox(const Contact& contact, PairState& pair, double time)
     if (goes_on) return;
     Event e = contact_event("contact.paradox", pair, time);
     e.severity = Severity::Warning;
-    e.message = "Painleve's paradox: friction of " + std::to_string(contact.friction) +
+    e.message = "Painleve's paradox: friction of " + number_text(contact.friction) +
                 " on this lever leaves sliding without an answer; an impulse ends the slip. Less friction, or a less slender body, has one";
     e.values = {contact.point.x, contact.point.y, contact.point.z, contact.normal.x, contact.normal.y, contact.normal.z};
     emit(std::move(e));
@@ -301,7 +366,6 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
                              WorkBook book, bool trial)
 {
     const double h = to - from;
-    Bodies& bodies = world_.host().bodies;
     Shafts& shafts = world_.host().shafts;
     GroupSystem& system = system_for(island, shadows);
     touching_.clear();
@@ -315,25 +379,11 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
                              frame_.start_time + from);
     if (arrest(system, h, book)) system.join();
 
-    old_velocity_.clear(), old_spin_.clear();
-    const auto members = system.bodies();
-    for (std::size_t i = 0; i < members.size(); ++i)
-    {
-        const std::uint32_t b = members[i];
-        old_velocity_.push_back(bodies.velocity[b]), old_spin_.push_back(bodies.angular_velocity[b]);
-        system.kick(i, h);
-    }
+    KickedBodies& moved = held_->kick_all(system, h);
     respond(touching_, ImpactMode::Rest, h, book);
     if (!trial) keep_impulses(touching_);
     system.join();  // an impulse knows nothing of joints
-    for (std::size_t i = 0; i < members.size(); ++i)
-    {
-        const std::uint32_t b = members[i];
-        bodies.position[b] += (old_velocity_[i] + bodies.velocity[b]) * (0.5 * h);
-        const Vec3 turn_W = (old_spin_[i] + bodies.angular_velocity[b]) * (0.5 * h);
-        bodies.orientation[b] = normalized(exp_rotation(turn_W) * bodies.orientation[b]);
-        bodies.refresh_spin(b);
-    }
+    (void)moved.move_mean(h);
     system.move_shafts(h, shafts);
     system.move_prescribed();
     system.project();

@@ -102,6 +102,9 @@ namespace
 
 using world::hash_of, world::mix;
 
+void copy_head(const PairHead& from, PairHead& to) { to = from; }
+void copy_head(const ForcePairHead& from, ForcePairHead& to) { to = from; }
+
 std::uint64_t hash_of_contact(const KnownContact& k)
 {
     const std::uint64_t h = mix(mix(hash_of(k.impulse), k.id), std::uint64_t{k.feature});
@@ -136,6 +139,22 @@ std::uint64_t hash_of_contact(const ForceContact& c)
 }
 
 }  // namespace
+
+void ContactCache::copy(const ContactCache& from)
+{
+    const auto copy_list = [](const auto& list, auto& to)
+    {
+        to.resize(list.size());
+        for (std::size_t i = 0; i < list.size(); ++i)
+        {
+            copy_head(list[i], to[i]);
+            std::copy_n(list[i].contacts.begin(), list[i].count, to[i].contacts.begin());
+        }
+    };
+    copy_list(from.pairs_, pairs_), copy_list(from.parked_pairs_, parked_pairs_);
+    copy_list(from.force_pairs_, force_pairs_), copy_list(from.parked_force_pairs_, parked_force_pairs_);
+    next_id_ = from.next_id_;
+}
 
 std::uint64_t ContactCache::state_hash(const world::World& world, std::uint64_t h) const
 {

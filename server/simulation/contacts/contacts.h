@@ -108,6 +108,8 @@ public:
     /// after a structural change.
     void refresh(const world::World& world, const std::vector<Detector>& detectors);
     void clear() { *this = {}; }
+    /// As `from`, but for the places of contacts that are not in use: a pair has room for more than it mostly has.
+    void copy(const ContactCache& from);
     std::uint64_t new_id() { return next_id_++; }
     std::uint64_t next_id() const { return next_id_; }
     /// Ids go on where those of a snapshot ended.

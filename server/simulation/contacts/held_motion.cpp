@@ -12,10 +12,9 @@ void HeldMotion::begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std:
 {
     system_ = &system, bodies_ = &bodies, shafts_ = &shafts;
     members_ = members, roots_ = roots, contacts_ = contacts, rows_ = rows, books_ = books;
-    kicked_ = pending_ = since_start_ = 0;
-    before_.resize(members.size()), shaft_before_.resize(roots.size());
+    worked_ = since_start_ = 0;
+    shaft_before_.resize(roots.size());
     means_.assign(members.size() + roots.size(), Mean{});
-    pending_means_.assign(members.size() + roots.size(), Mean{});
     arms_.clear();
     for (const Contact& c : contacts)
     {
@@ -31,81 +30,47 @@ double HeldMotion::kinetic_energy() const
     return sum;
 }
 
-/// Rotation vector of a turn over h, W, from the present attitude, with a momentum that stays: explicit midpoint, so that the
-/// spin follows the attitude on the way. With the spin of the start alone a tumbling body would gain energy.
-Vec3 HeldMotion::turn_over(std::uint32_t body, const Vec3& spin, const Vec3& momentum, double h) const
-{
-    if (bodies_->needle[body] != 0 || spin == Vec3{}) return spin * h;
-    const Quat half = normalized(exp_rotation(spin * (0.5 * h)) * bodies_->orientation[body]);
-    return rotate(half, bodies_->inverse_inertia_B[body] * rotate_back(half, momentum)) * h;
-}
-
 void HeldMotion::kick(double h)
 {
-    pending_ = 0;
-    for (std::size_t k = 0; k < members_.size(); ++k)
-    {
-        const std::uint32_t b = system_->bodies()[members_[k]];
-        before_[k] = {bodies_->velocity[b], bodies_->angular_velocity[b], bodies_->angular_momentum[b]};
-        if (books_) pending_ -= bodies_->kinetic_energy(b);
-        system_->kick(members_[k], h);
-        if (!books_) continue;
-        pending_ += bodies_->kinetic_energy(b);
-        const bool needle = bodies_->needle[b] != 0;
-        const Vec3 turning = needle ? rotate_back(bodies_->orientation[b], before_[k].spin + bodies_->angular_velocity[b])
-                                    : before_[k].momentum + bodies_->angular_momentum[b];
-        pending_means_[k] = {(before_[k].velocity + bodies_->velocity[b]) * 0.5, turning * 0.5, 0};
-    }
+    kicked_.kick(*system_, *bodies_, members_, h);
     for (std::size_t k = 0; k < roots_.size(); ++k)
     {
         double& speed = shafts_->speed[system_->roots()[roots_[k]]];
         shaft_before_[k] = speed;
         speed += h * system_->speed_rates()[6 * system_->body_count() + roots_[k]];
-        pending_means_[members_.size() + k].shaft = 0.5 * (shaft_before_[k] + speed);
     }
 }
 
-/// What the last kick did stays done.
-void HeldMotion::commit(double h)
+/// Books the way of a move, before the attitudes change: mean speeds of the move times its time.
+void HeldMotion::commit(double h, bool mean)
 {
     since_start_ += h;
     if (!books_) return;
-    kicked_ += pending_;
-    pending_ = 0;
-    for (std::size_t k = 0; k < means_.size(); ++k)
+    for (std::size_t k = 0; k < members_.size(); ++k)
     {
-        means_[k].velocity += pending_means_[k].velocity * h, means_[k].momentum += pending_means_[k].momentum * h;
-        means_[k].shaft += pending_means_[k].shaft * h;
+        const KickedBodies::Speeds speeds = kicked_.speeds(k, mean);
+        means_[k].velocity += speeds.velocity * h;
+        means_[k].momentum += speeds.momentum * h;
+        worked_ += kicked_.power(k, speeds) * h;
+    }
+    for (std::size_t k = 0; k < roots_.size(); ++k)
+    {
+        const double speed = shafts_->speed[system_->roots()[roots_[k]]];
+        means_[members_.size() + k].shaft += (mean ? 0.5 * (shaft_before_[k] + speed) : speed) * h;
     }
 }
 
 void HeldMotion::move(double h)
 {
-    commit(h);
-    for (const std::uint32_t i : members_)
-    {
-        const std::uint32_t b = system_->bodies()[i];
-        bodies_->position[b] += bodies_->velocity[b] * h;
-        const Vec3 turn_W = turn_over(b, bodies_->angular_velocity[b], bodies_->angular_momentum[b], h);
-        bodies_->orientation[b] = normalized(exp_rotation(turn_W) * bodies_->orientation[b]);
-        bodies_->refresh_spin(b);
-    }
+    commit(h, false);
+    kicked_.move(h);
     for (const std::uint32_t r : roots_) shafts_->angle[system_->roots()[r]] += shafts_->speed[system_->roots()[r]] * h;
 }
 
 void HeldMotion::move_mean(double h)
 {
-    commit(h);
-    for (std::size_t k = 0; k < members_.size(); ++k)
-    {
-        const std::uint32_t b = system_->bodies()[members_[k]];
-        bodies_->position[b] += (before_[k].velocity + bodies_->velocity[b]) * (0.5 * h);
-        const Vec3 turn_W = turn_over(b, (before_[k].spin + bodies_->angular_velocity[b]) * 0.5,
-                                      (before_[k].momentum + bodies_->angular_momentum[b]) * 0.5, h);
-        if (turn_W == Vec3{}) continue;
-        bodies_->orientation[b] = normalized(exp_rotation(turn_W) * bodies_->orientation[b]);
-        bodies_->refresh_spin(b);
-    }
+    commit(h, true);
+    (void)kicked_.move_mean(h);
     for (std::size_t k = 0; k < roots_.size(); ++k)
     {
         const std::uint32_t s = system_->roots()[roots_[k]];

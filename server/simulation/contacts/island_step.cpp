@@ -1,8 +1,8 @@
 #include "simulation/contacts/island_step.h"
 
 #include <algorithm>
+#include <numeric>
 
-#include "simulation/clock.h"
 #include "simulation/step/stepper.h"
 
 namespace plab::simulation
@@ -162,7 +162,8 @@ void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> gro
         if (number == kNoIndex) continue;
         isles_[number]->roots.push_back(i), isles_[number]->shafts.push_back(shaft);
     }
-    for (Isle* isle : isles) solve(*isle, system, from, to, book, trial);
+    for (Isle* isle : isles)
+        if (!s_->frame_.give_up()) solve(*isle, system, from, to, book, trial);
     if (book.work) book_forces(system, isles, to - from);
     system.finish_held();
     for (const Isle* isle : isles) report_rows(*isle, system, to - from, book);
@@ -184,10 +185,11 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     set_approach(isle, system, to - from);
     if (!trial)
         for (std::size_t i = 0; i < isle.contacts.size(); ++i)
-            if (s_->is_paradox(isle.contacts[i])) s_->tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]],
-                                                               s_->frame_.start_time + from);
+            if (s_->is_paradox(isle.contacts[i]))
+                s_->tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]], s_->frame_.start_time + from);
     isle.motion.begin(system, host.bodies, host.shafts, isle.members, isle.roots, isle.contacts, isle.rows, book.work != nullptr);
     Island island;
+    island.interruption = s_->frame_.interruption;
     island.h = to - from, island.time = s_->frame_.start_time + from;
     island.bodies = isle.bodies, island.shafts = isle.shafts;
     shaft_mobility_.resize(host.shafts.size());
@@ -199,20 +201,31 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     world::Table& table = world.table_of(isle.manager);
     StepContext context;
     context.time = island.time, context.dt = island.h, context.tick = s_->frame_.tick, context.events = trial ? nullptr : s_;
+    context.interruption = island.interruption;
     context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
     PhaseCall call;
     call.context = &context, call.rows = Rows(&c.row, 1);
     call.bodies = &host.bodies, call.shafts = &host.shafts, call.island = &island;
     const double before = book.work ? isle.motion.kinetic_energy() : 0.0;
-    const std::uint64_t started = now_ns();
+    s_->meter_.enter(s_->meter_.of_component(isle.manager));
+    s_->meter_.ran(c.table, Phase::Solve);
     for (const CommandInfo& command : table.type().info.commands)
         if (command.phase == Phase::Solve && command.run) (void)command.run(call, table.rows());
-    s_->cost_.by_table[c.table][static_cast<std::size_t>(Phase::Solve)] += now_ns() - started;
+    s_->meter_.leave();
     if (book.work) (*book.work)[isle.manager] += book.sign * (isle.motion.kinetic_energy() - before - isle.motion.work_of_forces());
+    s_->report_.swept_rows += (3 * isle.contacts.size() + isle.rows.size()) * static_cast<std::size_t>(1 + island.iterations);
     if (trial) return;
     s_->report_.worst_residual = std::max(s_->report_.worst_residual, island.residual);
     keep(isle);
     tell_impacts(isle, island.time);
+}
+
+KickedBodies& HeldIslands::kick_all(GroupSystem& system, double h)
+{
+    everybody_.resize(system.bodies().size());
+    std::iota(everybody_.begin(), everybody_.end(), 0u);
+    kicked_.kick(system, s_->world_.host().bodies, everybody_, h);
+    return kicked_;
 }
 
 /// What joints say of themselves, and their share in what the manager did.

@@ -6,9 +6,8 @@
 /// how far they kick, when bodies move, and answers contacts and rows in
 /// between.
 ///
-///   work of forces   F . (mean of the speeds before and after each kick) h,
-///   summed: what a kick did to kinetic energy work of manager  the rest of the
-///   change of kinetic energy
+///   work of forces    F . (way that the bodies go)
+///   work of manager   the rest of the change of kinetic energy
 #pragma once
 
 #include <memory>
@@ -16,6 +15,7 @@
 
 #include "plab/island.h"
 #include "simulation/contacts/contacts.h"
+#include "simulation/contacts/kicked_bodies.h"
 
 namespace plab::simulation
 {
@@ -36,8 +36,8 @@ public:
     void refresh_rows() override;
     void refresh_depths() override;
 
-    /// J: what the kicks did to kinetic energy.
-    double work_of_forces() const { return kicked_; }
+    /// J: what the forces did on the way that the bodies went.
+    double work_of_forces() const { return worked_; }
     double kinetic_energy() const;
     /// Mean speeds of the kicks times the time they took, by member, and of
     /// roots.
@@ -51,12 +51,7 @@ public:
     std::span<const std::uint32_t> members() const { return members_; }
 
 private:
-    struct Before
-    {
-        Vec3 velocity, spin, momentum;
-    };
-    void commit(double h);
-    Vec3 turn_over(std::uint32_t body, const Vec3& spin, const Vec3& momentum, double h) const;
+    void commit(double h, bool mean);
     Vec3 moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point) const;
 
     GroupSystem* system_ = nullptr;
@@ -67,10 +62,10 @@ private:
     std::span<Contact> contacts_;
     std::span<ConstraintRow> rows_;
     bool books_ = false;
-    double kicked_ = 0, pending_ = 0, since_start_ = 0;
-    std::vector<Before> before_;
+    double worked_ = 0, since_start_ = 0;
+    KickedBodies kicked_;
     std::vector<double> shaft_before_;
-    std::vector<Mean> means_, pending_means_;
+    std::vector<Mean> means_;
     struct Arms
     {
         Vec3 a, b;         ///< m, in the bodies' frames
@@ -110,6 +105,8 @@ public:
     /// Takes the groups that managers advance out of `groups` into held(); both
     /// ascending.
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
+    /// Kicks all bodies of a system that nobody holds but resting contacts with impulses.
+    KickedBodies& kick_all(GroupSystem& system, double h);
     bool holds_any() const { return !held_.empty(); }
     void advance(std::span<const std::uint32_t> shadows, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
 
@@ -158,6 +155,8 @@ private:
     std::size_t isle_count_ = 0;
     std::vector<Isle*> plain_, jointed_;
     std::vector<std::uint32_t> plain_groups_;
+    KickedBodies kicked_;  ///< of kick_all
+    std::vector<std::uint32_t> everybody_;
     std::vector<FoundContact> touching_;
     std::vector<PairState*> pair_of_contact_;
     std::vector<PairState> fresh_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "plab/rotation.h"
+#include "plab/surface.h"
 
 namespace plab::simulation
 {
@@ -15,140 +16,33 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 /// Estimates of changing accelerations from the two ends are taken this many times.
 constexpr double kReserve = 2;
 
-double largest_radius(const Geometry& g, const Shapes& shapes)
-{
-    double r = 0;
-    switch (g.kind)
-    {
-        case GeometryKind::Sphere:
-            return g.size.x;
-        case GeometryKind::Box:
-            return length(g.size);
-        case GeometryKind::Plane:
-            return kForever;
-        case GeometryKind::Capsule:
-            return g.size.x + g.size.z;
-        case GeometryKind::Cylinder:
-            return std::hypot(g.size.x, g.size.z);
-        case GeometryKind::Mesh:
-            for (const Vec3& v : g.vertices) r = std::max(r, length(v));
-            return r;
-        case GeometryKind::Compound:
-            for (const std::uint32_t part : g.parts)
-                r = std::max(r, length(shapes.geometry[part].pose.p) + largest_radius(shapes.geometry[part], shapes));
-            return r;
-        case GeometryKind::None:
-            return 0;
-    }
-    return 0;
-}
-
-/// max of m . p over the points of a shape whose frame is at (p, q), from the origin of m.
-double support_of_shape(const Geometry& g, const Shapes& shapes, const Pose& X, const Vec3& m)
-{
-    const double at = dot(m, X.p);
-    const Vec3 l = rotate_back(X.q, m);
-    switch (g.kind)
-    {
-        case GeometryKind::Sphere:
-            return at + g.size.x * length(m);
-        case GeometryKind::Box:
-            return at + std::fabs(l.x) * g.size.x + std::fabs(l.y) * g.size.y + std::fabs(l.z) * g.size.z;
-        case GeometryKind::Capsule:
-            return at + std::fabs(l.z) * g.size.z + g.size.x * length(m);
-        case GeometryKind::Cylinder:
-            return at + std::fabs(l.z) * g.size.z + g.size.x * std::hypot(l.x, l.y);
-        case GeometryKind::Mesh:
-        {
-            double most = -kForever;
-            for (const Vec3& v : g.vertices) most = std::max(most, dot(l, v));
-            return at + most;
-        }
-        case GeometryKind::Compound:
-        {
-            double most = -kForever;
-            for (const std::uint32_t part : g.parts)
-            {
-                const Geometry& p = shapes.geometry[part];
-                most = std::max(most, support_of_shape(p, shapes, X * p.pose, m));
-            }
-            return most;
-        }
-        case GeometryKind::Plane:
-        case GeometryKind::None:
-            break;
-    }
-    return -kForever;
-}
-
 }  // namespace
 
-BodyExtent extent_of(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
+Course course_of(const Bodies& bodies, std::uint32_t b, const BodyExtent& extent, double begin, const BodyState& first, double end,
+                 const BodyState& last)
 {
-    BodyExtent out;
-    std::size_t solids = 0;
-    for (const Ref shape : bodies.shapes[b])
-    {
-        const Geometry& g = shapes.geometry[shape.index];
-        if (g.kind == GeometryKind::None) continue;
-        const double offset = length(g.pose.p - bodies.center_B[b]), radius = largest_radius(g, shapes);
-        out.radius = std::max(out.radius, offset + radius);
-        out.arm = std::max(out.arm, g.kind == GeometryKind::Sphere ? offset : offset + radius);
-        out.is_plane = g.kind == GeometryKind::Plane;
-        out.convex = out.convex && ++solids == 1 && g.kind != GeometryKind::Compound;
-    }
-    out.is_plane = out.is_plane && out.convex;
-    return out;
-}
-
-double support(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, const Quat& q, const Vec3& m)
-{
-    double most = -kForever;
-    for (const Ref shape : bodies.shapes[b])
-    {
-        const Geometry& g = shapes.geometry[shape.index];
-        const Pose X{rotate(q, g.pose.p - bodies.center_B[b]), q * g.pose.q};
-        most = std::max(most, support_of_shape(g, shapes, X, m));
-    }
-    return most;
-}
-
-Course course_of(const Bodies& bodies, std::uint32_t b, double begin, const BodyState& first, double end, const BodyState& last)
-{
-    Course c{begin, end, first, last, {}, 0, 0, 0};
+    Course c{begin, end, first, last, {}, 0, {}};
     const double T = end - begin;
     if (!(T > 0)) return c;
     // x = x0 + v0 T + k T^2/2 defines k; were x cubic, the speeds at the end would differ by j T^2/6 from v0 + k T.
     c.acceleration = (last.position - first.position - first.velocity * T) * (2 / (T * T));
     c.deviation = kReserve * 4 / T * length(last.velocity - first.velocity - c.acceleration * T);
-    // Free of torque, |w| <= |L| / I_min all the time, and I w' = L x w; torque is seen in the change of L.
-    const Mat3& inverse = bodies.inverse_inertia_B[b];
     const auto momentum = [&](const BodyState& s)
     { return rotate(s.orientation, bodies.inertia_B[b] * rotate_back(s.orientation, s.spin)); };
-    const Vec3 before = momentum(first), after = momentum(last);
-    double most = 0;
-    for (int i = 0; i < 3; ++i) most = std::max(most, std::fabs(inverse(i, 0)) + std::fabs(inverse(i, 1)) + std::fabs(inverse(i, 2)));
-    const double least = 1 / std::max({bodies.inertia_B[b](0, 0), bodies.inertia_B[b](1, 1), bodies.inertia_B[b](2, 2)});
-    const double turned = length(after - before), size = std::max(length(before), length(after));
-    c.spin = std::max(length(first.spin), length(last.spin));
-    const double spread = std::max(0.0, most - least) / most;
-    if (spread > 1e-12) c.spin = std::max(c.spin, (size + turned) * most);
-    c.spin_up = kReserve * turned / T * most + spread * c.spin * c.spin / (1 - std::min(spread, 0.99));
+    c.turning = free_turning(extent.principal, extent.arm, {momentum(first), momentum(last)}, {first.spin, last.spin}, T, kReserve);
     return c;
 }
 
-Course steady_course(double begin, const BodyState& first, double end, const BodyState& last)
+Course steady_course(const BodyExtent& extent, double begin, const BodyState& first, double end, const BodyState& last)
 {
-    Course c{begin, end, first, last, {}, 0, 0, 0};
-    c.spin = length(first.spin);
-    return c;
+    return {begin, end, first, last, {}, 0, steady_turning(first.spin, extent.arm)};
 }
 
 double reach_of(const Course& course, const BodyExtent& extent)
 {
     const double T = course.end - course.begin;
     const double bulge = 0.125 * (length(course.acceleration) + course.deviation) * T * T;
-    const double turned = extent.arm > 0 ? std::min(2.0, course.spin * T) * extent.arm : 0;
+    const double turned = course.turning.sweep > 0 ? std::min(2 * extent.arm, course.turning.sweep * T) : 0;
     return length(course.last.position - course.first.position) + bulge + turned;
 }
 
@@ -161,10 +55,23 @@ Clearance::Clearance(const Bodies& bodies, const Shapes& shapes, const Mover& a,
     for (const Mover* m : {&a_, &b_})
     {
         unsure_ += m->course->deviation;
-        if (m->extent->arm == 0 || m->course->spin == 0) continue;
-        turning_ += m->course->spin * m->extent->arm;
-        swirl_ += (m->course->spin * m->course->spin + m->course->spin_up) * m->extent->arm;
+        turning_ += sweep_of(*m);
+        swirl_ += sweep_up_of(*m);
     }
+}
+
+/// m/s, most of the mover's points about the body's centre: a shape's is no more than the body's.
+double Clearance::sweep_of(const Mover& m)
+{
+    const TurningBound& t = m.course->turning;
+    return m.extent->arm == 0 || t.spin == 0 ? 0 : std::min(t.sweep, t.spin * m.extent->arm);
+}
+
+/// m/s^2, likewise.
+double Clearance::sweep_up_of(const Mover& m)
+{
+    const TurningBound& t = m.course->turning;
+    return m.extent->arm == 0 || t.spin == 0 ? 0 : std::min(t.sweep_up, (t.spin * t.spin + t.spin_up) * m.extent->arm);
 }
 
 /// First zero of gap + rate s + acceleration s^2/2, gap >= 0; `left_` if there is none before.
@@ -212,7 +119,10 @@ double Clearance::of_balls() const
     return 0;
 }
 
-double Clearance::support_of(const Mover& m, const Quat& q, const Vec3& n) const { return support(bodies_, shapes_, m.body, q, n); }
+double Clearance::support_of(const Mover& m, const Quat& q, const Vec3& n) const
+{
+    return support(bodies_, shapes_, m.body, *m.extent, q, n);
+}
 
 Clearance::Frame Clearance::world_frame(const Vec3& n) const
 {
@@ -223,11 +133,12 @@ Clearance::Frame Clearance::world_frame(const Vec3& n) const
 Clearance::Frame Clearance::frame_of(const Mover& m) const
 {
     const Mover& other = &m == &a_ ? b_ : a_;
-    const double w = m.course->spin, arm = other.extent->is_plane ? 0 : other.extent->arm, pull = length(acceleration_) + unsure_;
+    const double w = m.course->turning.spin, arm = other.extent->is_plane ? 0 : other.extent->arm;
+    const double pull = length(acceleration_) + unsure_;
     const double distance = length(apart_) + (length(speed_) + 0.5 * pull * left_) * left_ + arm;
-    const double speed = length(speed_) + pull * left_ + other.course->spin * arm;
-    const double swirl = (other.course->spin * other.course->spin + other.course->spin_up) * arm;
-    return {m.now.spin, -(pull + swirl + 2 * w * speed + (w * w + m.course->spin_up) * distance)};
+    const double speed = length(speed_) + pull * left_ + (arm > 0 ? sweep_of(other) : 0);
+    const double swirl = arm > 0 ? sweep_up_of(other) : 0;
+    return {m.now.spin, -(pull + swirl + 2 * w * speed + (w * w + m.course->turning.spin_up) * distance)};
 }
 
 /// Any direction will do, also one that turns as it likes, at constant rate.
@@ -246,7 +157,7 @@ double Clearance::linear_width(const Frame& frame, const Vec3& n, double gap, do
     double width = gap + (dot(speed_, n) + dot(cross(frame.spin, n), apart_)) * s;
     const auto grow = [&](const Mover& m, const Vec3& outward)
     {
-        if (m.extent->is_plane || m.extent->arm == 0) return;
+        if (m.extent->is_plane || m.extent->arm == 0 || frame.spin == m.now.spin) return;
         const Vec3 turned = outward + cross(frame.spin - m.now.spin, outward) * s;
         width -= support_of(m, m.now.orientation, turned) - support_of(m, m.now.orientation, outward);
     };
@@ -258,7 +169,7 @@ double Clearance::by_points(const Vec3& n, double gap, const Vec3& turn) const
 {
     // A half-space that turns takes its only direction with it.
     for (const Mover* m : {&a_, &b_})
-        if (m->extent->is_plane && m->course->spin > 0) return by_points_in(frame_of(*m), n, gap);
+        if (m->extent->is_plane && m->course->turning.spin > 0) return by_points_in(frame_of(*m), n, gap);
     if (turning_ == 0) return quadratic(gap, dot(speed_, n), dot(acceleration_, n) - unsure_);
     double clear = by_points_in(world_frame(n), n, gap);
     // A half-space knows no other direction than its own. Else: a face that turns sweeps along its own normal.
@@ -307,7 +218,7 @@ double Clearance::by_chord(const Vec3& n, double gap) const
     double width = gap + dot((end_b - end_a) - apart_, n);
     const auto grow = [&](const Mover& m, const Vec3& outward)
     {
-        if (m.extent->is_plane || m.extent->arm == 0) return;
+        if (m.extent->is_plane || m.extent->arm == 0 || m.course->last.orientation == m.now.orientation) return;
         width -= support_of(m, m.course->last.orientation, outward) - support_of(m, m.now.orientation, outward);
     };
     grow(a_, n), grow(b_, -n);
@@ -319,10 +230,42 @@ double Clearance::by_chord(const Vec3& n, double gap) const
 double Clearance::along(const Vec3& n, double gap, const Vec3& turn) const
 {
     const bool has_plane = a_.extent->is_plane || b_.extent->is_plane;
-    if (!has_plane && !(a_.extent->convex && b_.extent->convex)) return in_any_direction(gap);
+    if (!has_plane && !(a_.extent->convex && b_.extent->convex))
+        return std::max({in_any_direction(gap), of_hulls(n, gap), of_ball_in_round(n, gap)});
     const double open = std::max(0.0, gap);
-    const bool plane_turns = (a_.extent->is_plane && a_.course->spin > 0) || (b_.extent->is_plane && b_.course->spin > 0);
+    const bool plane_turns = (a_.extent->is_plane && a_.course->turning.spin > 0) || (b_.extent->is_plane && b_.course->turning.spin > 0);
     return std::max(by_points(n, open, turn), open > 0 && !plane_turns ? by_chord(n, open) : 0.0);
+}
+
+double Clearance::of_hulls(const Vec3& n, double gap) const
+{
+    const double to_a = support_of(a_, a_.now.orientation, n), to_b = support_of(b_, b_.now.orientation, -n), apart = dot(n, apart_);
+    const double width = apart - to_a - to_b;
+    if (!(width >= gap - 4e-16 * (std::fabs(apart) + std::fabs(to_a) + std::fabs(to_b)))) return 0;
+    const double open = std::max(0.0, gap);
+    return std::max(by_points_in(world_frame(n), n, open), open > 0 ? by_chord(n, open) : 0.0);
+}
+
+double Clearance::of_ball_in_round(const Vec3& n, double gap) const
+{
+    const bool first = round_radius(a_) > 0;
+    const Mover &round = first ? a_ : b_, &ball = first ? b_ : a_;
+    const double radius = round_radius(round);
+    if (radius == 0 || ball.extent->arm > 0 || round.course->turning.spin > 0) return 0;
+    // Seen from the middle the way outwards bends by v^2 / distance; within a tenth of the distance that changes little.
+    const double distance = radius - ball.extent->radius - gap, pull = length(acceleration_) + unsure_;
+    const double speed = length(speed_) + pull * left_;
+    if (!(distance > 0)) return 0;
+    const double near = speed > 0 ? std::min(left_, 0.1 * distance / speed) : left_;
+    return std::min(near, quadratic(std::max(0.0, gap), dot(speed_, n), -(speed * speed / (0.9 * distance) + pull)));
+}
+
+double Clearance::round_radius(const Mover& m) const
+{
+    if (bodies_.shapes[m.body].size() != 1) return 0;
+    const Geometry& g = shapes_.geometry[bodies_.shapes[m.body].front().index];
+    const Surface surface = surface_of(g);
+    return surface == Surface::Bowl || surface == Surface::Bore ? surface_radius(g) : 0;
 }
 
 double Clearance::in_any_direction(double gap) const
@@ -343,7 +286,7 @@ bool Clearance::was_clear(const Vec3& n, double gap, double ago, const Vec3& tur
     if (turning_ > 0 && !(a_.extent->convex && b_.extent->convex)) return false;
     const auto was = [&](const Frame& frame) { return linear_width(frame, n, gap, -ago) + 0.5 * frame.bend * ago * ago > 0; };
     for (const Mover* m : {&a_, &b_})
-        if (m->extent->is_plane && m->course->spin > 0) return was(frame_of(*m));
+        if (m->extent->is_plane && m->course->turning.spin > 0) return was(frame_of(*m));
     if (was(world_frame(n)) || a_.extent->is_plane || b_.extent->is_plane) return was(world_frame(n));
     return (a_.extent->arm > 0 && was(frame_of(a_))) || (b_.extent->arm > 0 && was(frame_of(b_))) || was(frame_turning(turn));
 }
@@ -355,23 +298,23 @@ double Clearance::of_half_space() const
     return find_half_space(n, gap) && gap > 0 ? along(n, gap) : 0;
 }
 
-/// The normal from a to b of the one that is a half-space, and how far the other one is from it.
+double Clearance::width_along(const Vec3& n) const
+{
+    if (a_.extent->is_plane || b_.extent->is_plane) return -kForever;
+    return dot(apart_, n) - support_of(a_, a_.now.orientation, n) - support_of(b_, b_.now.orientation, -n);
+}
+
 bool Clearance::find_half_space(Vec3& n, double& gap) const
 {
     const bool first = a_.extent->is_plane;
     const Mover &flat = first ? a_ : b_, &solid = first ? b_ : a_;
-    if (!flat.extent->is_plane || solid.extent->is_plane || flat.course->spin > 0 || solid.extent->radius == 0) return false;
-    for (const Ref shape : bodies_.shapes[flat.body])
-    {
-        const Geometry& g = shapes_.geometry[shape.index];
-        if (g.kind != GeometryKind::Plane) continue;
-        const Vec3 up = rotate(flat.now.orientation * g.pose.q, Vec3{0, 0, 1});
-        const Vec3 on_it = flat.now.position + rotate(flat.now.orientation, g.pose.p - bodies_.center_B[flat.body]);
-        gap = dot(solid.now.position - on_it, up) - support_of(solid, solid.now.orientation, -up);
-        n = first ? up : -up;
-        return true;
-    }
-    return false;
+    if (!flat.extent->is_plane || solid.extent->is_plane || flat.course->turning.spin > 0 || solid.extent->radius == 0) return false;
+    const Pose& X = flat.extent->in_body;
+    const Vec3 up = rotate(flat.now.orientation * X.q, Vec3{0, 0, 1});
+    const Vec3 on_it = flat.now.position + rotate(flat.now.orientation, X.p - bodies_.center_B[flat.body]);
+    gap = dot(solid.now.position - on_it, up) - support_of(solid, solid.now.orientation, -up);
+    n = first ? up : -up;
+    return true;
 }
 
 }  // namespace plab::simulation

@@ -15,9 +15,7 @@
 /// collision detection for articulated models using Taylor models and temporal culling, SIGGRAPH (2007).
 #pragma once
 
-#include <span>
-
-#include "plab/tables.h"
+#include "simulation/events/extent.h"
 
 namespace plab::simulation
 {
@@ -36,19 +34,6 @@ struct BodyState
     }
 };
 
-/// The extent of a body, from its shapes.
-struct BodyExtent
-{
-    double radius = 0;      ///< m, about C; infinite for planes
-    double arm = 0;         ///< m: how far turning about C can sweep; 0 for a ball around C
-    bool convex = true;     ///< one convex shape, or nothing but one plane
-    bool is_plane = false;  ///< a half-space: its own normal is the only direction that can separate
-};
-BodyExtent extent_of(const Bodies& bodies, const Shapes& shapes, std::uint32_t b);
-
-/// max over the points of body b, turned by q, of m . (p - C), m. Not for planes.
-double support(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, const Quat& q, const Vec3& m);
-
 /// A body between the two ends of a piece. Accelerations are estimated from the ends: exact for constant forces; what a
 /// force does faster than the piece is long is not seen.
 struct Course
@@ -57,8 +42,7 @@ struct Course
     BodyState first, last;
     Vec3 acceleration;     ///< m/s^2, constant part: leads from one position to the other
     double deviation = 0;  ///< m/s^2, what the acceleration of C may differ from it
-    double spin = 0;       ///< rad/s, most
-    double spin_up = 0;    ///< rad/s^2, most
+    TurningBound turning;
 
     Vec3 position_at(double t) const
     {
@@ -68,19 +52,20 @@ struct Course
     Vec3 velocity_at(double t) const { return first.velocity + acceleration * (t - begin); }
 };
 /// Of a dynamic body. `begin` < `end`.
-Course course_of(const Bodies& bodies, std::uint32_t b, double begin, const BodyState& first, double end, const BodyState& last);
+Course course_of(const Bodies& bodies, std::uint32_t b, const BodyExtent& extent, double begin, const BodyState& first, double end,
+                 const BodyState& last);
 /// Of a body whose motion is prescribed, or that stands still.
-Course steady_course(double begin, const BodyState& first, double end, const BodyState& last);
+Course steady_course(const BodyExtent& extent, double begin, const BodyState& first, double end, const BodyState& last);
 
 /// m: how far a point of the body gets, over its course, from where it is at its end.
 double reach_of(const Course& course, const BodyExtent& extent);
 
-/// One of two bodies as seen at the time from which a bound is asked.
+/// One of two bodies, or a shape of it, as seen at the time from which a bound is asked.
 struct Mover
 {
     std::uint32_t body = 0;
     const Course* course = nullptr;
-    const BodyExtent* extent = nullptr;
+    const ShapeExtent* extent = nullptr;
     BodyState now;
 };
 
@@ -94,8 +79,12 @@ public:
     double of_balls() const;
     /// By the normal of a half-space, where one of them is one that does not turn. 0 where they overlap.
     double of_half_space() const;
-    /// By a direction n from a to b (unit, W), `gap` (m) apart. `turn` (rad/s): how n was seen to turn, if it was; where two
-    /// edges meet it turns with neither body.
+    /// The normal from a to b of the one that is a half-space which does not turn, and how far the other one is from it, m.
+    bool find_half_space(Vec3& n, double& gap) const;
+    /// m: how far they are apart along n; < 0: their widths overlap.
+    double width_along(const Vec3& n) const;
+    /// By a direction n from a to b (unit, W), `gap` (m) apart; of bodies that are not convex: along whatever direction. `turn` (rad/s):
+    /// how n was seen to turn, if it was; where two edges meet it turns with neither body.
     double along(const Vec3& n, double gap, const Vec3& turn = {}) const;
     /// For bodies that are not convex: `gap` over the largest closing speed in any direction.
     double in_any_direction(double gap) const;
@@ -105,7 +94,11 @@ public:
     bool was_clear(const Vec3& n, double gap, double ago, const Vec3& turn = {}) const;
 
 private:
-    bool find_half_space(Vec3& n, double& gap) const;
+    /// By n, where all of one body lies behind the plane through its point of contact: then their convex hulls are no nearer.
+    double of_hulls(const Vec3& n, double gap) const;
+    /// Of a ball inside of a bowl or a bore that does not turn: gap'' >= -(v^2 / d + |a|), d from its middle.
+    double of_ball_in_round(const Vec3& n, double gap) const;
+    double round_radius(const Mover& m) const;
     /// Spin of the frame in which the direction stands still, and how fast widths may bend in it, m/s^2.
     struct Frame
     {
@@ -121,6 +114,8 @@ private:
     double by_chord(const Vec3& n, double gap) const;
     double linear_width(const Frame& frame, const Vec3& n, double gap, double s) const;
     double support_of(const Mover& m, const Quat& q, const Vec3& n) const;
+    static double sweep_of(const Mover& m);
+    static double sweep_up_of(const Mover& m);
 
     const Bodies& bodies_;
     const Shapes& shapes_;

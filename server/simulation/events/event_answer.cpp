@@ -11,13 +11,15 @@ namespace plab::simulation
 namespace
 {
 
-/// Impacts of one pair in one step before it stops bouncing, and says so.
-constexpr std::uint32_t kMostOfPair = 100000;
-/// And of one with somebody who stands or lies on others: what holds him may press him back as often as he bounces. Bounces of a
-/// hundredth of the step rise by g h^2 / 8e4 at most.
+/// Impacts in one step of a pair of which one stands or lies on others, before it stops bouncing: what holds him may press him back as
+/// often as he bounces. Bounces of a hundredth of the step rise by g h^2 / 8e4 at most.
 constexpr std::uint32_t kMostOfHeldPair = 100;
-/// Slower than this nobody who stopped bouncing leaves, m/s.
-constexpr double kStays = 1e-9;
+/// Share of what it closed with, and of what forces give in the step: slower than this nobody who stopped bouncing leaves.
+constexpr double kStays = 0x1p-24;
+/// Rounding of a position, as a share of the bodies' sizes and distances from the origin.
+constexpr double kRounding = 4e-15;
+/// Share of the speeds that a closing speed is a difference of, below which it is none.
+constexpr double kStill = 0x1p-30;
 
 /// What an event says of a contact: point, normal, impulse, depth (server/docs/step.md).
 std::vector<double> values_of(const Contact& c, const Vec3& impulse)
@@ -40,6 +42,15 @@ void EventLocator::advance_group(std::uint32_t g, double time, WorkBook book, bo
 }
 
 void EventLocator::advance_scope(double time, WorkBook book, bool trial)
+{
+    const std::uint64_t swept = s_->report_.swept_rows;
+    move_scope(time, book, trial);
+    const bool stands = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
+    if (stands) budget_.spend(WorkBudget::kGoneThrough * static_cast<double>(s_->groups_.all.size() + s_->cache_.pairs().size()));
+    budget_.spend(static_cast<double>(scope_.size()) + WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows - swept));
+}
+
+void EventLocator::move_scope(double time, WorkBook book, bool trial)
 {
     // Pieces that began together advance together; usually all of them did.
     bool together = true, rests = false;
@@ -79,9 +90,17 @@ void EventLocator::go_on(double time)
     if (!any_certifies_)
     {
         s_->advance(scope_, time, s_->frame_.step, {&s_->work_, 1}, false);
+        budget_.spend(static_cast<double>(scope_.size()));
         return;
     }
     advance_scope(s_->frame_.step, {&s_->work_, 1}, false);
+}
+
+/// m: of where two bodies are.
+double EventLocator::rounding_of(Ref a, Ref b) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    return kRounding * (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]));
 }
 
 void EventLocator::look_from_the_clear_side(Candidate& candidate)
@@ -90,9 +109,7 @@ void EventLocator::look_from_the_clear_side(Candidate& candidate)
     // than the way from there, so that arms and normals fit the state.
     double closing = 0;
     for (const FoundContact& f : candidate.contacts) closing = std::max(closing, std::fabs(s_->normal_velocity(f.contact)));
-    const Bodies& bodies = s_->world_.host().bodies;
-    const double size = length(bodies.position[candidate.a.index]) + length(bodies.position[candidate.b.index]);
-    const double margin = 4 * closing * candidate.bracket + 1e-15 * (1 + size);
+    const double margin = 4 * closing * candidate.bracket + rounding_of(candidate.a, candidate.b);
     const StandingPair pair{candidate.a, candidate.b, candidate.contacts.front().contact.normal * -margin};
     seen_.clear();
     s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
@@ -108,12 +125,11 @@ void EventLocator::complete(Candidate& candidate)
     const Detector& detector = s_->detectors_[candidate.detector];
     if (!detector.responds) scope_of_pair(candidate), advance_groups_to(candidate.time);
     const Bodies& bodies = s_->world_.host().bodies;
-    const GapQuery q = measure(candidate);
-    const double size = length(bodies.position[q.a.index]) + length(bodies.position[q.b.index]);
+    const GapQuery q = measure(candidate, candidate.time);
     const double closing = std::fabs(dot(bodies.velocity_at(q.b.index, q.point_b) - bodies.velocity_at(q.a.index, q.point_a), q.normal));
     // Corners that land a rounding error later belong to the same impact.
     const double margin =
-        std::max(0.0, q.gap) * 2 + 4 * closing * candidate.bracket + 1e-15 * (1 + size) + closing * 0x1p-44 * s_->frame_.step;
+        std::max(0.0, q.gap) * 2 + 4 * closing * candidate.bracket + rounding_of(q.a, q.b) + closing * 0x1p-44 * s_->frame_.step;
     candidate.contacts.clear();
     detect_pair(candidate, q.normal * -margin, candidate.contacts);
     if (candidate.contacts.empty())
@@ -209,7 +225,9 @@ void EventLocator::note_paradoxes()
     paradox_.clear();
     for (const FoundContact& f : impact_)
     {
-        const bool pressed = s_->normal_velocity(f.contact) >= 2 * f.contact.normal_acceleration * s_->frame_.step - 1e-9;
+        const Contact& c = f.contact;
+        const double rounding = kStill * speeds_at(c.a, c.point, c.b, c.point);
+        const bool pressed = s_->normal_velocity(c) >= 2 * c.normal_acceleration * s_->frame_.step - rounding;
         paradox_.push_back(pressed && s_->is_paradox(f.contact) ? 1 : 0);
     }
 }
@@ -226,7 +244,7 @@ void EventLocator::keep_if_it_cannot_leave(Contact& c) const
 {
     // It overlapped from the start: a rebound that does not clear the overlap would be answered again and again.
     const double speed = s_->normal_velocity(c);
-    const double way = std::max(c.depth, kOverlapTolerance);
+    const double way = std::max(c.depth, overlap_tolerance(c.a, c.b));
     if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * way)) c.resting = true;
 }
 
@@ -237,16 +255,14 @@ bool EventLocator::stop_bouncing(const Candidate& candidate, double time, double
     ends = time;
     const Detector& detector = s_->detectors_[candidate.detector];
     PairState* pair = s_->cache_.find(detector.component, candidate.a, candidate.b, s_->world_);
-    if (!pair) return exhausted_;
+    if (!pair) return false;
     if (pair->impacts_tick != s_->frame_.tick) pair->impacts = 0, pair->impacts_tick = s_->frame_.tick;
-    const std::uint32_t most = stands_ ? kMostOfHeldPair : kMostOfPair;
-    if (++pair->impacts > most || exhausted_)
+    if (++pair->impacts > kMostOfHeldPair && stands_)
     {
-        if (pair->impacts == most + 1)
+        if (pair->impacts == kMostOfHeldPair + 1)
         {
             Event e = s_->contact_event("contact.too_many", *pair, time);
-            e.severity = stands_ ? Severity::Info : Severity::Warning;
-            e.message = "more than " + std::to_string(most) + " impacts of one pair in one step; it stops bouncing";
+            e.message = "more than " + std::to_string(kMostOfHeldPair) + " impacts of one pair in one step; it stops bouncing";
             s_->emit(std::move(e));
         }
         return true;
@@ -303,10 +319,15 @@ void EventLocator::answer()
     {
         double ends = time;
         if (!stop_bouncing(candidates_[slot], time, ends)) continue;
-        stopped_.push_back({slot, ends});
+        double stays = 0;
         for (std::size_t i = 0; i < own; ++i)
-            if (impact_[i].contact.a == candidates_[slot].a && impact_[i].contact.b == candidates_[slot].b)
-                impact_[i].contact.restitution = 0;
+        {
+            Contact& c = impact_[i].contact;
+            if (c.a != candidates_[slot].a || c.b != candidates_[slot].b) continue;
+            c.restitution = 0;
+            stays = std::max(stays, std::fabs(s_->normal_velocity(c)) + std::fabs(c.normal_acceleration) * s_->frame_.step);
+        }
+        stopped_.push_back({slot, ends, kStays * stays});
     }
     note_paradoxes();
     respond(first.time);
@@ -324,7 +345,7 @@ void EventLocator::record_answered(Candidate& candidate, double time)
     {
         if (stopped.slot != slot) continue;
         for (FoundContact& f : impact_)
-            if (f.contact.a == candidate.a && f.contact.b == candidate.b && s_->normal_velocity(f.contact) <= kStays)
+            if (f.contact.a == candidate.a && f.contact.b == candidate.b && s_->normal_velocity(f.contact) <= stopped.stays)
                 f.contact.resting = true;
         rest_time_ = stopped.ends;
         record(candidate, impact_, time);

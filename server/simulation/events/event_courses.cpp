@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/clock.h"
 #include "simulation/events/event_locator.h"
 
 namespace plab::simulation
@@ -25,14 +24,15 @@ void EventLocator::begin_courses()
         const BodyState last = BodyState::of(bodies, b);
         if (bodies.motion[b] == Motion::Static)
         {
-            courses_[b] = steady_course(0, last, step, last);
+            courses_[b] = steady_course(extents_[b], 0, last, step, last);
             reach_[b] = 0;
             continue;
         }
         s_->start_.restore_body(s_->world_.host(), b);
         const BodyState first = BodyState::of(bodies, b);
         s_->end_.restore_body(s_->world_.host(), b);
-        courses_[b] = bodies.dynamic(b) ? course_of(bodies, b, 0, first, step, last) : steady_course(0, first, step, last);
+        courses_[b] =
+            bodies.dynamic(b) ? course_of(bodies, b, extents_[b], 0, first, step, last) : steady_course(extents_[b], 0, first, step, last);
         reach_[b] = reach_of(courses_[b], extents_[b]);
     }
 }
@@ -51,7 +51,7 @@ void EventLocator::end_pieces()
         for (const std::uint32_t b : s_->groups_.all[g].bodies)
         {
             const Course& c = courses_[b];
-            courses_[b] = course_of(bodies, b, c.begin, c.first, s_->frame_.step, BodyState::of(bodies, b));
+            courses_[b] = course_of(bodies, b, extents_[b], c.begin, c.first, s_->frame_.step, BodyState::of(bodies, b));
             reach_[b] = reach_of(courses_[b], extents_[b]);
         }
 }
@@ -80,10 +80,12 @@ void EventLocator::find_near(bool only_touched)
         PhaseCall call;
         call.context = &context, call.rows = Rows(&detector.row, 1);
         call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.contacts = &sink;
-        const std::uint64_t before = now_ns();
+        s_->meter_.enter(s_->meter_.of_component(detector.component));
+        s_->meter_.ran(detector.table, Phase::Detect);
         const auto done = detector.command->run(call, table.rows());
         if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
-        s_->cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
+        s_->meter_.leave();
+        budget_.spend(WorkBudget::kListedPair * static_cast<double>(near_.size()));
         for (const NearCollector::Pair& pair : near_)
             if (bodies.dynamic(pair.a.index) || bodies.dynamic(pair.b.index)) consider_near(d, pair.a, pair.b);
     }
@@ -106,18 +108,19 @@ void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, st
     PhaseCall call;
     call.context = &context, call.rows = Rows(&detector.row, 1);
     call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.contacts = &sink;
-    const std::uint64_t before = now_ns();
+    s_->meter_.enter(s_->meter_.of_component(detector.component));
+    s_->meter_.ran(detector.table, Phase::Detect);
     const auto done = detector.command->run(call, table.rows());
     if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
-    s_->cost_.by_table[detector.table][static_cast<std::size_t>(Phase::Detect)] += now_ns() - before;
+    s_->meter_.leave();
     active_[candidate.a.index] = active_[candidate.b.index] = 0;
     sort_contacts(found, s_->world_);
 }
 
 void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
 {
-    // Rounding, where a course starts again inside the step, is far below this.
-    constexpr double kExact = 1e-9;  // m/s^2
+    // Rounding, where a course starts again inside the step, is far below this share of what moves a body.
+    constexpr double kExact = 0x1p-32;
     const Course &ca = courses_[a.index], &cb = courses_[b.index];
     const double begin = std::max(ca.begin, cb.begin), left = s_->frame_.step - begin;
     if (!(left > 0)) return;
@@ -125,7 +128,9 @@ void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
     const Shapes& shapes = s_->world_.host().shapes;
     double clear = 0;
     // Where one began earlier, it is where its course says, unless its forces change.
-    if (std::max(ca.begin == begin ? 0 : ca.deviation, cb.begin == begin ? 0 : cb.deviation) < kExact)
+    const auto is_exact = [&](const Course& c)
+    { return c.begin == begin || c.deviation <= kExact * (length(c.acceleration) + length(c.first.velocity) / (c.end - c.begin)); };
+    if (is_exact(ca) && is_exact(cb))
     {
         const auto at_begin = [&](std::uint32_t body, const Course& c) {
             return mover(body, {c.position_at(begin), c.first.orientation, c.velocity_at(begin), c.first.spin});

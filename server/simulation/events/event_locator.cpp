@@ -1,19 +1,17 @@
 #include "simulation/events/event_locator.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
-#include <utility>
 
 namespace plab::simulation
 {
 namespace
 {
-/// Events in one step of one world before the rest of them is answered without bounce, and said so.
-constexpr int kMostEvents = 200000;
-/// And without bounce, before the rest waits for the next step.
-constexpr int kMostQuietEvents = 20000;
 /// Events this share of the step apart happen at one time where a body takes part in both.
 constexpr double kSameTime = 1e-13;
+/// Share of the smaller body's radius.
+constexpr double kOverlapShare = 1e-8;
 
 }  // namespace
 
@@ -70,14 +68,18 @@ bool EventLocator::pop(std::uint32_t& slot)
     return false;
 }
 
+/// Pairs that stand in the queue, for is_live().
+void EventLocator::note_live()
+{
+    live_.clear();
+    for (const Entry& e : queue_)
+        if (const Candidate& c = candidates_[e.slot]; c.version == version_of(c)) live_.push_back({c.detector, c.a.index, c.b.index});
+    std::sort(live_.begin(), live_.end());
+}
+
 bool EventLocator::is_live(std::uint32_t detector, Ref a, Ref b) const
 {
-    return std::any_of(queue_.begin(), queue_.end(),
-                       [&](const Entry& e)
-                       {
-                           const Candidate& c = candidates_[e.slot];
-                           return c.detector == detector && c.a == a && c.b == b && c.version == version_of(c);
-                       });
+    return std::binary_search(live_.begin(), live_.end(), PairKey{detector, a.index, b.index});
 }
 
 bool EventLocator::acts(const Detector& detector, const PairState* pair, bool approaching) const
@@ -93,7 +95,7 @@ void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t 
 {
     const FoundContact& first = found[begin];
     const Detector& detector = s_->detectors_[first.detector];
-    if (detector.persists() || detector.certifies) return;
+    if (detector.persists() || (detector.certifies && !answers_at_end_)) return;
     bool overlaps = false, approaching = false;
     for (std::size_t i = begin; i < end; ++i)
     {
@@ -102,11 +104,12 @@ void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t 
     }
     const PairState* pair = s_->cache_.find(detector.component, first.contact.a, first.contact.b, s_->world_);
     if (!overlaps || !acts(detector, pair, approaching)) return;
+    if (detector.locates && detector.responds && slides(std::span(found).subspan(begin, end - begin))) return;
     if (is_live(first.detector, first.contact.a, first.contact.b)) return;
     const std::uint32_t slot = new_slot();
     Candidate& c = candidates_[slot];
     c.detector = first.detector, c.a = first.contact.a, c.b = first.contact.b;
-    c.at_end = !detector.locates;
+    c.at_end = answers_at_end_ || !detector.locates;
     c.version = version_of(c);
     c.contacts.assign(found.begin() + static_cast<std::ptrdiff_t>(begin), found.begin() + static_cast<std::ptrdiff_t>(end));
     push(slot);
@@ -114,6 +117,7 @@ void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t 
 
 void EventLocator::collect(const std::vector<FoundContact>& found)
 {
+    note_live();
     for (std::size_t i = 0; i < found.size();)
     {
         std::size_t end = i;
@@ -152,6 +156,9 @@ void EventLocator::close_over_resting_pairs()
     }
 }
 
+/// m: an overlap where a piece begins that is no more than this is closed or opened like a gap of 0.
+double EventLocator::overlap_tolerance(Ref a, Ref b) const { return kOverlapShare * smaller_radius(a, b); }
+
 void EventLocator::scope_of(const Candidate& candidate, bool local)
 {
     const std::size_t groups = s_->groups_.all.size();
@@ -182,7 +189,7 @@ void EventLocator::gather(std::uint32_t first)
     };
     set_aside_.clear();
     std::uint32_t slot = 0;
-    while (!queue_.empty() && queue_.front().time <= until && pop(slot))
+    while (!budget_.is_spent() && !queue_.empty() && queue_.front().time <= until && pop(slot))
     {
         Candidate& x = candidates_[slot];
         if (x.time > until || !x.certified || !s_->detectors_[x.detector].responds || !meets_chosen(x))
@@ -191,9 +198,9 @@ void EventLocator::gather(std::uint32_t first)
             continue;
         }
         if (!x.located) locate(x);
-        if (x.nothing)
+        if (x.located && x.nothing)
             free_.push_back(slot);
-        else if (x.time > until || x.at_end || x.stuck)
+        else if (!x.located || x.time > until || x.at_end || x.stuck)
             set_aside_.push_back(slot);
         else
         {
@@ -241,6 +248,7 @@ void EventLocator::process()
     for (const std::uint32_t g : scope_) s_->segment_begin_[g] = time;
     s_->report_.rewinds += static_cast<int>(scope_.size());
     answer();
+    budget_.spend(static_cast<double>(impact_.size()));
     for (const std::uint32_t g : scope_) s_->save_segment(g);
     if (any_certifies_) start_pieces(time);
     if (time < s_->frame_.step) go_on(time);
@@ -254,21 +262,72 @@ void EventLocator::look_again(std::vector<FoundContact>& found)
     if (any_certifies_) find_near(true);
     if (all_certify_) return;
     s_->detect_all(found);
+    budget_.spend(WorkBudget::kListedPair * static_cast<double>(s_->groups_.all.size() + found.size()));
     collect(found);
 }
 
-bool EventLocator::out_of_budget(int events)
+/// What the step takes without locating: groups, pairs that are known, and what rows took so far.
+void EventLocator::begin_budget()
 {
-    if (events < kMostEvents) return false;
-    if (!std::exchange(exhausted_, true))
+    const double plain = static_cast<double>(s_->groups_.all.size() + s_->cache_.pairs().size()) +
+                         WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows);
+    double multiple = 0;
+    for (const Detector& d : s_->detectors_)
+        if (d.locates) multiple = std::max(multiple, s_->number_of(d.resolution, "max_work"));
+    budget_.begin(plain, multiple > 0 ? multiple : WorkBudget::kMultiple);
+}
+
+void EventLocator::tell_too_many(std::size_t left)
+{
+    Event e;
+    e.time = s_->frame_.start_time + s_->frame_.step, e.kind = "resolution.over_budget", e.severity = Severity::Warning;
+    const auto locates = std::find_if(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.locates; });
+    e.component = (locates == s_->detectors_.end() ? s_->detectors_.front() : *locates).component;
+    e.message = "locating events took more than a step may (" + std::to_string(std::llround(budget_.allowed())) +
+                " looks and advances) after " + std::to_string(s_->report_.events) + " impacts; " + std::to_string(left) +
+                " pairs are answered at the end of the step; take shorter steps, Resolution/None, or a larger max_work";
+    e.values = {static_cast<double>(left)};
+    s_->emit(std::move(e));
+}
+
+/// The work of the step is spent: everybody is where the step ends, and what overlaps there is answered there, each heap of bodies at once,
+/// as Resolution/None does.
+void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& found)
+{
+    tell_too_many(left);
+    queue_.clear(), free_.clear(), chosen_.clear();
+    for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
+    s_->detect_all(found);
+    answers_at_end_ = true;
+    collect(found);
+    answers_at_end_ = false;
+    left_islands_.reset(s_->groups_.all.size());
+    const Bodies& bodies = s_->world_.host().bodies;
+    const auto join = [&](Ref a, Ref b)
     {
-        Event e;
-        e.time = s_->frame_.start_time, e.kind = "contact.too_many", e.severity = Severity::Warning;
-        e.component = s_->detectors_[candidates_[chosen_.front()].detector].component;
-        e.message = "more than " + std::to_string(kMostEvents) + " events in one step; what follows in this step does not bounce";
-        s_->emit(std::move(e));
+        if (bodies.dynamic(a.index) && bodies.dynamic(b.index)) left_islands_.join(s_->groups_.of(a), s_->groups_.of(b));
+    };
+    for (const Entry& e : queue_) join(candidates_[e.slot].a, candidates_[e.slot].b);
+    for (const PairState& p : s_->cache_.pairs())
+        if (p.resting) join(p.a, p.b);
+    const auto island_of = [&](const Candidate& c) { return left_islands_.find(s_->groups_.of(bodies.dynamic(c.a.index) ? c.a : c.b)); };
+    std::uint32_t slot = 0;
+    while (pop(slot))
+    {
+        chosen_.assign(1, slot);
+        Candidate& first = candidates_[slot];
+        first.time = s_->frame_.step;
+        for (const Entry& e : queue_)
+        {
+            Candidate& c = candidates_[e.slot];
+            if (c.detector != first.detector || !s_->detectors_[c.detector].responds || island_of(c) != island_of(first)) continue;
+            c.time = s_->frame_.step;
+            chosen_.push_back(e.slot);
+        }
+        std::sort(chosen_.begin() + 1, chosen_.end());
+        for (const std::uint32_t taken : chosen_) ++candidates_[taken].version;  // out of the queue
+        process();
     }
-    return events >= kMostEvents + kMostQuietEvents;
 }
 
 void EventLocator::run(std::vector<FoundContact>& found)
@@ -277,7 +336,7 @@ void EventLocator::run(std::vector<FoundContact>& found)
     any_certifies_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     all_certify_ = std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     touches_by_force_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_force; });
-    exhausted_ = false;
+    begin_budget();
     queue_.clear(), free_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
     versions_.assign(s_->groups_.all.size(), 0);
@@ -285,22 +344,27 @@ void EventLocator::run(std::vector<FoundContact>& found)
     if (any_certifies_) begin_courses(), find_near(false);
     if (!all_certify_) s_->detect_all(found), collect(found);
     std::uint32_t slot = 0;
-    for (int events = 0; pop(slot);)
+    while (!s_->frame_.give_up() && pop(slot))
     {
         Candidate& c = candidates_[slot];
+        if (budget_.is_spent())
+        {
+            push(slot);
+            note_live();
+            answer_the_rest(live_.size(), found);
+            return;
+        }
         if (!c.located)
         {
             locate(c);
-            if (c.nothing)
+            if (c.located && c.nothing)
                 free_.push_back(slot);
             else
                 push(slot);
             continue;
         }
         gather(slot);
-        if (out_of_budget(events)) break;
         process();
-        ++events;
         for (const std::uint32_t done : chosen_) free_.push_back(done);
         if (rewound_) look_again(found);
     }

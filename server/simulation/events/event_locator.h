@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "simulation/events/course.h"
+#include "simulation/events/work_budget.h"
 #include "simulation/step/stepper.h"
 
 namespace plab::simulation
@@ -34,6 +35,7 @@ private:
         bool nothing = false;                ///< located: they do not meet
         bool stuck = false;                  ///< overlaps where the piece begins: there is nothing to bracket
         bool at_end = false;                 ///< no event location: answered where the step ends
+        double ignored = 0;                  ///< m: overlaps up to this are what it slides along
         double bracket = 0;                  ///< s between the last clear and the first overlapping trial
         double time = 0;                     ///< s since the start of the step, on the clear side; a bound until located
         std::vector<FoundContact> contacts;  ///< as seen on the overlapping side
@@ -54,6 +56,22 @@ private:
         double rate = 0;   ///< m/s, of the gap
         double speed = 0;  ///< m/s, size of the speeds that the rate is a difference of
         double touch = 0;  ///< m: gaps up to this are none
+        double slack = 0;  ///< m: what touches and sinks no deeper than this in the rest of the step is no event
+    };
+    /// A shape of one body and one of the other.
+    struct ShapeGap
+    {
+        const ShapeExtent *shape_a = nullptr, *shape_b = nullptr;
+        double gap = 0;  ///< m: they are no nearer than this
+        Vec3 normal;     ///< from a to b: the direction in which they are so far apart
+        Vec3 point_a, point_b;
+        bool exact = false;  ///< the gap is that of the shapes, and the points are the nearest ones
+    };
+    /// A pair of one detector, by number.
+    struct PairKey
+    {
+        std::uint32_t detector, a, b;
+        friend auto operator<=>(const PairKey&, const PairKey&) = default;
     };
 
     // event_locator.cpp
@@ -64,6 +82,7 @@ private:
     void push(std::uint32_t slot);
     bool pop(std::uint32_t& slot);
     std::uint64_t version_of(const Candidate& c) const;
+    void note_live();
     bool is_live(std::uint32_t detector, Ref a, Ref b) const;
     void scope_of(const Candidate& candidate, bool local);
     void close_over_resting_pairs();
@@ -71,7 +90,10 @@ private:
     void process();
     void look_again(std::vector<FoundContact>& found);
     void note_resting_groups();
-    bool out_of_budget(int events);
+    void begin_budget();
+    void answer_the_rest(std::size_t left, std::vector<FoundContact>& found);
+    void tell_too_many(std::size_t left);
+    double overlap_tolerance(Ref a, Ref b) const;
 
     // event_courses.cpp: pairs that may meet anywhere in the piece.
     void begin_courses();
@@ -83,6 +105,20 @@ private:
     void start_pieces(double time);
     void end_pieces();
 
+    // event_shapes.cpp
+    double speeds_at(Ref a, const Vec3& point_a, Ref b, const Vec3& point_b) const;
+    double smaller_radius(Ref a, Ref b) const;
+    double slack_of(Ref a, Ref b, double speed) const;
+    bool slides(std::span<const FoundContact> contacts) const;
+    bool slides(const Candidate& candidate, const ShapeGap& gap, double time) const;
+    Clearance clearance_of(const Candidate& candidate, double left) const;
+    Clearance clearance_of(const Candidate& candidate, const ShapeGap& gap, double left) const;
+    ShapeGap gap_of_shapes(const Candidate& candidate, const ShapeExtent& shape_a, const ShapeExtent& shape_b, const Vec3& hint) const;
+    void list_shape_gaps(const Candidate& candidate, const GapQuery& nearest);
+    GapQuery measure(const Candidate& candidate, double time);
+    double clear_for(const Candidate& candidate, const Look& look, const Vec3& turn, double slack, double& closing) const;
+    bool was_clear(const Candidate& candidate, const Look& clear, const Look& last) const;
+
     // event_search.cpp
     void locate(Candidate& candidate);
     void bracket(Candidate& candidate, Trial& trial);
@@ -93,9 +129,8 @@ private:
     bool meets(Candidate& candidate);
     bool answered_at(const Candidate& candidate, double time) const;
     Look look_at(const Candidate& candidate, double time);
-    GapQuery measure(const Candidate& candidate) const;
+    bool presses(const Candidate& candidate, const Look& look);
     void scope_of_pair(const Candidate& candidate);
-    double clear_for(const Candidate& candidate, const Look& look, const Vec3& turn, double& closing) const;
     static Vec3 turn_between(const Look& first, const Look& then);
     bool settle_in_bracket(Candidate& candidate, const Look& clear, const Look& over, bool certify);
     bool settle_at_begin(Candidate& candidate, const Look& look);
@@ -104,6 +139,8 @@ private:
     // event_answer.cpp
     void advance_group(std::uint32_t group, double time, WorkBook book, bool trial);
     void advance_scope(double time, WorkBook book, bool trial);
+    void move_scope(double time, WorkBook book, bool trial);
+    double rounding_of(Ref a, Ref b) const;
     void advance_groups_to(double time);
     void go_on(double time);
     void calm(std::vector<FoundContact>& contacts) const;
@@ -141,7 +178,12 @@ private:
     std::vector<std::uint8_t> rests_;               ///< by group: something stands on it or it on something that moves
     bool stands_ = false;                           ///< somebody in the scope of the present answer rests on something
     bool rewound_ = false;                          ///< the last answer moved somebody
-    bool exhausted_ = false;                        ///< too many events: no more bouncing in this step
+    bool answers_at_end_ = false;                   ///< the budget is spent: nothing is located any more
+    WorkBudget budget_;
+    std::vector<PairKey> live_;          ///< pairs in the queue, sorted
+    std::vector<ShapeGap> shape_gaps_;   ///< of the last look, where a body has several shapes
+    std::vector<FoundContact> pressed_;  ///< one contact
+    DisjointSets left_islands_;
     bool any_certifies_ = false, all_certify_ = false;
 
     struct Jointed
@@ -169,6 +211,7 @@ private:
     {
         std::uint32_t slot;
         double ends;
+        double stays;  ///< m/s: slower than this it does not leave
     };
     std::vector<Stopped> stopped_;       ///< of the chosen ones: those that have bounced for the last time
     double rest_time_ = 0;               ///< s, when the pair being recorded comes to rest

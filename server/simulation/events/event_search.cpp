@@ -11,13 +11,12 @@ namespace
 {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// Looks before the host gives up on its own; resolutions have limits of their own, and say so.
-constexpr int kMostLooks = 10000;
 /// m: a gap of exactly 0 counts as an overlap, and a resolution is told so by the sign.
 constexpr double kNothing = 1e-300;
 /// A rate below this share of the speeds that it is a difference of is none.
 constexpr double kStill = 1e-14;
-/// Share of the rest of a piece for which a pair that parts, and of which nothing better is known, is let go.
+/// Share of the rest of a piece for which a pair that touches and does not close is let go where no bound says for how long; twice as
+/// long each time, so that a piece is over after some twenty looks.
 constexpr double kLetGo = 0x1p-20;
 /// Steps towards a contact before the end of the piece is looked at for a bracket.
 constexpr int kFirstSteps = 4;
@@ -35,10 +34,11 @@ bool EventLocator::overlaps_at(Candidate& candidate, double time)
 {
     advance_scope(time, {}, true);
     ++s_->report_.trials;
+    budget_.spend(1);
     const StandingPair pair{candidate.a, candidate.b, {}};
     seen_.clear();
     s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
-    std::erase_if(seen_, [](const FoundContact& f) { return f.contact.depth <= 0; });
+    std::erase_if(seen_, [&](const FoundContact& f) { return f.contact.depth <= candidate.ignored; });
     if (seen_.empty()) return false;
     sort_contacts(seen_, s_->world_);
     candidate.contacts = seen_;
@@ -55,6 +55,7 @@ void EventLocator::ask(const Candidate& candidate, Trial& trial)
     context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
     PhaseCall call;
     call.context = &context, call.rows = Rows(&c.row, 1), call.trial = &trial;
+    const CostScope scope(s_->meter_, s_->meter_.of_component(resolution));
     for (const CommandInfo& command : table.type().info.commands)
         if (command.phase == Phase::Locate && command.run) (void)command.run(call, table.rows());
 }
@@ -64,7 +65,7 @@ void EventLocator::bracket(Candidate& candidate, Trial& trial)
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
-        if (trial.decision != Trial::Decision::Try || trial.iteration > kMostLooks) return;
+        if (trial.decision != Trial::Decision::Try || budget_.is_spent() || s_->frame_.give_up()) return;
         (overlaps_at(candidate, trial.next) ? trial.end : trial.begin) = trial.next;
     }
 }
@@ -82,7 +83,15 @@ void EventLocator::locate(Candidate& candidate)
     trial.gap_begin = trial.gap_end = trial.rate_begin = trial.rate_end = kUnknown;
     for (const FoundContact& f : candidate.contacts) trial.depth = std::max(trial.depth, f.contact.depth);
     at_end_ = candidate.contacts;
-    if (!overlaps_at(candidate, trial.begin))
+    bool overlaps = overlaps_at(candidate, trial.begin);
+    if (overlaps && slides(candidate.contacts))
+    {
+        // What it slides along is no event; something else of it may be.
+        for (const FoundContact& f : candidate.contacts) candidate.ignored = std::max(candidate.ignored, f.contact.depth);
+        overlaps = false;
+        candidate.contacts = at_end_;
+    }
+    if (!overlaps)
     {
         bracket(candidate, trial);
         candidate.time = trial.begin;
@@ -101,6 +110,7 @@ void EventLocator::locate(Candidate& candidate)
             candidate.contacts = at_end_;
     }
     for (const std::uint32_t g : scope_) s_->restore_end(g);
+    candidate.located = !budget_.is_spent();
 }
 
 /// The pair's own groups, and what stands on them.
@@ -121,30 +131,13 @@ void EventLocator::scope_of_pair(const Candidate& candidate)
         if (in_scope_[g]) scope_.push_back(g);
 }
 
-/// How far the pair is apart where it is now.
-GapQuery EventLocator::measure(const Candidate& candidate) const
-{
-    const Detector& detector = s_->detectors_[candidate.detector];
-    world::Table& table = *s_->world_.tables()[detector.table];
-    GapQuery query;
-    query.a = candidate.a, query.b = candidate.b;
-    StepContext context;
-    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    PhaseCall call;
-    call.context = &context, call.rows = Rows(&detector.row, 1);
-    call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.gap = &query;
-    (void)detector.gap->run(call, table.rows());
-    return query;
-}
-
 EventLocator::Look EventLocator::look_at(const Candidate& candidate, double time)
 {
     advance_groups_to(time);
     ++s_->report_.trials;
     Look look;
     look.time = time;
-    look.query = measure(candidate);
+    look.query = measure(candidate, time);
     const Bodies& bodies = s_->world_.host().bodies;
     const GapQuery& q = look.query;
     const Vec3 va = bodies.velocity_at(q.a.index, q.point_a), vb = bodies.velocity_at(q.b.index, q.point_b);
@@ -154,6 +147,7 @@ EventLocator::Look EventLocator::look_at(const Candidate& candidate, double time
     const double size = length(bodies.position[q.a.index]) + length(bodies.position[q.b.index]) + length(q.point_a - q.point_b);
     look.touch = 4e-16 * size + 2e-16 * length(bodies.position[q.b.index] - bodies.position[q.a.index]) +
                  0x1p-50 * s_->frame_.step * std::fabs(look.rate);
+    look.slack = slack_of(q.a, q.b, look.speed);
     return look;
 }
 
@@ -163,22 +157,10 @@ Vec3 EventLocator::turn_between(const Look& first, const Look& then)
     return cross(first.query.normal, then.query.normal) / (then.time - first.time);
 }
 
-/// s from the look until which they cannot meet; `closing`: the first-order bound on their speed, m/s.
-double EventLocator::clear_for(const Candidate& candidate, const Look& look, const Vec3& turn, double& closing) const
-{
-    const Bodies& bodies = s_->world_.host().bodies;
-    const std::uint32_t a = candidate.a.index, b = candidate.b.index;
-    const double left = s_->frame_.step - look.time;
-    const Clearance clearance(bodies, s_->world_.host().shapes, mover(a, BodyState::of(bodies, a)), mover(b, BodyState::of(bodies, b)),
-                              left);
-    closing = clearance.fastest_closing(look.query.normal);
-    return std::max(clearance.of_balls(), clearance.along(look.query.normal, look.query.gap, turn));
-}
-
 /// Overlap, or touching without parting, where the search begins. True if that settles it.
 bool EventLocator::settle_at_begin(Candidate& candidate, const Look& look)
 {
-    if (look.query.gap >= -look.touch - kOverlapTolerance) return false;
+    if (look.query.gap >= -look.touch - overlap_tolerance(candidate.a, candidate.b)) return false;
     // Nothing to find: a pair that closes is answered here; one that parts is left alone until the end of the step.
     candidate.time = look.time;
     candidate.stuck = look.rate <= 0 || !s_->detectors_[candidate.detector].responds;
@@ -203,7 +185,7 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, co
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
-        if (trial.decision != Trial::Decision::Try || trial.iteration > kMostLooks) break;
+        if (trial.decision != Trial::Decision::Try || budget_.is_spent() || s_->frame_.give_up()) break;
         const Look look = look_at(candidate, trial.next);
         trial.last = look.time, trial.last_gap = look.query.gap, trial.last_rate = look.rate;
         if (look.query.gap > 0)
@@ -214,12 +196,7 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, co
     candidate.time = trial.begin;
     candidate.bracket = trial.end - trial.begin;
     if (!certify || trial.begin == clear.time) return true;
-    const Look last = look_at(candidate, trial.begin);
-    const Bodies& bodies = s_->world_.host().bodies;
-    const std::uint32_t a = candidate.a.index, b = candidate.b.index;
-    const Clearance clearance(bodies, s_->world_.host().shapes, mover(a, BodyState::of(bodies, a)), mover(b, BodyState::of(bodies, b)),
-                              s_->frame_.step - last.time);
-    return clearance.was_clear(last.query.normal, std::max(last.query.gap, 0.0), last.time - clear.time, turn_between(clear, last));
+    return was_clear(candidate, clear, look_at(candidate, trial.begin));
 }
 
 /// The resolution gave up: what shows at the end of the step is all that is known.
@@ -235,6 +212,7 @@ void EventLocator::search(Candidate& candidate)
 {
     scope_of_pair(candidate);
     candidate.nothing = !meets(candidate);
+    candidate.located = !budget_.is_spent();
     for (const std::uint32_t g : scope_) s_->restore_end(g);
 }
 
@@ -243,6 +221,18 @@ bool EventLocator::answered_at(const Candidate& candidate, double time) const
 {
     const PairState* pair = s_->cache_.find(s_->detectors_[candidate.detector].component, candidate.a, candidate.b, s_->world_);
     return pair && pair->impacts_tick == s_->frame_.tick && pair->bounces.time == s_->frame_.start_time + time;
+}
+
+/// Whether forces press together what touches and moves along: so that it would sink in by more than rounding. Once: what presses rests.
+bool EventLocator::presses(const Candidate& candidate, const Look& look)
+{
+    if (answered_at(candidate, look.time)) return false;
+    pressed_.assign(1, {});
+    Contact& c = pressed_.front().contact;
+    c.a = candidate.a, c.b = candidate.b, c.normal = look.query.normal, c.point = (look.query.point_a + look.query.point_b) * 0.5;
+    rate_of_approach(pressed_, look.time);
+    const double left = s_->frame_.step - look.time;
+    return -0.5 * c.normal_acceleration * left * left > look.slack;
 }
 
 bool EventLocator::meets(Candidate& candidate)
@@ -254,20 +244,25 @@ bool EventLocator::meets(Candidate& candidate)
     Vec3 turn;
     Look look = look_at(candidate, candidate.time), over;
     if (settle_at_begin(candidate, look)) return !candidate.nothing;
-    for (;; ++trial.iteration)
+    double let_go = kLetGo;
+    for (; !budget_.is_spent(); ++trial.iteration)
     {
+        if (s_->frame_.give_up()) return false;
         candidate.time = look.time;
-        const bool touches = look.query.gap <= look.touch;
-        if (touches && (!responds || look.rate < -kStill * look.speed)) return true;
-        if (!(look.time < step)) return false;
-        double clear = clear_for(candidate, look, turn, trial.closing);
+        const double left = step - look.time;
+        const bool touches = look.query.gap <= look.touch, closes = look.rate < -kStill * look.speed;
+        if (touches && (!responds || (closes && !(left > 0 && -look.rate * left <= look.slack)))) return true;
+        if (!(left > 0)) return false;
+        // Sliding along one another, for the rest of the step, is no event.
+        double clear = clear_for(candidate, look, turn, touches ? look.slack : 0.0, trial.closing);
         if (look.time + clear >= step) return false;
+        // What parts comes back at a gap of 0, not a rounding error later: there it is bracketed.
+        if (touches) clear = clear_for(candidate, look, turn, 0.0, trial.closing);
         // Closing, and nearer than times can be told apart.
-        if (clear < shortest && look.rate < 0) return true;
-        // Touching, and nothing says that it parts: what presses is answered here, once. What parts is let go.
-        const bool parts = look.rate > kStill * look.speed;
-        if (touches && !(clear > 0) && !parts && !answered_at(candidate, look.time)) return true;
-        if (touches) clear = std::max(clear, kLetGo * (step - look.time));
+        if (!touches && clear < shortest && look.rate < 0) return true;
+        // What parts is let go; so is what nothing presses, though no bound says that it does not sink in.
+        if (touches && !(look.rate > kStill * look.speed) && presses(candidate, look)) return true;
+        if (touches) clear = std::max(clear, std::min(let_go, 1.0) * left), let_go *= 2;
         if (trial.iteration == kFirstSteps) over = look_at(candidate, step);
         const bool bracketed = trial.iteration >= kFirstSteps && over.query.gap < -over.touch;
         trial.begin = look.time, trial.gap_begin = std::max(look.query.gap, 0x1p-60 * look.touch);
@@ -281,8 +276,9 @@ bool EventLocator::meets(Candidate& candidate)
             ask(candidate, trial);
             // What parts, however narrow the gap is still, is no impact: it goes on.
             if (trial.decision == Trial::Decision::Accept && (!responds || look.rate < 0)) return true;
-            if (trial.decision == Trial::Decision::Accept) trial.next = look.time + (clear = std::max(clear, kLetGo * (step - look.time)));
-            if (trial.decision == Trial::Decision::GiveUp || trial.iteration > kMostLooks) return found_when_given_up(candidate, look);
+            if (trial.decision == Trial::Decision::Accept)
+                trial.next = look.time + (clear = std::max(clear, std::min(let_go, 1.0) * left)), let_go *= 2;
+            if (trial.decision == Trial::Decision::GiveUp) return found_when_given_up(candidate, look);
             // A resolution that knows of an overlap may jump to where it thinks the zero is.
             if (bracketed && trial.next > look.time + clear && (trial.iteration & 7) == kFirstSteps &&
                 settle_in_bracket(candidate, look, over, true))
@@ -297,6 +293,7 @@ bool EventLocator::meets(Candidate& candidate)
         turn = turn_between(look, ahead);
         look = ahead;
     }
+    return false;
 }
 
 }  // namespace plab::simulation

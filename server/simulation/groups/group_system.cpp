@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plab/limits.h"
 #include "plab/rotation.h"
-#include "simulation/clock.h"
 
 namespace plab::simulation
 {
@@ -138,6 +138,7 @@ void GroupSystem::begin(double from, double to, WorkBook book, EventSink* events
     context_ = {};
     context_.time = frame_.start_time + from, context_.dt = to - from;
     context_.tick = frame_.tick, context_.seed = frame_.seed, context_.events = events;
+    context_.interruption = frame_.interruption;
     activate();
     context_.active_bodies = scratch_->active_bodies, context_.active_shafts = scratch_->active_shafts;
     if (rows_ && !rows_held_) join();
@@ -233,14 +234,11 @@ void GroupSystem::run_forces(double weight)
     for (std::size_t k = 0; k < selected_count_; ++k)
     {
         const Selected& s = selected_[k];
-        const std::uint64_t before = booked ? now_ns() : 0;
         const world::Table& table = *frame_.world->tables()[s.block->table];
         context_.component_of_row = table.component_of_row(), context_.facet_of_row = table.host_of_row();
         context_.shortlists = s.shortlists;
-        call.rows = s.rows;
-        (void)s.block->command->run(call, table.rows());  // forces have no failures but events
+        run_force(s, call, booked);
         if (!booked) continue;
-        scratch.cost[s.block->table][static_cast<std::size_t>(Phase::Force)] += now_ns() - before;
         const double share = book_.sign * weight * context_.dt;
         for (const Row row : s.rows)
         {
@@ -252,6 +250,30 @@ void GroupSystem::run_forces(double weight)
     if (!extra_) return;
     extra_->add(context_, wrenches);
     if (booked) extra_->book(context_, *book_.work, scratch.power, book_.sign * weight * context_.dt);
+}
+
+/// Forces have no failures but events. The trial evaluations of a solver that judges are many and short: one of so many is timed.
+void GroupSystem::run_force(const Selected& s, PhaseCall& call, bool booked)
+{
+    constexpr std::uint64_t kOneOf = 8;
+    CostMeter& meter = scratch_->meter();
+    void* const rows = frame_.world->tables()[s.block->table]->rows();
+    meter.ran(s.block->table, Phase::Force);
+    if (s.block->alone)
+    {
+        for (const Row& row : s.rows)
+        {
+            const CostScope scope(meter, meter.of_component(context_.component_of_row[row]));
+            call.rows = Rows(&row, 1);
+            (void)s.block->command->run(call, rows);
+        }
+        return;
+    }
+    call.rows = s.rows;
+    const bool timed = booked || scratch_->evaluations % kOneOf == 0;
+    if (timed) meter.enter(meter.of_table(s.block->table));
+    (void)s.block->command->run(call, rows);
+    if (timed) meter.leave(booked ? 1 : kOneOf);
 }
 
 void GroupSystem::rates_of_bodies()
@@ -280,11 +302,7 @@ void GroupSystem::kick(std::size_t member, double h)
     Bodies& bodies = frame_.world->host().bodies;
     const std::uint32_t b = bodies_[member];
     bodies.velocity[b] += acceleration(member) * h;
-    if (bodies.needle[b] != 0)
-        bodies.angular_velocity[b] += rotate(bodies.orientation[b], spin_rate_B(b)) * h;
-    else
-        bodies.angular_momentum[b] += scratch_->wrenches.torque[b] * h;
-    bodies.refresh_spin(b);
+    bodies.add_angular_impulse(b, scratch_->wrenches.torque[b] * h);
 }
 
 void GroupSystem::rates_of_shafts(double weight)
@@ -311,12 +329,20 @@ void GroupSystem::rates_of_quantities()
 
 void GroupSystem::evaluate(double t, double weight)
 {
+    if (frame_.give_up())
+    {
+        // No rates: whatever the solver does with them ends soon.
+        std::fill(coordinate_rates_.begin(), coordinate_rates_.end(), 0.0);
+        std::fill(speed_rates_.begin(), speed_rates_.end(), 0.0);
+        return;
+    }
     context_.time = frame_.start_time + (from_ + t);
     scatter(t);
     clear_wrenches();
     run_forces(weight);
     if (rows_ && !rows_held_)
     {
+        const CostScope scope(scratch_->meter(), scratch_->rows_ns);
         (void)rows_->react(context_, scratch_->wrenches);  // what is not finite is seen when the advance is over
         if (book_.work && weight != 0) rows_->account(row_book(), weight * context_.dt);
     }
@@ -412,15 +438,15 @@ bool GroupSystem::all_finite() const
 
 bool is_finite(const Bodies& bodies, std::uint32_t b)
 {
-    return plab::is_finite(bodies.position[b]) && plab::is_finite(bodies.velocity[b]) && plab::is_finite(bodies.orientation[b]) &&
-           plab::is_finite(bodies.angular_velocity[b]);
+    return is_computable(bodies.position[b]) && is_computable(bodies.velocity[b]) && plab::is_finite(bodies.orientation[b]) &&
+           is_computable(bodies.angular_velocity[b]);
 }
 
 bool is_finite(const Quantities& quantities, std::uint32_t q)
 {
-    return std::all_of(quantities.value[q].begin(), quantities.value[q].end(), [](double v) { return std::isfinite(v); });
+    return std::all_of(quantities.value[q].begin(), quantities.value[q].end(), [](double v) { return is_computable(v); });
 }
 
-bool is_finite(const Shafts& shafts, std::uint32_t s) { return std::isfinite(shafts.angle[s]) && std::isfinite(shafts.speed[s]); }
+bool is_finite(const Shafts& shafts, std::uint32_t s) { return is_computable(shafts.angle[s]) && is_computable(shafts.speed[s]); }
 
 }  // namespace plab::simulation

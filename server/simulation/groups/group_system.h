@@ -8,8 +8,10 @@
 #include <array>
 #include <vector>
 
+#include "plab/interruption.h"
 #include "simulation/groups/groups.h"
 #include "simulation/groups/stage_scratch.h"
+#include "simulation/groups/progress.h"
 #include "simulation/rows/row_system.h"
 #include "simulation/shafts/shaft_system.h"
 
@@ -28,7 +30,17 @@ struct StepFrame
     double step = 0;                              ///< s
     Tick tick = 0;
     std::uint64_t seed = 0;
+    const Interruption* interruption = nullptr;               ///< null: nobody can give the step up
+    Progress* progress = nullptr;                             ///< for whoever watches a long step; null: nobody does
     std::vector<std::uint8_t>* told_contradictory = nullptr;  ///< by component: joints that an event told of; each system writes its own
+
+    /// A safe point, and a piece of work that is counted: an event looked at, a part of a contact's forces, an evaluation. True: the
+    /// step is given up, leave off.
+    bool give_up() const
+    {
+        if (progress) progress->count();
+        return interruption && interruption->due();
+    }
 };
 
 /// Where the work of force components goes while an advance is booked.
@@ -96,6 +108,8 @@ public:
     void kick(std::size_t member, double h);
     /// The joints of the members; null where there are none.
     RowSystem* rows() { return rows_.get(); }
+    /// Of the thread that advances it.
+    CostMeter& meter() { return scratch_->meter(); }
     RowBook row_book() const { return {book_.work, book_.sign, scratch_->accounted_bodies, scratch_->accounted_shafts}; }
     /// From before begin() on: joints are held by a manager, evaluations leave them out.
     void hold_rows(bool held) { rows_held_ = held; }
@@ -118,6 +132,7 @@ public:
     std::size_t body_count() const override { return bodies_.size(); }
     RigidMember rigid(std::size_t body) const override;
     std::size_t quantity_count() const override { return quantity_values_; }
+    bool interrupted() const override { return frame_.interruption && frame_.interruption->due(); }
     bool is_undersampled() const override { return extra_ != nullptr && extra_->is_undersampled(); }
     bool forces_are_uniform() const override { return uniform_ && !extra_ && !is_constrained(); }
     bool is_constrained() const override { return rows_ != nullptr; }
@@ -129,6 +144,9 @@ private:
         std::vector<Row> rows;
         std::vector<Shortlist> shortlists;
     };
+
+    void run_force(const Selected& selected, PhaseCall& call, bool booked);
+    void share_cost_of_rows();
 
     static Vec3 get(const std::vector<double>& v, std::size_t i) { return {v[i], v[i + 1], v[i + 2]}; }
     static void put(std::vector<double>& v, std::size_t i, const Vec3& a) { v[i] = a.x, v[i + 1] = a.y, v[i + 2] = a.z; }

@@ -1,7 +1,8 @@
 // The joints of a group system: their rows inside the stages, and the projection when an advance is over.
 #include <algorithm>
-#include <cstdio>
+#include <utility>
 
+#include "plab/number_text.h"
 #include "simulation/groups/group_system.h"
 
 namespace plab::simulation
@@ -27,18 +28,36 @@ void GroupSystem::configure_rows()
 
 void GroupSystem::join()
 {
-    if (rows_) rows_->join(context_, row_book());
+    if (!rows_) return;
+    const CostScope scope(scratch_->meter(), scratch_->rows_ns);
+    rows_->join(context_, row_book());
+}
+
+/// Joints are solved together: their types share that by the number of their components.
+void GroupSystem::share_cost_of_rows()
+{
+    const std::int64_t ns = std::exchange(scratch_->rows_ns, 0);
+    const auto& blocks = frame_.schedule->of(Phase::Constrain);
+    const auto count = static_cast<std::int64_t>(merged_.size());
+    for (const BlockRow& row : merged_)
+    {
+        const std::uint32_t table = blocks[row.block].table;
+        scratch_->meter().of_table(table) += ns / count;
+        scratch_->meter().ran(table, Phase::Constrain);
+    }
 }
 
 void GroupSystem::project()
 {
     if (!rows_) return;
     context_.time = frame_.start_time + (from_ + context_.dt);
+    scratch_->meter().enter(scratch_->rows_ns);
     ProjectionReport report = rows_->project(context_, row_book());
+    scratch_->meter().leave();
     const auto by_id = [this](std::uint32_t x, std::uint32_t y) { return frame_.world->rank(x) < frame_.world->rank(y); };
     std::sort(report.contradictory.begin(), report.contradictory.end(), by_id);
     announce_contradictions(report);
-    rows_->collect_cost(scratch_->cost);
+    share_cost_of_rows();
 }
 
 namespace
@@ -47,12 +66,8 @@ namespace
 /// What rows that cannot hold together leave: places, or else speeds.
 std::string left_over(const ProjectionReport& report)
 {
-    constexpr double kPlacesHold = 1e-9;
-    const bool places = report.position_error > kPlacesHold;
-    char text[64];
-    std::snprintf(text, sizeof text, places ? "%g m or rad are left" : "%g m/s or rad/s are left",
-                  places ? report.position_error : report.speed_error);
-    return text;
+    return report.places_hold ? rounded_text(report.speed_error) + " m/s or rad/s are left"
+                              : rounded_text(report.position_error) + " m or rad are left";
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "simulation/groups/stage_scratch.h"
 
-#include <utility>
-
 namespace plab::simulation
 {
 
@@ -18,7 +16,7 @@ void StageScratch::fit(const world::World& world)
     wrenches.quantity_rate.resize(host.quantities.size());
     for (std::size_t i = 0; i < host.quantities.size(); ++i) wrenches.quantity_rate[i].assign(host.quantities.value[i].size(), 0.0);
     power.assign(world.components().size(), 0.0);
-    cost.assign(world.tables().size(), {});
+    own_meter_.accounts().fit(world.components().size(), world.tables().size());
 }
 
 void StageScratch::deactivate()
@@ -37,14 +35,6 @@ void StageScratch::activate(const void* owner, std::uint64_t configuration, std:
     set_shafts_.assign(shafts.begin(), shafts.end());
     for (const std::uint32_t b : set_bodies_) active_bodies[b] = 1;
     for (const std::uint32_t s : set_shafts_) active_shafts[s] = 1;
-}
-
-void StageScratch::collect(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table)
-{
-    if (by_table.size() < cost.size()) by_table.resize(cost.size());  // a book from before a type came
-    for (std::size_t t = 0; t < cost.size(); ++t)
-        for (std::size_t phase = 0; phase < cost[t].size(); ++phase) by_table[t][phase] += std::exchange(cost[t][phase], 0);
-    evaluations = 0;
 }
 
 }  // namespace plab::simulation

@@ -2,11 +2,10 @@
 /// it advances, so that it is itself no larger than its members.
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include "plab/stage.h"
 #include "plab/wrenches.h"
+#include "simulation/costs/cost_meter.h"
 #include "world/world.h"
 
 namespace plab::simulation
@@ -26,17 +25,20 @@ public:
     void book_shaft(std::uint32_t s) { accounted_shafts[s] = 1; }
 
     Wrenches wrenches;
-    std::vector<double> power;                                 ///< W by component; all zero between uses
-    std::vector<std::array<std::uint64_t, kPhaseCount>> cost;  ///< ns by table and phase
+    std::vector<double> power;  ///< W by component; all zero between uses
     std::vector<std::uint8_t> active_bodies, active_shafts, accounted_bodies, accounted_shafts;
-    std::uint64_t evaluations = 0;  ///< of forces, since collect()
+    std::uint64_t evaluations = 0;  ///< of forces, in this step
+    std::int64_t rows_ns = 0;       ///< of an advance: what its joints took, until they share it
 
-    /// Adds the time that forces and rows took, ns by table and phase, and starts again.
-    void collect(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table);
+    /// Of the thread that advances with this.
+    CostMeter& meter() { return *meter_; }
+    void measure_with(CostMeter& meter) { meter_ = &meter; }
 
 private:
     void deactivate();
 
+    CostMeter own_meter_;
+    CostMeter* meter_ = &own_meter_;
     const void* owner_ = nullptr;
     std::uint64_t configuration_ = 0;
     std::vector<std::uint32_t> set_bodies_, set_shafts_;

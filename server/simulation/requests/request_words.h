@@ -24,4 +24,7 @@ constexpr const char* name_of(Fate fate)
     return "";
 }
 
+/// "made: 2 objects, 0.3 ms", "given up after 5.1 ms (budget 5 ms)", "none".
+std::string text_of(const TrialReport& trial);
+
 }  // namespace plab::simulation

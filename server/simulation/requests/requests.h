@@ -44,7 +44,7 @@ struct RemoveOperation
 /// Exchanges a component for another type of its family; `values` are parameters of the new one.
 struct SwapOperation
 {
-    std::string id;
+    std::string id;  ///< with * and ?: all of the type's family whose ids match, as they are before the request
     std::string type;
     std::vector<NamedValue> values;
 };
@@ -122,12 +122,31 @@ bool concerns_the_course(const Operation& operation);
 /// reset, load, restore, rewind.
 bool begins_a_run(const Operation& operation);
 
+/// How a request is proved before it takes effect: by a trial of its first step.
+struct TrialChoice
+{
+    enum class Budget : std::uint8_t
+    {
+        Unlimited,
+        Automatic,  ///< the larger of ten steps' mean cost and 5 ms
+        Given,
+        None,  ///< no trial
+    };
+    Budget budget = Budget::Unlimited;
+    double ns = 0;               ///< of Budget::Given
+    bool must = false;           ///< without the proof it is refused
+    double energy_factor = 100;  ///< a swap whose first step multiplies the energy by more is refused; infinite: none is
+
+    bool is_wanted() const { return budget != Budget::None; }
+};
+
 struct Request
 {
     std::uint64_t id = 0;
     std::vector<Operation> operations;
     std::optional<Tick> at;                 ///< takes effect before this step; one that has passed is refused as late
     std::optional<std::uint64_t> revision;  ///< refused if structural requests came between
+    TrialChoice trial;
 };
 
 bool concerns_the_course(const Request& request);
@@ -147,13 +166,14 @@ struct FieldFate
     Fate fate = Fate::Kept;
 };
 
-/// Energy, momentum and error over the first step after a swap, beside what the old component would have given.
+/// Energy, momentum and error over the first step after a swap, beside what the old component would have given; of those whom the swap can
+/// touch. NaN: not tried.
 struct StepOutcome
 {
     double energy = 0;   ///< J, kinetic and stored, at the end of the step
     Vec3 momentum;       ///< N s
     double error = 0;    ///< largest reported error of the component
-    double cost_ns = 0;  ///< of the whole step
+    double cost_ns = 0;  ///< of their step
 };
 
 struct SwapReport
@@ -162,6 +182,22 @@ struct SwapReport
     std::vector<FieldFate> fields;
     double energy_before = 0;  ///< J, at the boundary
     StepOutcome with_old, with_new;
+};
+
+/// What became of a request's trial.
+struct TrialReport
+{
+    enum class Fate : std::uint8_t
+    {
+        None,        ///< not wanted, or the request changes nothing that could be tried
+        Made,
+        WithoutOld,  ///< the old component's step took too long: only the new one was tried
+        GivenUp,     ///< it took longer than its budget
+    };
+    Fate fate = Fate::None;
+    double ns = 0, budget_ns = 0;  ///< the budget is infinite where there is none
+    std::size_t objects = 0;       ///< bodies, shafts and quantities that it stepped
+    bool everything = false;       ///< and they are all that there are
 };
 
 /// What requests did to the structure and to parameters, for those who keep a copy of the catalogue.
@@ -184,6 +220,7 @@ struct Reply
     double pause_ns = 0;         ///< how long it held the loop up
     std::uint64_t revision = 0;  ///< afterwards
     std::vector<SwapReport> swaps;
+    TrialReport trial;
 };
 
 }  // namespace plab::simulation

@@ -30,7 +30,7 @@ Transaction::State Transaction::capture() const
 {
     Stepper& stepper = *s_->stepper_;
     return {s_->world_->backup(),    stepper.contacts(), stepper.work(), stepper.departed_work(),
-            stepper.requests_work(), stepper.told(),     stepper.cost()};
+            stepper.requests_work(), stepper.told()};
 }
 
 void Transaction::restore(const State& state, bool structure_changed)
@@ -48,8 +48,6 @@ void Transaction::restore(const State& state, bool structure_changed)
     s_->stepper_->work() = state.work;
     s_->stepper_->told() = state.told;
     s_->stepper_->told().contradictory.resize(s_->world_->components().size(), 0);
-    s_->stepper_->cost() = state.cost;
-    s_->stepper_->cost().by_table.resize(s_->world_->tables().size());
     s_->stepper_->departed_work() = state.departed_work, s_->stepper_->requests_work() = state.requests_work;
 }
 
@@ -155,7 +153,7 @@ Result<void> Transaction::apply_one(const AddOperation& op)
 
 Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
 {
-    auto fragment = model::compile(op.blueprint, s_->world_->types(), &s_->world_->scene());
+    auto fragment = model::compile(op.blueprint, s_->world_->types(), &s_->world_->scene(), s_->limits_);
     if (!fragment) return fragment.errors();
     return apply_one(AddOperation{fragment.take()});
 }

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <vector>
 
+#include "simulation/requests/trial.h"
 #include "simulation/simulation.h"
 
 namespace plab::simulation
@@ -27,7 +28,6 @@ private:
         std::vector<double> work;
         double departed_work, requests_work;
         Told told;
-        CostBook cost;
     };
     State capture() const;
     void restore(const State& state, bool structure_changed);
@@ -55,27 +55,37 @@ private:
     void apply_all();
     void run_on_clock();
     void run_on_scene(bool swaps);
-    /// One step with the old components, taken back: what a swap is measured against.
-    void compare_with_old(const State& before);
-    /// One step with the new ones, withheld and taken back; an error if something fails that did not fail before.
-    Result<void> try_new();
-    StepOutcome try_step(std::string& failure);
+    /// Patterns in swaps become one swap for each component that they name.
+    Result<void> expand_patterns();
+    Result<void> expand(const SwapOperation& op, std::vector<Operation>& out) const;
+    /// Whom the request can touch, as the structure is now.
+    void mark_touched(TrialScope& scope) const;
+    TrialStep next_step() const;
+    double budget_ns() const;
+    std::vector<std::uint32_t> swapped() const;
+    /// One step with the old components: what a swap is measured against.
+    void try_old(TrialScope& scope);
+    /// One step with the new ones; an error if something fails that did not fail before, or makes energy out of nothing.
+    Result<void> try_new(TrialScope& scope);
+    void write_reports(const TrialResult& with_new);
+    /// Why the first step makes more energy than is wanted; "" if it does not.
+    std::string makes_energy(const TrialResult& with_new) const;
+    Result<void> build_and_try(TrialScope& scope, bool swaps);
     /// Contact points that hold something and that the component has to do with: as detector, resolution, response, manager.
     std::size_t held_points(std::uint32_t component) const;
     /// What became of standing contacts, in the reports of the swaps that did it.
     void tell_contacts();
-    /// The cost of that step from `state` once more, warm.
-    void measure_again(const State& state, StepOutcome& outcome);
 
     Simulation* s_;
     const Request* request_;
     Reply reply_;
     std::set<std::uint32_t> prepared_;  ///< components whose opaque parts were rebuilt: again after a rollback
-    bool old_fails_ = false;
-    StepOutcome outcome_old_;
-    std::vector<double> old_errors_;
+    std::vector<Operation> operations_;  ///< of the request, patterns resolved
+    std::uint64_t trial_begin_ = 0;      ///< ns
+    bool old_tried_ = false;
+    TrialResult old_;
     std::vector<std::size_t> held_before_;  ///< contact points, by swap
-    double energy_before_ = 0;
+    double energy_before_ = 0, energy_applied_ = 0;  ///< J, of the whole scene at the boundary
     bool structural_ = false;
     std::vector<std::string> touched_;  ///< ids that came, went or changed
 };

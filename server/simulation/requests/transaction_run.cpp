@@ -1,4 +1,4 @@
-// A transaction's course: backup, operations, trial steps, commit or rollback.
+// A transaction's course: backup, operations, commit or rollback; its trials are in transaction_trial.cpp.
 #include <algorithm>
 
 #include "simulation/clock.h"
@@ -17,60 +17,7 @@ bool concerns_the_scene(const Operation& op)
            std::holds_alternative<SetOperation>(op) || std::holds_alternative<PushOperation>(op);
 }
 
-std::string failure_in(const std::vector<Event>& events)
-{
-    for (const Event& e : events)
-        if (e.severity == Severity::Failure) return e.kind + (e.message.empty() ? "" : ": " + e.message);
-    return {};
-}
-
 }  // namespace
-
-StepOutcome Transaction::try_step(std::string& failure)
-{
-    const std::uint64_t before = now_ns();
-    s_->run_step(true);
-    failure = failure_in(s_->stepper_->events());
-    StepOutcome outcome;
-    outcome.cost_ns = static_cast<double>(now_ns() - before);
-    const Totals totals = s_->totals();
-    outcome.energy = totals.kinetic + totals.stored, outcome.momentum = totals.momentum;
-    return outcome;
-}
-
-void Transaction::measure_again(const State& state, StepOutcome& outcome)
-{
-    // The first step after a copy of everything finds cold caches, and a new
-    // component allocates: not what it will cost. A long step hardly shows that,
-    // and is not worth holding the loop up twice.
-    constexpr double kShort = 1e6;  // ns
-    if (outcome.cost_ns >= kShort) return;
-    restore(state, false);
-    std::string failure;
-    outcome.cost_ns = std::min(outcome.cost_ns, try_step(failure).cost_ns);
-}
-
-void Transaction::compare_with_old(const State& before)
-{
-    std::string failure;
-    outcome_old_ = try_step(failure);
-    measure_again(before, outcome_old_);
-    old_fails_ = !failure.empty();
-    for (const Operation& op : request_->operations)
-        if (const auto* swap = std::get_if<SwapOperation>(&op))
-        {
-            // What an earlier operation of the request adds is not there yet: it had
-            // no error.
-            const auto component = find_typed(swap->id);
-            old_errors_.push_back(component ? s_->error_of(*component) : 0.0);
-        }
-    restore(before, false);
-    energy_before_ = [&]
-    {
-        const Totals t = s_->totals();
-        return t.kinetic + t.stored;
-    }();
-}
 
 std::size_t Transaction::held_points(std::uint32_t component) const
 {
@@ -107,27 +54,6 @@ void Transaction::tell_contacts()
         tell(report, held, Fate::Kept);
         if (k < held_before_.size() && held_before_[k] > held) tell(report, held_before_[k] - held, Fate::Lost);
     }
-}
-
-Result<void> Transaction::try_new()
-{
-    if (auto built = s_->stepper_->rebuild(); !built) return built;
-    tell_contacts();
-    const State after = capture();
-    std::string failure;
-    StepOutcome outcome = try_step(failure);
-    if (failure.empty() && !reply_.swaps.empty()) measure_again(after, outcome);
-    std::size_t k = 0;
-    for (SwapReport& report : reply_.swaps)
-    {
-        report.energy_before = energy_before_, report.with_old = outcome_old_, report.with_new = outcome;
-        if (k < old_errors_.size()) report.with_old.error = old_errors_[k++];
-        // A later operation of the request may have removed it.
-        if (const std::uint32_t i = s_->world_->find(report.id); i != kNoIndex) report.with_new.error = s_->error_of(i);
-    }
-    if (!failure.empty() && !old_fails_) return reason("the first step failed: " + failure);
-    restore(after, false);
-    return {};
 }
 
 Reply Transaction::run()
@@ -169,7 +95,7 @@ void Transaction::write_clock(const Clock& clock)
 
 void Transaction::apply_all()
 {
-    for (const Operation& op : request_->operations)
+    for (const Operation& op : operations_.empty() ? request_->operations : operations_)
         if (auto done = apply(op); !done)
         {
             reply_.errors = done.errors();
@@ -185,16 +111,39 @@ void Transaction::run_on_clock()
     if (!reply_.errors.empty() && !anew) write_clock(clock);
 }
 
+Result<void> Transaction::build_and_try(TrialScope& scope, bool swaps)
+{
+    if (auto built = s_->stepper_->rebuild(); !built) return built;
+    tell_contacts();
+    const Totals now = s_->totals();
+    energy_applied_ = now.kinetic + now.stored;
+    if (!request_->trial.is_wanted())
+    {
+        if (swaps) write_reports({});
+        return {};
+    }
+    mark_touched(scope);
+    return try_new(scope);
+}
+
 void Transaction::run_on_scene(bool swaps)
 {
+    if (auto expanded = expand_patterns(); !expanded)
+    {
+        reply_.errors = expanded.errors();
+        return;
+    }
     const State before = capture();
     const Clock clock = read_clock();
-    const double kinetic = s_->totals().kinetic;
-    if (swaps) compare_with_old(before);
+    const Totals first = s_->totals();
+    energy_before_ = first.kinetic + first.stored;
+    trial_begin_ = now_ns();
+    TrialScope scope(*s_->world_);
+    if (swaps && request_->trial.is_wanted()) mark_touched(scope), try_old(scope);
     apply_all();
-    if (reply_.errors.empty()) s_->stepper_->requests_work() += s_->totals().kinetic - kinetic;
+    if (reply_.errors.empty()) s_->stepper_->requests_work() += s_->totals().kinetic - first.kinetic;
     if (reply_.errors.empty())
-        if (auto done = try_new(); !done) reply_.errors = done.errors();
+        if (auto done = build_and_try(scope, swaps); !done) reply_.errors = done.errors();
     if (reply_.errors.empty())
     {
         s_->world_->release_parked();

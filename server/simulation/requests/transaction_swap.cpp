@@ -148,13 +148,17 @@ Result<void> Transaction::exchange(std::uint32_t component, const model::Compone
     return prepare_dependents(world, component, prepared_);
 }
 
-Result<void> Transaction::apply_one(const SwapOperation& op)
+Result<void> Transaction::apply_one(const SwapOperation& asked)
 {
     structural_ = true;
-    auto component = find_typed(op.id);
+    auto component = find_typed(asked.id);
     if (!component) return component.errors();
     SwapReport report;
-    report.id = s_->world_->id_of(*component), report.from = s_->world_->type_of(*component)->info.name, report.to = op.type;
+    report.id = s_->world_->id_of(*component), report.from = s_->world_->type_of(*component)->info.name;
+    auto name = model::full_type_name(asked.type, s_->world_->types().names(), report.from.substr(0, report.from.rfind('/') + 1));
+    if (!name) return Error{{}, report.id + " (" + report.from + ")", name.error().reason};
+    SwapOperation op = asked;
+    op.type = report.to = name.take();
     auto spec = spec_for_swap(*component, op, report);
     if (!spec) return spec.errors();
     held_before_.push_back(held_points(*component));

@@ -65,6 +65,74 @@ double RowSystem::speed_scale(const ConstraintRow& row, double dt) const
     return scale;
 }
 
+namespace
+{
+
+/// sqrt(J M^-1 J^T) of one block on a body that moves.
+double root_of_mobility(const Bodies& bodies, const RowBlock& b)
+{
+    const Vec3 angular_B = rotate_back(bodies.orientation[b.who.index], b.angular);
+    return std::sqrt(length_squared(b.linear) * bodies.inverse_mass[b.who.index] +
+                     dot(angular_B, bodies.inverse_inertia_B[b.who.index] * angular_B));
+}
+
+}  // namespace
+
+/// What a row's error is small or large beside, also where its members stand or turn about the origin: with the lengths at hand,
+/// the arms of the bodies' mass about their centres, sqrt(tr I / 2 m).
+double RowSystem::position_at_hand(const ConstraintRow& row) const
+{
+    double scale = position_scale(row);
+    for (std::uint32_t k = 0; k < row.count; ++k)
+    {
+        const RowBlock& b = row.blocks[k];
+        if (b.who.facet != Facet::Body || !is_mobile(b.who)) continue;
+        const Mat3& I = host_->bodies.inertia_B[b.who.index];
+        scale += length(b.linear) * std::sqrt(0.5 * (I(0, 0) + I(1, 1) + I(2, 2)) * host_->bodies.inverse_mass[b.who.index]);
+    }
+    return scale;
+}
+
+/// The same of its speed. |J v| <= sqrt(J M^-1 J^T) sqrt(v . M v), so that the second factor's rounding may show in it: that of the
+/// member's motion, and of the impulses by which the rows of its component held it in this step (dt s).
+double RowSystem::speed_at_hand(std::size_t index, double dt) const
+{
+    const ConstraintRow& row = rows_[index];
+    double held = 0;
+    std::size_t first = index;  // those of a component stand together
+    while (first > 0 && rows_[first - 1].component == row.component) --first;
+    for (std::size_t i = first; i < rows_.size() && i < lambda_.size() && rows_[i].component == row.component; ++i)
+    {
+        if (lambda_[i] == 0) continue;
+        for (std::uint32_t k = 0; k < rows_[i].count; ++k)
+            if (const RowBlock& b = rows_[i].blocks[k]; b.who.facet == Facet::Body && is_mobile(b.who))
+                held = std::fmax(held, std::fabs(lambda_[i]) * root_of_mobility(host_->bodies, b));
+    }
+    double scale = speed_scale(row, dt);
+    for (std::uint32_t k = 0; k < row.count; ++k)
+    {
+        const RowBlock& b = row.blocks[k];
+        if (b.who.facet == Facet::Body && is_mobile(b.who))
+            scale += root_of_mobility(host_->bodies, b) * (std::sqrt(2 * host_->bodies.kinetic_energy(b.who.index)) + dt * held);
+    }
+    return scale;
+}
+
+/// Whether errors are a contradiction: more than `share` of what is at hand.
+bool RowSystem::positions_contradict() const
+{
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (position_error_[i] != 0 && !(std::fabs(position_error_[i]) < kContradiction * position_at_hand(rows_[i]))) return true;
+    return false;
+}
+
+bool RowSystem::speeds_contradict(double dt) const
+{
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (speed_error_[i] != 0 && !(std::fabs(speed_error_[i]) < kSpeedContradiction * speed_at_hand(i, dt))) return true;
+    return false;
+}
+
 /// Fills position_error_. The largest of rows that are held, relative to position_scale.
 double RowSystem::measure_positions()
 {
@@ -217,8 +285,9 @@ void RowSystem::match_speeds(const StepContext& context, ProjectionReport& repor
         if (soft || left < kSpeedContradiction) break;
         soft = true;  // rows that cannot all hold
     }
-    report.converged = report.converged && left < kSpeedContradiction;
-    if (left >= kSpeedContradiction) name_contradictory(speed_error_, report);
+    if (!(left >= kSpeedContradiction) || !speeds_contradict(context.dt)) return;
+    report.converged = false;
+    name_contradictory(speed_error_, report);
 }
 
 /// J^T mu (v + v') / 2: what each row's impulse has done. Called when speeds have just been changed.
@@ -279,7 +348,8 @@ ProjectionReport RowSystem::project(const StepContext& context, const RowBook& b
     for (std::size_t i = 0; i < rows_.size(); ++i)
         if (rows_[i].kind == RowKind::Equality && rows_[i].error != 0 && nobody_moves(rows_[i]))
             position_error_[i] = rows_[i].error, left = std::fmax(left, std::fabs(rows_[i].error) / position_scale(rows_[i]));
-    report.converged = left < kContradiction;
+    report.places_hold = left < kContradiction || !positions_contradict();
+    report.converged = report.places_hold;
     if (!report.converged) name_contradictory(position_error_, report);
     match_speeds(context, report);
     // What rows take that hold is the solver's error, and stays unexplained; what those take that cannot hold is theirs.

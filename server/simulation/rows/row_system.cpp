@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "simulation/clock.h"
-
 namespace plab::simulation
 {
 namespace
@@ -38,7 +36,6 @@ public:
             for (const std::uint32_t block = sorted_[i].block; i < sorted_.size() && sorted_[i].block == block; ++i)
                 s.rows.push_back(sorted_[i].row);
         }
-        ns_.resize(world.tables().size());
     }
     void constrain(const StepContext& given, RowSink& sink) override
     {
@@ -52,22 +49,10 @@ public:
         {
             const Selected& s = selected_[k];
             const world::Table& table = *world_->tables()[s.block->table];
-            const std::uint64_t before = now_ns();
             context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
             call.rows = s.rows;
             (void)s.block->command->run(call, table.rows());  // rows have no failures but events
-            ns_[s.block->table] += now_ns() - before;
         }
-    }
-    /// Time of the equations goes to the tables by the number of their rows.
-    void share(std::uint64_t ns)
-    {
-        if (sorted_.empty()) return;
-        for (std::size_t k = 0; k < count_; ++k) ns_[selected_[k].block->table] += ns * selected_[k].rows.size() / sorted_.size();
-    }
-    void collect_cost(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table)
-    {
-        for (std::size_t t = 0; t < ns_.size(); ++t) by_table[t][static_cast<std::size_t>(Phase::Constrain)] += std::exchange(ns_[t], 0);
     }
 
 private:
@@ -80,7 +65,6 @@ private:
     std::vector<BlockRow> sorted_;
     std::vector<Selected> selected_;  // the first count_ are valid
     std::size_t count_ = 0;
-    std::vector<std::uint64_t> ns_;  // by table
 };
 
 /// Takes rows in: pieces by component, shafts as the roots of their trains.
@@ -206,7 +190,6 @@ void RowSystem::load_forces(const Wrenches& wrenches)
 bool RowSystem::react(const StepContext& context, Wrenches& wrenches)
 {
     collect(context);
-    const std::uint64_t before = now_ns();
     factored_ = false;
     equations_.set_rows(rows_, pieces_);
     lambda_.assign(rows_.size(), 0.0);
@@ -224,7 +207,6 @@ bool RowSystem::react(const StepContext& context, Wrenches& wrenches)
         for (std::size_t s = 0; s < slots.size(); ++s) lambda_[slots[s].row] = equations_.multiplier(s);
         add_reactions(wrenches);
     }
-    if (scheduled_) scheduled_->share(now_ns() - before);
     return finite;
 }
 
@@ -366,11 +348,6 @@ void RowSystem::report_to(RowReportTable& table) const
         }
         if (p < redundant_.size()) report.redundant = redundant_[p];
     }
-}
-
-void RowSystem::collect_cost(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table)
-{
-    if (scheduled_) scheduled_->collect_cost(by_table);
 }
 
 }  // namespace plab::simulation

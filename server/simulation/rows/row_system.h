@@ -29,6 +29,7 @@ struct ProjectionReport
     double speed_error = 0;       ///< largest |J v - rate| left
     std::uint32_t redundant = 0;  ///< rows that others already imply
     bool converged = true;
+    bool places_hold = true;                   ///< what contradicts, if anything, are speeds
     std::vector<std::uint32_t> contradictory;  ///< components (directory indices) that cannot hold together, in id order
 };
 
@@ -110,8 +111,6 @@ public:
     double take_impulses(const StepContext& context, std::span<const ConstraintRow> held, double h, const RowBook& book);
     /// Of the last react() or take_impulses(), and the last projection.
     void report_to(RowReportTable& table) const;
-    /// Adds the time that rows took since the last call, ns by table.
-    void collect_cost(std::vector<std::array<std::uint64_t, kPhaseCount>>& by_table);
 
 private:
     class Sink;
@@ -151,6 +150,10 @@ private:
     double speed_of(const RowBlock& block) const;
     double speed_of(const ConstraintRow& row) const;
     double speed_scale(const ConstraintRow& row, double dt) const;
+    double position_at_hand(const ConstraintRow& row) const;
+    double speed_at_hand(std::size_t index, double dt) const;
+    bool positions_contradict() const;
+    bool speeds_contradict(double dt) const;
     double speed_of_others(const ConstraintRow& row) const;
     bool is_mobile(Ref who) const;
     void count_redundant(ProjectionReport& report);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "plab/number_text.h"
 
 namespace plab::simulation
 {
@@ -57,13 +58,6 @@ FactorProbe probed(const Block& block, const world::Table& table, Row row, doubl
     call.context = &context, call.shaft_motion = &probe, call.rows = Rows(&row, 1);
     (void)block.command->run(call, table.rows());  // as in sweeps
     return probe;
-}
-
-std::string number(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
 }
 
 std::string shaft_id(const world::World& world, std::uint32_t shaft) { return world.id_of(Ref{Facet::Shaft, shaft}); }
@@ -158,7 +152,7 @@ void CouplingWatch::tell_fault(const Fault& fault, const Shafts& shafts, const C
     if (std::exchange(told[p.component], 1)) return;
     const double left = std::fabs(shafts.speed[p.driven] - p.factor * shafts.speed[p.driver]);
     emit("constraint.contradiction", p.component,
-         fault.why + "; nothing but rest is an answer: sweeps brake the loop, and " + number(left) + " rad/s of error are left now",
+         fault.why + "; nothing but rest is an answer: sweeps brake the loop, and " + rounded_text(left) + " rad/s of error are left now",
          {left, done.residual});
 }
 
@@ -188,7 +182,7 @@ void CouplingWatch::look_at(std::size_t index, const world::World& world, const 
     if (std::exchange(told[p.component], 1)) return;
     emit("constraint.contradiction", p.component,
          "cannot hold: nothing that it does moves " + shaft_id(world, p.driver) + " or " + shaft_id(world, p.driven) + ", and " +
-             number(miss) + " rad/s are left; change the factor or a speed that is prescribed, or remove it",
+             rounded_text(miss) + " rad/s are left; change the factor or a speed that is prescribed, or remove it",
          {miss});
 }
 
@@ -209,7 +203,7 @@ void CouplingWatch::tell_unsettled(const Shafts& shafts, int sweeps, std::vector
         const CouplingPair& p = pairs_[misses_[worst].pair];
         const std::size_t others = end - first - 1;
         emit("coupling.not_converged", p.component,
-             "misses its ratio by " + number(misses_[worst].share) + " of its speeds after " + std::to_string(sweeps) + " sweeps" +
+             "misses its ratio by " + rounded_text(misses_[worst].share) + " of its speeds after " + std::to_string(sweeps) + " sweeps" +
                  (others > 0 ? ", and " + std::to_string(others) + " more of its train by less" : std::string()) +
                  "; take Constraint/AngularVelocity/Graph, which needs none, or a shorter train",
              {shafts.speed[p.driven] - p.factor * shafts.speed[p.driver], misses_[worst].share});

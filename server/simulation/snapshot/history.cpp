@@ -139,6 +139,8 @@ void History::note(const Simulation& simulation, const Request& request)
     if (begins_a_run(request.operations.front())) return;  // begin() was told of it
     Asked asked{request, simulation.tick(), bytes_of(request)};
     asked.request.at.reset(), asked.request.revision.reset();
+    // It took effect, whatever its trial came to, which the clock may have decided.
+    asked.request.trial.budget = TrialChoice::Budget::None;
     asked_bytes_ += asked.bytes;
     asked_.push_back(std::move(asked));
     // Too much since the last point: one more follows at the next step, and lets go what was before it.
@@ -224,7 +226,7 @@ Result<void> History::go_forward(Simulation& simulation, const std::vector<Asked
             if (const Reply reply = simulation.carry_out_now(asked[next].request); !reply.done)
                 return reason("a request of step " + std::to_string(asked[next].step) +
                               " cannot be carried out again: " + (reply.errors.empty() ? std::string() : reply.errors.front().text()));
-        simulation.step_once();
+        if (!simulation.step_once()) return reason("the server is to end: the way back was given up at step " + std::to_string(simulation.tick()));
     }
     // Whoever waited for a step that was made again was among those that were asked again.
     simulation.forget_late_requests();

@@ -30,6 +30,8 @@ void Stepper::advance_all()
 
 bool Stepper::run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events)
 {
+    CostMeter& meter = system.meter();
+    const CostScope scope(meter, solver != kNoIndex ? meter.of_component(solver) : meter.accounts().host);
     system.begin(from, to, book, events);
     if (!(to > from))
         system.evaluate(0, 0);  // a piece of no length: forces are wanted, nobody moves, and no solver has to divide by it
@@ -221,7 +223,7 @@ void Stepper::freeze(GroupSystem& system)
         Event e;
         e.time = frame_.start_time + frame_.step, e.kind = "state.not_finite", e.severity = Severity::Failure;
         e.component = host.component_of(ref), e.a = ref;
-        e.message = world_.id_of(ref) + " left the finite numbers; it stays where the step began";
+        e.message = world_.id_of(ref) + " left the numbers that a step can compute with; it stays where the step began";
         emit(std::move(e));
     };
     for (const std::uint32_t b : system.bodies())

@@ -127,6 +127,8 @@ void Stepper::plan_batches()
     {
         batch.scratch = std::make_unique<StageScratch>();
         batch.scratch->fit(world_);
+        batch.meter.accounts().fit(world_.components().size(), world_.tables().size());
+        batch.scratch->measure_with(batches_.size() == 1 ? meter_ : batch.meter);
         batch.work.assign(work_.size(), 0.0);
         for (Batch::Part& part : batch.parts)
         {
@@ -174,6 +176,13 @@ void Stepper::run_batch(Batch& batch, std::vector<double>& work)
     }
 }
 
+void Stepper::run_batch_measured(Batch& batch)
+{
+    batch.meter.start();
+    run_batch(batch, batch.work);
+    batch.meter.stop();
+}
+
 /// False if the solver refuses to advance its several clusters together.
 bool Stepper::run_solver(Batch::Part& part, std::vector<double>& work, EventSink& events)
 {
@@ -186,6 +195,8 @@ bool Stepper::run_solver(Batch::Part& part, std::vector<double>& work, EventSink
         part.fine = run_solver(*part.system, part.solver, 0, frame_.step, {&work, 1}, &events);
         return true;
     }
+    CostMeter& meter = part.system->meter();
+    const CostScope scope(meter, meter.of_component(part.solver));
     part.system->begin(0, frame_.step, {&work, 1}, &events);
     if (!call_solver(*part.system, part.solver, *together)) return false;
     part.fine = part.system->finish();
@@ -213,7 +224,10 @@ void Stepper::advance_batches()
     if (alone)
         run_batch(batches_.front(), work_);
     else
-        workers_.run(batches_.size(), [this](std::size_t b) { run_batch(batches_[b], batches_[b].work); });
+    {
+        const CostScope scope(meter_, waiting_ns_);
+        workers_.run(batches_.size(), [this](std::size_t b) { run_batch_measured(batches_[b]); });
+    }
     emit_in_order();
     // After a split they are planned anew: parts in the order that the split itself gives, not in that of their history.
     batches_ready_ = std::none_of(batches_.begin(), batches_.end(), [](const Batch& b) { return b.split; });
@@ -226,6 +240,8 @@ void Stepper::advance_batches()
             part.system->add_reports(row_reports_);
         }
         if (alone) continue;
+        meter_.accounts() += batch.meter.accounts();
+        batch.meter.accounts().clear();
         for (std::size_t i = 0; i < work_.size(); ++i) work_[i] += batch.work[i];
         std::fill(batch.work.begin(), batch.work.end(), 0.0);
     }

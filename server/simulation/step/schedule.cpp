@@ -1,25 +1,37 @@
 #include "simulation/step/schedule.h"
 
+#include <algorithm>
 #include <map>
 
 namespace plab::simulation
 {
 
-Schedule build_schedule(const world::World& world)
+bool measured_alone(const TypeInfo& type)
+{
+    const auto one_at_a_time = [](const CommandInfo& c)
+    {
+        return c.phase == Phase::Advance || c.phase == Phase::Solve || c.phase == Phase::Detect || c.phase == Phase::Locate ||
+               c.phase == Phase::Respond || c.phase == Phase::Touch || c.phase == Phase::Drive;
+    };
+    return std::any_of(type.commands.begin(), type.commands.end(), one_at_a_time);
+}
+
+Schedule build_schedule(const world::World& world, const std::vector<std::uint8_t>* takes_part)
 {
     // Keyed by type name and command number: an order that every run shares.
     std::array<std::map<std::pair<std::string, std::size_t>, Block>, kPhaseCount> found;
     for (const std::uint32_t i : world.in_id_order())
     {
         const world::Component& c = world.component(i);
-        if (c.table == kNoIndex || c.quarantined) continue;
+        if (c.table == kNoIndex || c.quarantined || (takes_part && (*takes_part)[i] == 0)) continue;
         const TypeInfo& info = world.table_of(i).type().info;
+        const bool alone = measured_alone(info);
         for (std::size_t k = 0; k < info.commands.size(); ++k)
         {
             const CommandInfo& command = info.commands[k];
             if (!(c.commands & (1ull << k)) || !command.run) continue;
             Block& block = found[static_cast<std::size_t>(command.phase)][{info.name, k}];
-            block.table = c.table, block.command = &command;
+            block.table = c.table, block.command = &command, block.alone = alone;
             block.rows.push_back(c.row);
         }
     }

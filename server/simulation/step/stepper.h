@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "simulation/contact_forces/contact_forces.h"
+#include "simulation/costs/cost_book.h"
 #include "simulation/contacts/contacts.h"
 #include "simulation/groups/system_pool.h"
 #include "simulation/shafts/coupling_watch.h"
@@ -22,18 +23,11 @@ struct StepReport
     int trials = 0;   ///< trial advances made to locate them
     int rewinds = 0;  ///< groups rewound
     int resting_pairs = 0;
+    std::uint64_t swept_rows = 0;   ///< rows of contacts and joints times sweeps (or pivots) over them, trials included
     std::uint64_t evaluations = 0;  ///< of forces, summed over the systems that solvers advanced, trials included
     double worst_residual = 0;      ///< m/s, left over by contact responses
     double deepest = 0;             ///< m, overlap left at the end of the step
     std::vector<Ref> frozen;        ///< objects whose state was not finite any more
-};
-
-/// CPU time by component type and phase, and per step; ns.
-struct CostBook
-{
-    std::vector<std::array<std::uint64_t, kPhaseCount>> by_table;  ///< index of the world's table
-    std::uint64_t steps = 0;
-    std::uint64_t total = 0;
 };
 
 /// What events told of already and would tell again only when it ends and comes back.
@@ -69,6 +63,7 @@ struct Batch
     bool split = false;  ///< a part was refused in this step
     std::vector<double> work;
     std::unique_ptr<StageScratch> scratch;
+    CostMeter meter;  ///< where threads step in parallel
     EventBuffer events;
 };
 
@@ -81,11 +76,18 @@ class Stepper final : public EventSink
 public:
     Stepper(world::World& world, int threads);
 
+    /// From the next rebuild on only these components take part (by directory index); null: all. Must outlive this.
+    void restrict_to(const std::vector<std::uint8_t>* components) { takes_part_ = components; }
     /// To be called after any structural change and after changes of parameters: schedule, groups, constraint graph,
     /// materials. On error (a contradictory graph) the world must be put back and rebuilt.
     Result<void> rebuild();
+    /// Who may give a step up, and whom it tells how far it is; null: nobody. They must outlive this.
+    void obey(const Interruption* interruption, Progress* progress) { interruption_ = interruption, progress_ = progress; }
     /// Steps from tick to tick + 1. Times in s.
     void step(Tick tick, double start_time, double dt);
+
+    /// The last step was given up: the world is anywhere within it, and has to be put back.
+    bool gave_up() const { return interruption_ && interruption_->heeded(); }
 
     const std::vector<Event>& events() const { return events_; }
     const StepReport& report() const { return report_; }
@@ -107,6 +109,7 @@ public:
         if (component >= work_.size()) return;
         departed_work_ += work_[component];
         work_[component] = 0;
+        cost_.forget(component);
         told_.contradictory[component] = 0;
     }
     /// J, by components that were removed since.
@@ -117,6 +120,7 @@ public:
     double requests_work() const { return requests_work_; }
     CostBook& cost() { return cost_; }
     const CostBook& cost() const { return cost_; }
+    const CostMeter& meter() const { return meter_; }
     std::uint64_t state_hash() const;
     /// Who shares systems with whom shows in the last digits of the ledger, so a snapshot keeps it.
     const std::vector<std::uint32_t>& split() const { return split_; }
@@ -171,8 +175,11 @@ private:
     void plan_batches();
     Batch& lightest_batch(std::size_t total_load);
     void run_batch(Batch& batch, std::vector<double>& work);
+    void run_batch_measured(Batch& batch);
     void emit_in_order();
     void collect_cost();
+    void rebuild_costs();
+    void run_block(const Block& block, StepContext& context, PhaseCall& call);
 
     // advance.cpp. A trial emits no events and freezes nobody.
     void advance_batches();
@@ -201,7 +208,7 @@ private:
     // contact_step.cpp
     void detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
                 std::vector<FoundContact>& out, double margin = 0);
-    double speculative_acceleration(const Detector& detector) const;
+    double number_of(std::uint32_t component, const char* parameter) const;
     void detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out);
     void detect_all(std::vector<FoundContact>& out);
     void touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h = 0);
@@ -243,9 +250,6 @@ private:
     double kinetic_energy(const std::vector<FoundContact>& contacts) const;
     Event contact_event(const char* kind, const PairState& pair, double time) const;
 
-    template <class Body>
-    void timed(const Block& block, Body body);
-
     world::World& world_;
     Schedule schedule_;
     Groups groups_;
@@ -262,6 +266,9 @@ private:
 
     std::shared_ptr<EventLocator> locator_;  ///< shared only so that its type need not be known here
 
+    const std::vector<std::uint8_t>* takes_part_ = nullptr;
+    const Interruption* interruption_ = nullptr;
+    Progress* progress_ = nullptr;
     StepFrame frame_;
     world::MotionMemento start_, segment_, end_;
     std::vector<double> segment_begin_;  ///< s, by group: where its present smooth piece began
@@ -300,7 +307,9 @@ private:
     std::vector<double> work_;
     double departed_work_ = 0, requests_work_ = 0;
     Told told_;
+    CostMeter meter_;
     CostBook cost_;
+    std::int64_t waiting_ns_ = 0;  ///< for other threads: nobody's cost
     StepReport report_;
     ImageSink* images_ = nullptr;
     SightBuilder sight_;

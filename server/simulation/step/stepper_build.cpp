@@ -87,7 +87,7 @@ void Stepper::connect_graph(Errors& errors)
 
 Result<void> Stepper::rebuild()
 {
-    schedule_ = build_schedule(world_);
+    schedule_ = build_schedule(world_, takes_part_);
     Errors errors;
     connect_materials(errors);
     connect_graph(errors);
@@ -107,7 +107,7 @@ Result<void> Stepper::rebuild()
     rewinds_possible_ = std::any_of(detectors_.begin(), detectors_.end(), [](const Detector& d) { return d.locates; });
     work_.resize(world_.components().size(), 0.0);
     told_.contradictory.resize(world_.components().size(), 0);
-    cost_.by_table.resize(world_.tables().size());
+    rebuild_costs();
     segment_begin_.assign(groups_.all.size(), 0.0);
     found_.clear();
     pool_.clear(world_);
@@ -117,6 +117,16 @@ Result<void> Stepper::rebuild()
     sight_.structure_changed();
     start_.save(world_.host()), segment_.save(world_.host()), end_.save(world_.host());
     return {};
+}
+
+void Stepper::rebuild_costs()
+{
+    std::vector<std::uint32_t> owners(world_.components().size(), kNoIndex);
+    for (const std::uint32_t i : world_.in_id_order())
+        if (const model::ComponentType* type = world_.type_of(i); type && measured_alone(type->info)) owners[i] = world_.component(i).table;
+    meter_.accounts().fit(owners.size(), world_.tables().size());
+    cost_.rebuild(owners, world_.tables().size());
+    pool_.scratch().measure_with(meter_);
 }
 
 void Stepper::measure_bodies()

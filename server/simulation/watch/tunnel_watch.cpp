@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "simulation/contacts/shape_width.h"
 #include "simulation/simulation.h"
 
 namespace plab::simulation
@@ -31,23 +32,6 @@ Vec3 box_inside(const Geometry& g)
             return {kHalfDiagonal * g.size.x, kHalfDiagonal * g.size.x, g.size.z};
         default:
             return {-1, -1, -1};
-    }
-}
-
-/// Half the least width of a shape; 0 where it is not known.
-double half_width(const Geometry& g)
-{
-    switch (g.kind)
-    {
-        case GeometryKind::Sphere:
-        case GeometryKind::Capsule:
-            return g.size.x;
-        case GeometryKind::Box:
-            return std::min({g.size.x, g.size.y, g.size.z});
-        case GeometryKind::Cylinder:
-            return std::min(g.size.x, g.size.z);
-        default:
-            return 0;
     }
 }
 
@@ -108,7 +92,7 @@ void TunnelWatch::look_up(const Simulation& s)
     least_width_.assign(host.bodies.size(), std::numeric_limits<double>::infinity());
     for (std::size_t b = 0; b < least_width_.size(); ++b)
         for (const Ref shape : host.bodies.shapes[b])
-            least_width_[b] = std::min(least_width_[b], half_width(host.shapes.geometry[shape.index]));
+            least_width_[b] = std::min(least_width_[b], least_half_width(host.shapes.geometry[shape.index]));
     memory_.sinking.resize(host.bodies.size());
     shallow_ = std::numeric_limits<double>::infinity();
     for (const double width : least_width_)

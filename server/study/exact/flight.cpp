@@ -14,12 +14,14 @@
 #include "plab/rotation.h"
 #include "study/exact/elliptic.h"
 #include "study/exact/exact.h"
-#include "study/exact/principal.h"
+#include "world/principal_axes.h"
 
 namespace plab::study
 {
 namespace
 {
+
+using world::principal_axes, world::PrincipalAxes;
 
 // Gauss-Legendre, 8 points on [-1, 1]: positive nodes and weights.
 constexpr std::array<double, 4> kNodes{0.18343464249564980494, 0.52553240991632898582, 0.79666647741362673959, 0.96028985649753623168};

@@ -39,11 +39,29 @@ TEST_CASE("watch for people, thinned out and selected")
     CHECK(Json::parse(states.lines()[0])["shafts"].empty());
 }
 
+TEST_CASE("watch --only of who is not there: refused where nothing would ever come, told where it may be added")
+{
+    FakeServer server(test_domain(), "lab");
+    const Outcome states = lab("watch states --only rde -n 1");
+    CHECK(states.code == 1);
+    CHECK_MESSAGE(has(states.err, "no object 'rde', did you mean 'red'?; there are: a_fan_with_a_very_long_name, red"), states.err);
+    CHECK(states.out.empty());
+    // An interaction has no state, and a body no cost.
+    CHECK(has(lab("watch states --only red --only contact -n 1").err, "no object 'contact'"));
+    CHECK(has(lab("watch metrics --only red -n 1").err, "no interaction 'red'"));
+    CHECK(lab("watch metrics --only contact -n 1").code == 0);
+    const Outcome later = lab("watch collisions --only nobody -d 0.5");
+    CHECK(later.code == 0);
+    CHECK_MESSAGE(has(later.err, "no component 'nobody'; it is watched for, should it be added"), later.err);
+    CHECK(lab("watch collisions --only red -n 1").err.empty());
+}
+
 TEST_CASE("watch ends by duration with 0, by Ctrl-C with 130, and when the server goes with 3")
 {
     auto server = std::make_unique<FakeServer>(test_domain(), "lab");
     CHECK(lab("watch events -d 0.3 --json").code == 0);
     CHECK(lab("watch events", "timeout --preserve-status -s INT 1").code == 130);
+    CHECK(lab("watch events", "timeout --preserve-status -s TERM 1").code == 143);
     std::thread ends(
         [&]
         {

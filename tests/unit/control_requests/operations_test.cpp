@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "plugins/library.h"
 
 using namespace plab;
@@ -141,4 +143,43 @@ TEST_CASE("a sign is no way to go back, and names of snapshots are as those of s
     for (const char* time : {"back", "back ", "back1", "now", "1 m"}) CHECK(!refusal({"rewind", "", time, "", {}}).empty());
     for (const std::string& name : {std::string("a/b"), std::string("a b"), std::string("\n"), std::string(65, 'a')})
         CHECK(refusal({"snapshot", name, "", "", {}}).find("is no name of a snapshot") != std::string::npos);
+}
+
+TEST_CASE("trial and energy say how a request is proved, cancel names a request; none of them is an operation")
+{
+    using Budget = simulation::TrialChoice::Budget;
+    const OperationText swap{"swap", "gears.*", "Constraint/X", "", {}};
+    const auto trial = [&](const std::string& text)
+    {
+        const auto out = wanted({swap, {"trial", "", text, "", {}}});
+        REQUIRE_MESSAGE(out.ok(), out.error().text());
+        CHECK(out->request.operations.size() == 1);
+        return out->request.trial;
+    };
+    CHECK(wanted({swap})->request.trial.budget == Budget::Automatic);
+    CHECK(trial("none").budget == Budget::None);
+    CHECK(trial("unlimited").budget == Budget::Unlimited);
+    CHECK(trial("20 ms").ns == 20e6);
+    CHECK(trial("0.5").budget == Budget::Given);
+    CHECK(!trial("0.5").must);
+    CHECK(trial("20 ms or refuse").must);
+    CHECK((trial("or refuse").must && trial("or refuse").budget == Budget::Automatic));
+    for (const char* wrong : {"no", "-1", "0", "1e10", "nan", "20 s", "none or refuse", "20 or"})
+        CHECK_MESSAGE(refusal({"trial", "", wrong, "", {}}).find("no budget of a trial") != std::string::npos, wrong);
+
+    CHECK(wanted({swap})->request.trial.energy_factor == 100);
+    CHECK(wanted({swap, {"energy", "", "1e4", "", {}}})->request.trial.energy_factor == 1e4);
+    CHECK(std::isinf(wanted({swap, {"energy", "", "any", "", {}}})->request.trial.energy_factor));
+    CHECK(refusal({"energy", "", "0.5", "", {}}).find("1 or more") != std::string::npos);
+
+    const std::string client = "000102030405060708090a0b0c0d0eff";
+    const auto cancel = wanted({{"cancel", "", client + ":17", "", {}}});
+    REQUIRE_MESSAGE(cancel.ok(), cancel.error().text());
+    REQUIRE(cancel->cancel.has_value());
+    CHECK(cancel->cancel->client[10] == 0x0a);
+    CHECK(cancel->cancel->client[15] == 0xff);
+    CHECK(cancel->cancel->number == 17);
+    for (const std::string& wrong : std::vector<std::string>{client, client + ":0", client + ":x", client.substr(1) + ":1", "g" + client.substr(1) + ":1"})
+        CHECK_MESSAGE(refusal({"cancel", "", wrong, "", {}}).find("names no request") != std::string::npos, wrong);
+    CHECK(!wanted({swap, {"cancel", "", client + ":17", "", {}}}).ok());
 }

@@ -31,6 +31,10 @@ const Case kCases[] = {
     {"Planetary", "sun='a' ring='s' carrier='t' sun_teeth='20' ring_teeth='80' sun_axis='0.6 0.8 0'", false},
     {"Rolling", "a='a' b='b' semi_axes='0.3 0.2 0.1' centre='0.02 0.01 -0.03' normal='0.6 0 0.8'"},
     {"Rolling", "b='b' semi_axes='0.3 0.2 0.1' axes='0.8 0 0.6 0'", false},
+    {"Rolling", "a='a' b='b' semi_axes='0.2 0.2 0.2' on='sphere' radius='0.7' centre='0.02 0.01 -0.03' normal='0 0.6 0.8'"},
+    {"Rolling", "a='a' b='b' semi_axes='0.2 0.2 0.2' on='sphere' radius='0.7' inside='true' point='0.9 0.3 0.1'"},
+    {"Rolling", "a='a' b='b' semi_axes='0.2 0.2 0.2' on='cylinder' radius='0.7' axis='0 0.6 0.8' point='0.3 0.5 0.1'"},
+    {"Rolling", "b='b' semi_axes='0.2 0.2 0.2' on='cylinder' radius='0.7' inside='true' axis='0 0.6 0.8' normal='1 0 0' parallel='true'", false},
 };
 
 }  // namespace

@@ -163,7 +163,35 @@ TEST_CASE("the number of components is limited")
         scene({component("a", "Shape/Sphere"), component("b", "Shape/Sphere"), component("c", "Shape/Sphere")});
     model::CompileLimits limits;
     limits.components = 2;
-    CHECK(model::compile(b, types, nullptr, limits).error().reason == "the scene has more than 2 components");
+    b.components[2].where = at(7, 3);
+    const auto refused = model::compile(b, types, nullptr, limits);
+    REQUIRE(refused.errors().size() == 1);
+    CHECK(refused.error().text() == "scene.xml:7:3: c: is one component too many: a scene has at most 2");
+    limits.raised_by = "--max-components N";
+    CHECK(model::compile(b, types, nullptr, limits).error().reason ==
+          "is one component too many: a scene has at most 2 (--max-components N raises that)");
     limits.components = 3;
     CHECK(model::compile(b, types, nullptr, limits).ok());
+}
+
+TEST_CASE("types may be written by their last words where only one type ends so")
+{
+    const model::SceneSpec s = compiled(scene({component("form", "Sphere"), component("a", "RigidBody", {{"mass", "1"}, {"shape", "form"}}),
+                                               component("b", "State/RigidBody", {{"mass", "1"}, {"solver", "RungeKutta4"}})}));
+    CHECK(s.find("form")->type == "Shape/Sphere");
+    CHECK(s.find("a")->type == "State/RigidBody");
+    CHECK(s.find("b.solver")->type == "Solver/RungeKutta4");
+    Blueprint b = scene({component("a", "State/RigidBody", {{"mass", "1"}})});
+    b.settings = {text("solver", "RungeKutta4")};
+    CHECK(compiled(b).settings.solver_type == "Solver/RungeKutta4");
+}
+
+TEST_CASE("a short name that several types end in names them")
+{
+    const std::vector<std::string> names{"Constraint/AngularVelocity/Impulse", "Resolution/None", "Response/Impulse", "Response/None"};
+    CHECK(*model::full_type_name("None", names, "Response/") == "Response/None");
+    CHECK(*model::full_type_name("AngularVelocity/Impulse", names, "") == "Constraint/AngularVelocity/Impulse");
+    CHECK(*model::full_type_name("Other", names, "") == "Other");
+    CHECK(model::full_type_name("None", names, "").error().reason ==
+          "type 'None' can be 'Resolution/None' or 'Response/None': give the whole name");
 }

@@ -137,7 +137,9 @@ TEST_CASE("repeats that are refused")
     CHECK(why({{"count", "0"}}) == r + "count must be 1 or more, not 0");
     CHECK(why({{"count", "2.5"}}) == r + "count: '2.5' is not a whole number");
     CHECK(why({{"count", "1 1 1 1"}}) == r + "count needs 1 to 3 whole numbers, has 4");
-    CHECK(why({{"count", "1000000 1000000 1000000"}}) == r + "the scene has more than 1000000 components");
+    CHECK(why({{"count", "1000000 1000000 1000000"}}) ==
+          r + "makes 1000000000000000000 components: a scene has at most 100000");
+    CHECK(why({{"count", "100001"}}) == r + "makes 100001 components: a scene has at most 100000");
     CHECK(why({{"count", "9999999999"}}) == r + "count must be at most 1000000, not 9999999999");
     CHECK(why({{"count", "2"}, {"step", "1 0"}}) == r + "step needs 3 numbers, has 2");
     CHECK(why({{"count", "2"}, {"step", "1 0 0 s"}}) == r + "step must be in m (or cm, mm, km, um), not in 's'");

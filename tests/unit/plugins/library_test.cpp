@@ -277,7 +277,9 @@ TEST_CASE("where plugins are looked for")
     REQUIRE(installed.size() == 1);
     CHECK(fs::path(installed[0]) == fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib" / "plab");
     setenv("PLAB_PLUGIN_PATH", ":/a/b::/c:", 1);
-    CHECK(PluginLibrary::default_directories() == std::vector<std::string>{"/a/b", "/c"});
+    CHECK(PluginLibrary::default_directories() == std::vector<std::string>{"/a/b", "/c", installed[0]});
+    setenv("PLAB_PLUGIN_PATH", "/a/b", 1);
+    CHECK(PluginLibrary().require("State/RigidBody"));  // and an own folder takes nothing away
     setenv("PLAB_PLUGIN_PATH", "", 1);
     CHECK(PluginLibrary::default_directories() == installed);
     unsetenv("PLAB_PLUGIN_PATH");

@@ -261,21 +261,24 @@ TEST_CASE("solvers: what they advance, mixtures, and those without work")
     CHECK(resolved[world.find("a")].empty());
 }
 
-TEST_CASE("cost is that since the last reading, shared by rows")
+TEST_CASE("rows of one type that are cheap share what it costs, and say so")
 {
     Scene scene(R"(<component id="a" type="State/Shaft" inertia="1"/><component id="b" type="State/Shaft" inertia="1"/>
       <component id="x" type="Field/Drag" between="a" rotational="1"/><component id="y" type="Field/Drag" between="b" rotational="1"/>)");
-    scene.step(100);
     const auto& s = scene.simulation();
-    const simulation::CostBook since = s.stepper().cost();
-    const std::uint32_t table = s.world().component(s.world().find("x")).table;
-    const auto total = [&]
-    { return std::accumulate(s.stepper().cost().by_table[table].begin(), s.stepper().cost().by_table[table].end(), 0.0); };
-    const double before = total();
-    CHECK(publish::cost_of_rows(s)[table] == doctest::Approx(before / 100 / 2));
-    CHECK(publish::cost_of_rows(s, since)[table] == 0);
-    scene.step(50);
-    CHECK(publish::cost_of_rows(s, since)[table] == doctest::Approx((total() - before) / 50 / 2));
+    const auto cost_of = [&](const char* id) { return publish::Costs(s).of(s.world().find(id)); };
+    CHECK(cost_of("x").last.samples == 0);
+    CHECK(cost_of("solver").last.samples == 0);
+    scene.step(100);
+    CHECK(cost_of("x").shared == 2);
+    CHECK(cost_of("x").last.median == cost_of("y").last.median);
+    CHECK(cost_of("x").last.median > 0);
+    CHECK(cost_of("solver").shared == 1);
+    const simulation::Spread solver = cost_of("solver").last;
+    CHECK(solver.samples == 64);
+    CHECK(solver.low > 0);
+    CHECK(solver.low <= solver.median);
+    CHECK(solver.median <= solver.high);
 }
 
 TEST_CASE("status: on change and once a second")
@@ -361,4 +364,55 @@ TEST_CASE("watching changes no bit")
     run.step(300);
     CHECK(run.watcher.samples.size() == 300);
     CHECK(plain.hash() == watched.hash());
+}
+
+TEST_CASE("metrics right after a rewind or a restore say that nothing is known, instead of a step of 0 ns and a rate across the jump")
+{
+    Scene scene(kDrop);
+    publish::Sampler sampler(0);
+    const simulation::Snapshot kept = scene.simulation().capture();
+    scene.step(100);
+    CHECK(sampler.sample(scene.simulation(), 1'000'000'000).step_ns > 0);
+    const simulation::Snapshot later = scene.simulation().capture();
+    scene.step(100);
+    const double honest = sampler.sample(scene.simulation(), 2'000'000'000).real_time_factor;
+    CHECK(honest == doctest::Approx(100 * scene.simulation().dt()).epsilon(1e-9));
+    for (const simulation::Snapshot* to : {&kept, &later})
+    {
+        REQUIRE(scene.simulation().restore(*to).ok());
+        const publish::Metrics after = sampler.sample(scene.simulation(), 3'000'000'000);
+        CHECK(after.step_ns == 0);
+        CHECK(after.real_time_factor == 0);
+        for (const publish::InteractionMetrics& m : after.interactions) CHECK(m.cost_ns == 0);
+        scene.step(100);
+        const publish::Metrics known = sampler.sample(scene.simulation(), 4'000'000'000);
+        CHECK(known.step_ns > 0);
+        CHECK(known.real_time_factor == doctest::Approx(honest).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("metrics say what their figures are: quartiles, of how many steps, shared by whom, unit and meaning of the error")
+{
+    Scene scene(R"(<component id="a" type="State/Shaft" inertia="1" angular_velocity="1"/><component id="b" type="State/Shaft" inertia="1"/>
+      <component id="x" type="Field/Drag" between="a b" rotational="1"/>
+      <component id="mesh" type="Constraint/AngularVelocity/Assign" driver="a" driven="b" velocity_factor="2"/>)");
+    scene.step(20);
+    publish::Sampler sampler(0.5);
+    publish::Metrics metrics;
+    for (int i = 1; i < 8; ++i) metrics = sampler.sample(scene.simulation(), static_cast<publish::Nanoseconds>(i) << 40);
+    const auto account = [&](const std::string& id, const std::string& name) -> const publish::Parameter*
+    {
+        for (const publish::InteractionMetrics& m : metrics.interactions)
+            for (const publish::Parameter& p : m.outputs)
+                if (m.component == id && p.kind == "account" && p.name == name) return &p;
+        return nullptr;
+    };
+    REQUIRE(account("mesh", "error"));
+    CHECK(account("mesh", "error")->unit == "rad/s2");
+    CHECK(account("mesh", "error")->text == "per second of a step, against Constraint/AngularVelocity/Graph");
+    REQUIRE(account("x", "no_error"));
+    CHECK_FALSE(account("x", "error"));
+    CHECK(account("x", "cost_steps")->text == "20");
+    CHECK(account("x", "cost_shared_by")->text == "1");
+    CHECK(account("x", "cost_quartiles")->unit == "ns");
 }

@@ -25,6 +25,14 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 std::size_t lines_in(const std::string& text) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')); }
 
+std::string text_of(const std::string& file)
+{
+    std::ifstream in(file);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
 /// A recording of which the last third is not there.
 std::string cut_recording(const std::string& name)
 {
@@ -95,7 +103,20 @@ TEST_CASE("recover: 0 whole, 5 something lost, 1 nothing usable")
     CHECK(has(cut.output, "lost: "));
     CHECK_MESSAGE(has(cut.output, "lost: what was recorded after "), cut.output);
     CHECK_MESSAGE(!has(whole.output, "lost: "), whole.output);
-    CHECK(has(plabctl({"info", out}).output, "whole"));
+    // What was made of it is a file without damage, and still not the whole recording.
+    const Outcome info = plabctl({"info", out});
+    CHECK_MESSAGE(has(info.output, "recovered: something is lost"), info.output);
+    CHECK_MESSAGE(has(info.output, "what was recorded after "), info.output);
+    CHECK(!has(info.output, "whole"));
+    const Json summary = Json::parse(plabctl({"info", out, "--json"}).output);
+    CHECK(summary["whole"] == false);
+    CHECK(summary["closed"] == true);
+    CHECK(summary["not_recovered"].size() >= 1);
+    const std::string page = fresh_path("cli_recovered.html");
+    CHECK(plabctl({"report", out, "-o", page}).code == 0);
+    CHECK(!has(text_of(page), "is whole"));
+    CHECK(has(text_of(page), "recovered from a recording of which something is lost"));
+    CHECK(has(text_of(page), "lost, and not recovered: "));
     // It is not written over.
     CHECK(plabctl({"recover", make_recording("cli_whole.mcap"), "-o", out}).code == 1);
     const std::string none = fresh_path("cli_none.mcap");
@@ -104,6 +125,24 @@ TEST_CASE("recover: 0 whole, 5 something lost, 1 nothing usable")
     CHECK(nothing.code == 1);
     CHECK(Json::parse(nothing.output)["verdict"] == "nothing usable");
     CHECK(!std::filesystem::exists(fresh_path("cli_none.recovered.mcap")));
+}
+
+TEST_CASE("a file that is written gets its name when it is whole")
+{
+    const std::string file = make_recording("cli_named_late.mcap"), out = fresh_path("cli_states.csv");
+    std::ofstream(out) << "what was there before";
+    CHECK(plabctl({"export", file, "--csv", "--topic", "none", "-o", out}).code == 1);
+    CHECK(text_of(out) == "what was there before");
+    CHECK(plabctl({"export", file, "--csv", "-o", out}).code == 0);
+    CHECK(lines_in(text_of(out)) == 1 + 201 * 3);
+    CHECK(!std::filesystem::exists(out + ".part"));
+    CHECK(plabctl({"export", file, "--csv", "-o", "/dev/null"}).code == 0);
+    CHECK(std::filesystem::is_character_file("/dev/null"));
+    const std::string link = fresh_path("cli_link.csv");
+    std::filesystem::create_symlink(out, link);
+    CHECK(plabctl({"export", file, "--csv", "--topic", "hashes", "-o", link}).code == 0);
+    CHECK(std::filesystem::is_symlink(link));
+    CHECK(text_of(out).starts_with("run,step"));
 }
 
 TEST_CASE("recover names its file after the one that it is made of")

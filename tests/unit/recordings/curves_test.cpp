@@ -119,6 +119,20 @@ TEST_CASE("a curve is interrupted where a run ends")
     CHECK(x.points[202].first == doctest::Approx(2.01));
 }
 
+TEST_CASE("what the first metrics of a run say of cost and pace was measured before it, and is no part of the course")
+{
+    const Log log = opened(make_recording("curves_first.mcap", {.steps_after = 100}));
+    for (const char* quantity : {"real_time_factor", "step_cost", "contact.response.cost"})
+    {
+        const auto curve = curves(log, quantity).at(0);
+        REQUIRE(curve.points.size() > 4);
+        for (const auto& [time, value] : curve.points)
+            CHECK_MESSAGE((std::isnan(value) || value == 2 || value == 50000 || value == 100 || value == 2000), quantity << " " << value);
+    }
+    // What is a state of the scene counts from the first on.
+    CHECK(curves(log, "contact.response.work").at(0).points.front().first == 0.0);
+}
+
 TEST_CASE("a long series keeps its peaks in little memory")
 {
     Thinned thinned(0, 1000);

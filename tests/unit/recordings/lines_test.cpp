@@ -86,6 +86,7 @@ TEST_CASE("segments: what each algorithm cost while it was there")
     CHECK(segments[1].largest_error == doctest::Approx(3e-6));
     CHECK(segments[2].run == 2);
     CHECK(segments[2].work == doctest::Approx(-0.5));
+    CHECK(segments[2].mean_cost == doctest::Approx(2000));  // without the first sample of the run
 }
 
 TEST_CASE("a report is one page with nothing from outside, and tells of the swap")

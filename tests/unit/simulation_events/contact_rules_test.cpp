@@ -48,6 +48,31 @@ TEST_CASE("every other resolution goes with every response")
         }
 }
 
+TEST_CASE("one pair takes one detection: a second one that answers is refused with both names")
+{
+    const std::string first = scene("LocalRoot", "Impulse");
+    const auto second = [](const std::string& more) { return "<component id=\"twin\" type=\"CDetection/ODE\" " + more + "/>"; };
+    const std::string b = "<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" shape=\"ball\" position=\"9 0 3\"/>";
+    for (const char* more : {"between=\"a ground\"", "between=\"a\" against=\"ground\"", "between=\"*\" response=\"Response/Penalty\"",
+                             "between=\"ground\" against=\"a b\" response=\"Response/Rows\""})
+    {
+        CAPTURE(more);
+        const Scene s(first + b + second(more));
+        CHECK_MESSAGE(s.error().find("twin (CDetection/ODE)") != std::string::npos, s.error());
+        CHECK_MESSAGE(s.error().find("the pair 'a', 'ground' is answered by 'contact' as well") != std::string::npos, s.error());
+    }
+    for (const char* more : {"between=\"a ground\" response=\"Response/None\"", "between=\"b ground\"", "between=\"a b\"",
+                             "between=\"b\" against=\"a ground\""})
+    {
+        CAPTURE(more);
+        const Scene s(first + b + second(more));
+        CHECK_MESSAGE(s.loaded(), s.error());
+    }
+    Scene s(first + b + second("between=\"a ground\" response=\"Response/None\""));
+    CHECK_FALSE(s.ask(simulation::SwapOperation{"twin.response", "Response/Impulse", {}}).done);
+    s.step();
+}
+
 TEST_CASE("an exchange that would make nonsense is refused, and nothing changes")
 {
     Scene s(scene("LocalRoot", "Impulse"));

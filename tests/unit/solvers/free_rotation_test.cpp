@@ -1,6 +1,6 @@
 /// Free rotation in closed form, and Solver/Exact with it: machine precision at any step, for every kind of top.
-#include "objects/solvers/free_rotation.h"
-#include "objects/solvers/elliptic.h"
+#include "plab/free_rotation.h"
+#include "plab/elliptic.h"
 #include "objects/solvers/exact.h"
 #include "objects/solvers/runge_kutta4.h"
 #include "unit/solvers/problems.h"

@@ -3,11 +3,12 @@
 
 #include "study/exact/elliptic.h"
 #include "study/exact/exact.h"
-#include "study/exact/principal.h"
 #include "support/scene.h"
+#include "world/principal_axes.h"
 
 using namespace plab;
 using namespace plab::study;
+using plab::world::principal_axes, plab::world::PrincipalAxes;
 using plab::test::attitude_error;
 using plab::test::distance;
 using plab::test::near;

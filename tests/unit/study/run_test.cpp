@@ -76,7 +76,7 @@ TEST_CASE("the figures of a study are those that the server publishes live")
     const RunRecord record = record_run(library(), spec, how);
     simulation::Simulation s(library(), 1);
     REQUIRE(s.load(spec).ok());
-    publish::Sampler sampler;
+    publish::Sampler sampler(0);
     const publish::Metrics start = sampler.sample(s, 1);
     for (int half = 1; half <= 2; ++half)
     {
@@ -124,7 +124,7 @@ Live watch(const model::SceneSpec& spec, int steps, int every)
     Live out;
     simulation::Simulation s(library(), 1);
     REQUIRE(s.load(spec).ok());
-    publish::Sampler sampler;
+    publish::Sampler sampler(0);
     out.samples.push_back(sampler.sample(s, 1));
     for (int n = 1; n <= steps; ++n)
     {

@@ -276,6 +276,9 @@ TEST_CASE("exit codes: no server 3, wrong use 2, what the scene does not have 1,
         view("--frames " + folder / "out" + " --timeout 30 --server " + server.name(), "timeout --preserve-status -k 8 -s INT 2");
     CHECK(interrupted.code == 130);
     CHECK_MESSAGE(has(interrupted.text, "interrupted"), interrupted.text);
+    const Run terminated = view("--png " + folder / "late.png" + " --at 1e6 --timeout 30 --server " + server.name(),
+                                "timeout --preserve-status -k 8 -s TERM 1");
+    CHECK(terminated.code == 143);
     CHECK(folder.files() == 1);
 }
 

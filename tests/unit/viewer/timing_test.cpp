@@ -5,7 +5,6 @@
 
 #include "plab/rotation.h"
 #include "viewer/options.h"
-#include "viewer/progress.h"
 #include "viewer/sequence.h"
 
 namespace
@@ -196,10 +195,4 @@ TEST_CASE("shots are taken in the order of their times, the present one first")
     CHECK(options.shots[0].file == "now.png");
     CHECK(options.shots[1].file == "a.png");
     CHECK(options.shots[2].file == "b.png");
-}
-
-TEST_CASE("a bar shows the share that is done")
-{
-    CHECK(bar(1, 4, 8) == "[##......]  25 %");
-    CHECK(bar(9, 4, 4) == "[####] 100 %");
 }

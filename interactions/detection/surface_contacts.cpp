@@ -1,0 +1,131 @@
+#include "surface_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spread.h"
+
+namespace plab::detection
+{
+namespace
+{
+
+/// Cosine between normals of one side of a contact.
+constexpr double kOneSide = 0.995;
+/// Share of the size of the solid within which two places are one.
+constexpr double kSamePlace = 1e-6;
+
+/// Gathers what touches, each place and feature once; of many on one side the deepest and the outermost.
+class Gathering final : public MeetingSink
+{
+public:
+    Gathering(double margin, double size) : margin_(margin), near_(kSamePlace * size) {}
+    double limit() const override { return margin_; }
+    void offer(const Meeting& m) override
+    {
+        if (!(m.gap < margin_ || m.gap < 0)) return;
+        const Touch touch{m.on_surface - m.normal * (0.5 * m.gap), m.normal, -m.gap, m.feature};
+        for (std::size_t i = 0; i < count_; ++i)
+        {
+            Touch& known = touches_[i];
+            const bool same_place = length_squared(known.point - touch.point) < near_ * near_ && dot(known.normal, touch.normal) > kOneSide;
+            if (!same_place && known.feature != touch.feature) continue;
+            const std::uint32_t first = known.feature;
+            if (touch.depth > known.depth) known = touch, known.feature = first;
+            return;
+        }
+        if (count_ == touches_.size()) thin_out();
+        if (count_ < touches_.size()) touches_[count_++] = touch;
+    }
+    std::span<Touch> take()
+    {
+        if (count_ > kMany) thin_out();
+        std::sort(touches_.begin(), touches_.begin() + static_cast<std::ptrdiff_t>(count_),
+                  [](const Touch& a, const Touch& b) { return a.feature < b.feature; });
+        return {touches_.data(), count_};
+    }
+
+private:
+    static constexpr std::size_t kMany = 9;
+
+    /// Sides in the order in which they were found; what no room is left for is the last sides'.
+    void thin_out()
+    {
+        std::array<Touch, 64> all = touches_;
+        std::array<std::uint8_t, 64> taken{};
+        const std::size_t total = count_;
+        count_ = 0;
+        for (std::size_t i = 0; i < total; ++i)
+        {
+            if (taken[i]) continue;
+            Spread spread(all[i].normal, margin_);
+            for (std::size_t k = i; k < total; ++k)
+                if (!taken[k] && dot(all[i].normal, all[k].normal) > kOneSide) taken[k] = 1, spread.offer(all[k]);
+            Touches kept(margin_);
+            spread.take(kept);
+            for (const Touch& t : kept.all()) touches_[count_++] = t;
+        }
+    }
+
+    std::array<Touch, 64> touches_{};
+    std::size_t count_ = 0;
+    double margin_, near_;
+};
+
+/// Keeps the nearest.
+class Nearest final : public MeetingSink
+{
+public:
+    double limit() const override { return best.gap; }
+    void offer(const Meeting& m) override
+    {
+        if (m.gap < best.gap) best = m;
+    }
+    Meeting best{HUGE_VAL, {}, {}, {0, 0, 1}, 0};
+};
+
+void meet(const Solid& K, const Collider& surface, MeetingSink& out)
+{
+    surface.kind() == ColliderKind::Triangles ? meet_triangles(K, surface, out) : meet_round_wall(K, surface, out);
+}
+
+/// A ball goes from triangle to triangle: its contacts are numbered within patches of triangles that go over into one another,
+/// so that one that slides keeps its number.
+void number_by_patch(std::span<Touch> touches, const TriangleSurface& surface)
+{
+    std::array<std::uint32_t, 64> patch{};
+    for (std::size_t i = 0; i < touches.size(); ++i)
+    {
+        patch[i] = surface.triangles()[touches[i].feature].patch;
+        const auto before = static_cast<std::uint32_t>(std::count(patch.begin(), patch.begin() + static_cast<std::ptrdiff_t>(i), patch[i]));
+        touches[i].feature = (patch[i] & 0xfffu) << 6 | before;
+    }
+}
+
+Pose seen_from(const Pose& X_surface, const Pose& X) { return {rotate_back(X_surface.q, X.p - X_surface.p), conjugate(X_surface.q) * X.q}; }
+}  // namespace
+
+void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface, Touches& out)
+{
+    const Solid K(a, seen_from(X_surface, X_a));
+    Gathering found(out.margin(), K.extent() + K.radius());
+    meet(K, surface, found);
+    const std::span<Touch> touches = found.take();
+    if (K.core() == Core::Point && surface.kind() == ColliderKind::Triangles) number_by_patch(touches, surface.triangles());
+    for (Touch t : touches)
+    {
+        t.point = X_surface * t.point, t.normal = rotate(X_surface.q, t.normal);
+        out.add(t);
+    }
+}
+
+Separation separation_from_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface)
+{
+    const Solid K(a, seen_from(X_surface, X_a));
+    Nearest nearest;
+    meet(K, surface, nearest);
+    const Meeting& m = nearest.best;
+    return {m.gap, X_surface * m.on_solid, X_surface * m.on_surface, rotate(X_surface.q, m.normal)};
+}
+
+}  // namespace plab::detection

@@ -1,0 +1,75 @@
+/// A solid against a surface: the inside of a bowl or bore in closed form, triangles by their faces, edges and corners.
+///
+/// Both answer in the frame S of the surface. Normals point from the solid into what lies behind the surface.
+#pragma once
+
+#include "manifold.h"
+#include "narrow.h"
+#include "solid.h"
+
+namespace plab::detection
+{
+
+/// One place where a solid may touch a surface.
+struct Meeting
+{
+    double gap = 0;            ///< m; < 0: overlap
+    Vec3 on_solid, on_surface;
+    Vec3 normal;               ///< unit
+    std::uint32_t feature = 0;
+};
+
+/// Takes what is nearer than limit().
+class MeetingSink
+{
+public:
+    virtual ~MeetingSink() = default;
+    virtual double limit() const = 0;  ///< m
+    virtual void offer(const Meeting& meeting) = 0;
+};
+
+/// Bowls and bores. A ball meets the wall and the rim; of other solids the corners and round ends meet the wall, and edges
+/// that cross the opening meet the rim. The rim has no face of its own that something could lie on.
+void meet_round_wall(const Solid& K, const Collider& wall, MeetingSink& out);
+/// Triangles: a ball by its nearest points (each of them a least distance), others by their corners over faces, and by
+/// edges and corners of the surface that stand out (separation.h).
+void meet_triangles(const Solid& K, const Collider& surface, MeetingSink& out);
+
+/// K in the frame W of X_surface; both as narrow.h has it.
+void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface, Touches& out);
+/// Infinite for what is behind the surface altogether, or out of its way.
+Separation separation_from_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface);
+
+/// Calls visit(corner, number) for the corners of a solid that may be the furthest in direction d: of boxes and hulls all, of
+/// capsules the centres of both ends, of cylinders points of the rims (manifold.h),
+/// the furthest one first.
+template <class Visit>
+void visit_corners(const Solid& K, const Vec3& d, Visit&& visit)
+{
+    const Vec3& h = K.size();
+    switch (K.core())
+    {
+        case Core::Point:
+            return visit(K.pose().p, 0u);
+        case Core::Segment:
+            visit(K.pose().p - h.z * K.axis(2), 0u);
+            return visit(K.pose().p + h.z * K.axis(2), 1u);
+        case Core::Box:
+            for (std::uint32_t i = 0; i < 8; ++i) visit(K.from_local({i & 1 ? h.x : -h.x, i & 2 ? h.y : -h.y, i & 4 ? h.z : -h.z}), i);
+            return;
+        case Core::Hull:
+            for (std::uint32_t i = 0; i < K.hull().vertices.size(); ++i) visit(K.from_local(K.hull().vertices[i]), i);
+            return;
+        case Core::Cylinder:
+            for (std::uint32_t end = 0; end < 2; ++end)
+            {
+                const RimPoints rim = rim_points(K, end == 1, d);
+                const bool faces_it = dot(d, K.axis(2)) * (end == 1 ? 1 : -1) > 0.5;
+                for (std::uint32_t i = rim.count; i-- > 0;)
+                    if (faces_it || rim.id[i] == RimPoints::kFurthest) visit(rim.p[i], 8 * end + rim.id[i]);
+            }
+            return;
+    }
+}
+
+}  // namespace plab::detection

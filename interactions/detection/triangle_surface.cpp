@@ -1,0 +1,183 @@
+#include "triangle_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+namespace plab::detection
+{
+namespace
+{
+using Index = std::uint32_t;
+
+constexpr Index kLeaf = 4;         ///< triangles
+constexpr double kFlat = 1e-9;     ///< sine of the bend of an edge that counts as none
+constexpr double kSmooth = 0.707;  ///< cosine of the bend between triangles of one patch
+
+/// The first of vertices at the very same place stands for all of them.
+std::vector<Index> first_at_same_place(std::span<const Vec3> vertices)
+{
+    std::vector<Index> order(vertices.size()), out(vertices.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](Index i) { return std::tie(vertices[i].x, vertices[i].y, vertices[i].z); };
+    std::sort(order.begin(), order.end(), [&](Index i, Index j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
+    for (std::size_t k = 0; k < order.size(); ++k)
+        out[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? out[order[k - 1]] : order[k];
+    return out;
+}
+}  // namespace
+
+Result<TriangleSurface> TriangleSurface::make(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles)
+{
+    TriangleSurface out;
+    out.join(vertices, triangles);
+    if (out.triangles_.empty()) return reason("a surface needs at least one triangle that has an area");
+    if (!out.find_edges()) return reason("an edge of more than two triangles, or of two that face opposite ways, has no front");
+    out.find_corners();
+    out.find_patches();
+    out.build_tree();
+    return out;
+}
+
+void TriangleSurface::join(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles)
+{
+    points_.assign(vertices.begin(), vertices.end());
+    const std::vector<Index> first = first_at_same_place(vertices);
+    for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
+    {
+        Triangle triangle;
+        for (std::size_t i = 0; i < 3; ++i) triangle.corner[i] = first[triangles[t + i]];
+        const auto& c = triangle.corner;
+        const Vec3 e1 = points_[c[1]] - points_[c[0]], e2 = points_[c[2]] - points_[c[0]], area = cross(e1, e2);
+        if (!(length(area) > 1e-14 * (length_squared(e1) + length_squared(e2)))) continue;
+        triangle.normal = normalized(area);
+        for (std::size_t i = 0; i < 3; ++i)
+            triangle.inward[i] = normalized(cross(triangle.normal, points_[c[(i + 1) % 3]] - points_[c[i]]));
+        triangles_.push_back(triangle);
+    }
+}
+
+bool TriangleSurface::find_edges()
+{
+    std::map<std::pair<Index, Index>, Index> known;  // by direction
+    for (Index t = 0; t < triangles_.size(); ++t)
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            Triangle& triangle = triangles_[t];
+            const Index a = triangle.corner[i], b = triangle.corner[(i + 1) % 3];
+            if (known.contains({a, b})) return false;
+            const auto other = known.find({b, a});
+            const Index e = other == known.end() ? static_cast<Index>(edges_.size()) : other->second;
+            if (other == known.end()) edges_.emplace_back().a = a, edges_.back().b = b;
+            known.emplace(std::pair{a, b}, e);
+            const std::size_t side = other == known.end() ? 0 : 1;
+            edges_[e].side[side] = t, edges_[e].inward[side] = triangle.inward[i];
+            triangle.edge[i] = e;
+        }
+    for (Edge& e : edges_) e.sharp = e.border() || dot(triangles_[e.side[0]].normal, e.inward[1]) < -kFlat;
+    return true;
+}
+
+void TriangleSurface::find_corners()
+{
+    sharp_corner_.assign(points_.size(), 0), border_corner_.assign(points_.size(), 0);
+    corner_normal_.assign(points_.size(), Vec3{});
+    std::vector<Index> count(points_.size() + 1, 0);
+    for (const Edge& e : edges_)
+    {
+        ++count[e.a], ++count[e.b];
+        if (e.sharp) sharp_corner_[e.a] = sharp_corner_[e.b] = 1;
+        if (e.border()) border_corner_[e.a] = border_corner_[e.b] = 1;
+    }
+    std::inclusive_scan(count.begin(), count.end() - 1, count.begin());
+    beside_end_.assign(count.begin(), count.end() - 1);
+    std::vector<Index> at(points_.size());
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] = i == 0 ? 0 : beside_end_[i - 1];
+    beside_.resize(2 * edges_.size());
+    for (const Edge& e : edges_) beside_[at[e.a]++] = e.b, beside_[at[e.b]++] = e.a;
+    for (const Triangle& t : triangles_)
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const Vec3 u = points_[t.corner[(i + 1) % 3]] - points_[t.corner[i]], v = points_[t.corner[(i + 2) % 3]] - points_[t.corner[i]];
+            corner_normal_[t.corner[i]] += std::atan2(length(cross(u, v)), dot(u, v)) * t.normal;
+        }
+}
+
+/// Numbers in the order of the first triangle of each patch.
+void TriangleSurface::find_patches()
+{
+    std::vector<std::uint8_t> seen(triangles_.size(), 0);
+    std::vector<Index> open;
+    Index patches = 0;
+    for (Index seed = 0; seed < triangles_.size(); ++seed)
+    {
+        if (seen[seed]) continue;
+        seen[seed] = 1, open.push_back(seed);
+        while (!open.empty())
+        {
+            const Index t = open.back();
+            open.pop_back();
+            triangles_[t].patch = patches;
+            for (const Index e : triangles_[t].edge)
+                for (const Index next : edges_[e].side)
+                    if (next != kNone && !seen[next] && dot(triangles_[t].normal, triangles_[next].normal) > kSmooth)
+                        seen[next] = 1, open.push_back(next);
+        }
+        ++patches;
+    }
+}
+
+void TriangleSurface::bound(Node& node) const
+{
+    node.lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, node.upper = -node.lower;
+    for (Index i = node.first; i < node.first + node.count; ++i)
+        for (const Index corner : triangles_[order_[i]].corner)
+            for (int k = 0; k < 3; ++k)
+            {
+                node.lower[k] = std::min(node.lower[k], points_[corner][k]);
+                node.upper[k] = std::max(node.upper[k], points_[corner][k]);
+            }
+}
+
+/// Halves by number along the longest side of each box.
+void TriangleSurface::build_tree()
+{
+    order_.resize(triangles_.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    nodes_.push_back({{}, {}, 0, static_cast<Index>(order_.size())});
+    for (std::size_t n = 0; n < nodes_.size(); ++n)
+    {
+        bound(nodes_[n]);
+        const Node node = nodes_[n];
+        if (node.count <= kLeaf) continue;
+        const Vec3 size = node.upper - node.lower;
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+        const auto middle = [&](Index t)
+        {
+            const auto& c = triangles_[t].corner;
+            return points_[c[0]][axis] + points_[c[1]][axis] + points_[c[2]][axis];
+        };
+        const auto first = order_.begin() + node.first;
+        std::nth_element(first, first + node.count / 2, first + node.count,
+                         [&](Index s, Index t) { return middle(s) != middle(t) ? middle(s) < middle(t) : s < t; });
+        const Index left = static_cast<Index>(nodes_.size());
+        nodes_[n].first = left, nodes_[n].count = 0;
+        nodes_.push_back({{}, {}, node.first, node.count / 2});
+        nodes_.push_back({{}, {}, node.first + node.count / 2, node.count - node.count / 2});
+    }
+}
+
+bool TriangleSurface::leaves_corner(std::uint32_t corner, const Vec3& m, double tolerance) const
+{
+    for (Index i = corner == 0 ? 0 : beside_end_[corner - 1]; i < beside_end_[corner]; ++i)
+    {
+        const Vec3 along = points_[beside_[i]] - points_[corner];
+        if (dot(m, along) > tolerance * length(m) * length(along)) return false;
+    }
+    return true;
+}
+
+}  // namespace plab::detection

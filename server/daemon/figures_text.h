@@ -1,0 +1,21 @@
+/// Figures of a scene as text, for the files that plabd writes.
+#pragma once
+
+#include <string>
+
+#include "world/world.h"
+
+namespace plab::daemon
+{
+
+/// 17 significant digits; "null" for what is not finite.
+std::string number(double v);
+/// 16 hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
+/// What has motion, or values, of its own.
+bool is_told(const world::Component& component);
+/// What stands under "interactions": solvers have their groups (--explain).
+bool is_listed(const world::World& world, std::uint32_t component);
+
+}  // namespace plab::daemon

@@ -1,0 +1,119 @@
+#include "daemon/trace.h"
+
+#include <cerrno>
+#include <cinttypes>
+#include <cstring>
+
+#include "daemon/figures_text.h"
+#include "world/host_tables.h"
+
+namespace plab::daemon
+{
+namespace
+{
+
+/// Stands for the work that a component has done, which is no field of it.
+constexpr const char* kWork = "work";
+
+/// The numbers of a value; none of texts and of what only a plugin can read.
+std::vector<double> numbers_of(const Value& value)
+{
+    if (const auto* v = std::get_if<double>(&value)) return {*v};
+    if (const auto* v = std::get_if<std::int64_t>(&value)) return {static_cast<double>(*v)};
+    if (const auto* v = std::get_if<bool>(&value)) return {*v ? 1.0 : 0.0};
+    if (const auto* v = std::get_if<Vec3>(&value)) return {v->x, v->y, v->z};
+    if (const auto* v = std::get_if<Quat>(&value)) return {v->w, v->x, v->y, v->z};
+    if (const auto* v = std::get_if<Reals>(&value)) return *v;
+    return {};
+}
+
+/// What the columns of a value are called behind "ID.field".
+std::vector<std::string> suffixes_of(const Value& value)
+{
+    if (std::holds_alternative<Vec3>(value)) return {".x", ".y", ".z"};
+    if (std::holds_alternative<Quat>(value)) return {".w", ".x", ".y", ".z"};
+    std::vector<std::string> out(numbers_of(value).size());
+    if (!std::holds_alternative<Reals>(value)) return out;
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = "." + std::to_string(k + 1);
+    return out;
+}
+
+/// An id or a name in a line of CSV.
+std::string cell(const std::string& text)
+{
+    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + "\"";
+}
+
+std::vector<std::string> fields_of_object(const world::Component& c)
+{
+    if (c.facet == Facet::Quantities) return {"values"};
+    if (c.facet == Facet::Shaft) return {"angle", "angular_velocity"};
+    return {"position", "orientation", "linear_velocity", "angular_velocity"};
+}
+
+Value value_of(const simulation::Simulation& s, std::uint32_t i, const std::string& field)
+{
+    const world::Component& c = s.world().component(i);
+    // Not every type of body declares all of its motion: what stands still has no speed to set, and is traced all the same.
+    if (c.facet == Facet::Body || c.facet == Facet::Shaft) return world::get_hosted(s.world().host(), c.facet, c.host_index, field);
+    if (field != kWork) return s.world().get(i, field);
+    const std::vector<double>& work = s.stepper().work();
+    return Value(i < work.size() ? work[i] : 0.0);
+}
+
+}  // namespace
+
+void Trace::add(const simulation::Simulation& s, std::uint32_t i, const std::string& field, bool output, std::string& header)
+{
+    const std::vector<std::string> suffixes = suffixes_of(value_of(s, i, field));
+    if (suffixes.empty()) return;
+    columns_.push_back({s.world().id_of(i), field, suffixes.size(), output});
+    for (const std::string& suffix : suffixes) header += "," + cell(s.world().id_of(i) + "." + field + suffix);
+}
+
+Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simulation::Simulation& s, double every)
+{
+    std::unique_ptr<Trace> trace(new Trace);
+    trace->file_.reset(std::fopen(file.c_str(), "w"));
+    if (!trace->file_) return reason("cannot write " + file + ": " + std::strerror(errno));
+    trace->every_ = every;
+    std::string header = "time,step,hash,energy,kinetic,momentum_x,momentum_y,momentum_z";
+    const world::World& world = s.world();
+    for (const std::uint32_t i : world.in_id_order())
+        if (is_told(world.component(i)))
+            for (const std::string& field : fields_of_object(world.component(i))) trace->add(s, i, field, false, header);
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        if (!is_listed(world, i)) continue;
+        trace->add(s, i, kWork, true, header);
+        for (const Field& field : world.table_of(i).schema().fields())
+            if (field.kind == FieldKind::Output) trace->add(s, i, field.name, true, header);
+    }
+    std::fprintf(trace->file_.get(), "%s\n", header.c_str());
+    return trace;
+}
+
+void Trace::sample(const simulation::Simulation& s, bool last)
+{
+    if (s.tick() == last_ || (!last && s.time() < next_ * (1 - 1e-12))) return;
+    last_ = s.tick();
+    while (every_ > 0 && next_ <= s.time() * (1 + 1e-12)) next_ += every_;
+    const simulation::Totals t = s.totals();
+    std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + hash_text(s.state_hash());
+    for (const double v : {t.kinetic + t.stored, t.kinetic, t.momentum.x, t.momentum.y, t.momentum.z}) row += "," + number(v);
+    for (const Columns& c : columns_)
+    {
+        // Who is gone, or has been exchanged for a type without that output, leaves its columns empty.
+        const std::uint32_t i = s.world().find(c.component);
+        const bool there = i != kNoIndex && (c.output ? is_listed(s.world(), i) : is_told(s.world().component(i)));
+        const bool known = there && (!c.output || c.field == kWork || s.world().table_of(i).schema().find_field(c.field));
+        const std::vector<double> values = known ? numbers_of(value_of(s, i, c.field)) : std::vector<double>{};
+        for (std::size_t k = 0; k < c.count; ++k) row += "," + (k < values.size() ? number(values[k]) : std::string());
+    }
+    std::fprintf(file_.get(), "%s\n", row.c_str());
+}
+
+}  // namespace plab::daemon

@@ -1,0 +1,44 @@
+/// The course that plabd writes, as CSV. Columns are documented in server/docs/output.md.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simulation/simulation.h"
+
+namespace plab::daemon
+{
+
+class Trace
+{
+public:
+    /// Writes the header. Columns are those of the components that the scene has now.
+    static Result<std::unique_ptr<Trace>> open(const std::string& file, const simulation::Simulation& simulation, double every);
+    /// A row if the time for one has come; always if `last`.
+    void sample(const simulation::Simulation& simulation, bool last = false);
+
+private:
+    Trace() = default;
+    struct Closer
+    {
+        void operator()(std::FILE* f) const { std::fclose(f); }
+    };
+    /// A field of a component, in as many columns as its value had numbers at the start.
+    struct Columns
+    {
+        std::string component, field;
+        std::size_t count = 1;
+        bool output = false;  ///< of an interaction: whoever takes its place may not have it
+    };
+    void add(const simulation::Simulation& simulation, std::uint32_t component, const std::string& field, bool output, std::string& header);
+
+    std::unique_ptr<std::FILE, Closer> file_;
+    std::vector<Columns> columns_;
+    double every_ = 0;
+    double next_ = 0;
+    Tick last_ = -1;
+};
+
+}  // namespace plab::daemon

@@ -1,0 +1,31 @@
+/// Shape/HeightField: ground given by its heights over a grid of squares.
+///
+///   z(i, k) = heights[k * columns + i] + wave_height sin(2 pi x / wave_length) sin(2 pi y / wave_length) + roughness u,
+///   x = (i - (columns - 1) / 2) spacing,  y = (k - (rows - 1) / 2) spacing,  u uniform in [-1, 1)
+///
+/// Each square is cut into two triangles from (i, k) to (i + 1, k + 1). Below them is solid; beyond the border is nothing.
+#pragma once
+
+#include "shape_columns.h"
+
+namespace plab::shapes
+{
+
+struct HeightFieldRows
+{
+    ShapeColumns shape;
+    Column<std::int64_t> columns, rows;
+    Column<double> spacing;  ///< m
+    Column<Reals> heights;   ///< m, row by row along x; none: 0
+    Column<double> wave_height, wave_length, roughness;  ///< m
+    Column<std::int64_t> seed;
+
+    void describe(Schema& schema);
+};
+
+/// Refuses heights that are not columns * rows numbers.
+Result<void> prepare_height_field(const StepContext& context, Row row, const HeightFieldRows& fields, Shapes& shapes);
+/// Always refuses: a surface has no mass.
+Result<void> measure_height_field(Row row, const HeightFieldRows& fields, MassProperties& solid);
+
+}  // namespace plab::shapes

@@ -1,0 +1,52 @@
+#include "publish/busy.h"
+
+#include <cstdio>
+
+#include "simulation/clock.h"
+#include "simulation/step/step_tree.h"
+
+namespace plab::publish
+{
+
+Busy words_of(const simulation::Progress::Look& look, std::uint64_t now_ns)
+{
+    Busy out;
+    const std::string step = "step " + std::to_string(look.step);
+    switch (look.activity)
+    {
+        case simulation::Activity::Nothing:
+        case simulation::Activity::Step:
+            out.what = step;
+            break;
+        case simulation::Activity::TrialOfOld:
+            out.what = "trial of a swap at " + step + ", with the old";
+            break;
+        case simulation::Activity::TrialOfNew:
+            out.what = "trial of a swap at " + step + ", with the new";
+            break;
+        case simulation::Activity::Again:
+            out.what = step + " again";
+            break;
+    }
+    out.what += ": " + std::string(simulation::kStepTree[look.node].name);
+    out.seconds = now_ns > look.since_ns ? 1e-9 * static_cast<double>(now_ns - look.since_ns) : 0;
+    out.work = look.work;
+    return out;
+}
+
+Busy busy_of(const simulation::Progress& progress, double least)
+{
+    const simulation::Progress::Look look = progress.look();
+    if (look.activity == simulation::Activity::Nothing) return {};
+    Busy out = words_of(look, simulation::now_ns());
+    return out.seconds < least ? Busy{} : out;
+}
+
+std::string text_of(const Busy& busy)
+{
+    char time[32];
+    std::snprintf(time, sizeof time, "%.1f", busy.seconds);
+    return busy.what + ", for " + time + " s, " + std::to_string(busy.work) + " evaluations and looks";
+}
+
+}  // namespace plab::publish

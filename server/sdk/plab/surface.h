@@ -1,0 +1,38 @@
+/// Surfaces that solids touch from their front, also concave ones: a bowl, a bore, triangles. Behind them is solid. For
+/// bodies that forces do not move.
+///
+/// Their geometry is a mesh, which is their picture, with hull_collides false. A mesh has no size of its own: what it
+/// collides as is kept there, so that a table of shapes needs no further column.
+#pragma once
+
+#include "plab/tables.h"
+
+namespace plab
+{
+
+enum class Surface : std::uint8_t
+{
+    None,
+    Bowl,       ///< the inside of the sphere of `radius` around the origin of S, where z <= reach
+    Bore,       ///< the inside of the cylinder of `radius` about z of S, where |z| <= reach
+    Triangles,  ///< the mesh's triangles, from where they are seen counter-clockwise
+};
+
+/// `radius`, `reach` (m): of bowls and bores.
+inline void set_surface(Geometry& mesh, Surface surface, double radius = 0, double reach = 0)
+{
+    mesh.hull_collides = false;
+    mesh.size = {radius, static_cast<double>(surface), reach};
+}
+
+inline Surface surface_of(const Geometry& geometry)
+{
+    if (geometry.kind != GeometryKind::Mesh || geometry.hull_collides || !(geometry.size.y > 0)) return Surface::None;
+    return static_cast<Surface>(static_cast<int>(geometry.size.y));
+}
+
+/// m; of what surface_of() says is a bowl or a bore.
+inline double surface_radius(const Geometry& geometry) { return geometry.size.x; }
+inline double surface_reach(const Geometry& geometry) { return geometry.size.z; }
+
+}  // namespace plab

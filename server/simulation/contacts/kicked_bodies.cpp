@@ -1,0 +1,116 @@
+#include "simulation/contacts/kicked_bodies.h"
+
+#include <algorithm>
+
+#include "plab/free_rotation.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+Vec3 scaled(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+}  // namespace
+
+void turn_freely(Bodies& bodies, std::uint32_t b, const Vec3& lacking, double h)
+{
+    const Quat start = bodies.orientation[b];
+    const bool needle = bodies.needle[b] != 0;
+    const RigidMember member{start, bodies.inertia_B[b], bodies.inverse_inertia_B[b], bodies.mass[b], needle};
+    const PrincipalAxes principal = principal_axes(member);
+    const auto to_P = [&](const Vec3& v_W) { return transposed_times(principal.axes, rotate_back(start, v_W)); };
+    // A needle's spin is its state: its smallest inertia times that has all digits, its momentum in W has not.
+    const Vec3 own = needle ? scaled(principal.moment, to_P(bodies.angular_velocity[b])) : to_P(bodies.angular_momentum[b]);
+    const Vec3 lack = to_P(lacking), turning = own - lack;
+    if (turning == Vec3{} || !is_finite(turning)) return;
+    const FreeTop top(principal, turning);
+    const Quat turn_P = top.turn(h);
+    const Vec3 axis_B = principal.axes * Vec3{turn_P.x, turn_P.y, turn_P.z};
+    bodies.orientation[b] = normalized(start * Quat{turn_P.w, axis_B.x, axis_B.y, axis_B.z});
+    if (needle)
+    {
+        const Vec3 momentum = top.momentum(h) + rotate_back(turn_P, lack);
+        bodies.angular_velocity[b] = rotate(bodies.orientation[b], principal.axes * scaled(principal.reciprocal, momentum));
+    }
+    bodies.refresh_spin(b);
+}
+
+void KickedBodies::kick(GroupSystem& system, Bodies& bodies, std::span<const std::uint32_t> members, double h)
+{
+    system_ = &system, bodies_ = &bodies, members_ = members;
+    before_.resize(members.size());
+    for (std::size_t k = 0; k < members.size(); ++k)
+    {
+        before_[k] = {speeds(k, false), bodies.kinetic_energy(body(k))};
+        system.kick(members[k], h);
+    }
+}
+
+KickedBodies::Speeds KickedBodies::speeds(std::size_t k, bool mean) const
+{
+    const std::uint32_t b = body(k);
+    const Vec3& spin = bodies_->angular_velocity[b];
+    Speeds now{bodies_->velocity[b], bodies_->needle[b] != 0 ? rotate_back(bodies_->orientation[b], spin) : bodies_->angular_momentum[b],
+               spin};
+    if (!mean) return now;
+    const Speeds& then = before_[k].speeds;
+    return {(then.velocity + now.velocity) * 0.5, (then.momentum + now.momentum) * 0.5, (then.spin + now.spin) * 0.5};
+}
+
+double KickedBodies::power(std::size_t k, const Speeds& speeds) const
+{
+    return bodies_->mass[body(k)] * dot(system_->acceleration(members_[k]), speeds.velocity) +
+           dot(system_->torque(members_[k]), speeds.spin);
+}
+
+double KickedBodies::work_of_contacts(double h) const
+{
+    double sum = 0;
+    for (std::size_t k = 0; k < members_.size(); ++k)
+        sum += bodies_->kinetic_energy(body(k)) - before_[k].energy - power(k, speeds(k, true)) * h;
+    return sum;
+}
+
+void KickedBodies::move(double h)
+{
+    for (std::size_t k = 0; k < members_.size(); ++k)
+    {
+        const std::uint32_t b = body(k);
+        bodies_->position[b] += bodies_->velocity[b] * h;
+        turn_freely(*bodies_, b, {}, h);
+    }
+}
+
+double KickedBodies::move_mean(double h)
+{
+    constexpr double kRounding = 1e-13;
+    const double taken = -work_of_contacts(h);
+    double turned = 0, size = 0;
+    kept_.clear();
+    for (std::size_t k = 0; k < members_.size(); ++k)
+    {
+        const std::uint32_t b = body(k);
+        kept_.push_back({bodies_->orientation[b], bodies_->angular_velocity[b], bodies_->kinetic_energy(b)});
+        const Speeds mean = speeds(k, true);
+        bodies_->position[b] += mean.velocity * h;
+        const Vec3 lacking = bodies_->needle[b] != 0 ? bodies_->inertia_B[b] * (speeds(k, false).momentum - mean.momentum)
+                                                     : bodies_->angular_momentum[b] - mean.momentum;
+        turn_freely(*bodies_, b, bodies_->needle[b] != 0 ? rotate(bodies_->orientation[b], lacking) : lacking, h);
+        turned += bodies_->kinetic_energy(b) - kept_[k].energy, size += before_[k].energy + kept_[k].energy;
+    }
+    if (!(turned > std::max(taken, 0.0) + kRounding * size)) return turned - taken;
+    for (std::size_t k = 0; k < members_.size(); ++k)
+    {
+        const std::uint32_t b = body(k);
+        const double gain = bodies_->kinetic_energy(b) - kept_[k].energy;
+        if (!(gain > 0)) continue;
+        turned -= gain;
+        bodies_->orientation[b] = kept_[k].orientation, bodies_->angular_velocity[b] = kept_[k].spin;
+        bodies_->refresh_spin(b);
+        turn_freely(*bodies_, b, {}, h);
+    }
+    return turned - taken;
+}
+
+}  // namespace plab::simulation

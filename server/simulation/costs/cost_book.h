@@ -1,0 +1,73 @@
+/// What steps cost: sums since the scene was built, and the last steps one by one for medians with their spread.
+#pragma once
+
+#include "simulation/costs/cost_meter.h"
+#include "simulation/costs/spread.h"
+
+namespace plab::simulation
+{
+
+/// The last costs of one account, ns a step.
+class CostWindow
+{
+public:
+    void push(double ns)
+    {
+        ns_[next_] = static_cast<float>(ns);
+        next_ = (next_ + 1) % kLength;
+        count_ = count_ < kLength ? count_ + 1 : kLength;
+    }
+    void clear() { next_ = count_ = 0; }
+    Spread spread() const;
+
+private:
+    static constexpr std::uint32_t kLength = 64;
+    std::array<float, kLength> ns_{};
+    std::uint32_t next_ = 0, count_ = 0;
+};
+
+class CostBook
+{
+public:
+    /// After a change of structure. `owners`: by component, the table of those that are timed by themselves, else kNoIndex.
+    /// Who is new, or of another type than before, begins anew.
+    void rebuild(std::span<const std::uint32_t> owners, std::size_t tables);
+    /// A component has gone; whoever gets its place begins anew.
+    void forget(std::uint32_t component)
+    {
+        if (component < own_.size()) own_[component] = {};
+    }
+    /// A step is over; takes the accounts and clears them.
+    void book(CostAccounts& accounts);
+
+    std::uint64_t steps() const { return steps_; }  ///< booked
+    /// Mean since the scene was built, ns a step: of the whole step (all threads), and of what is no component's.
+    double mean() const { return mean_of(total_); }
+    double mean_of_host() const { return mean_of(host_total_); }
+    double mean_of_component(std::uint32_t i) const { return i < own_.size() ? mean_of(own_[i].total) : 0.0; }
+    double mean_of_table(std::uint32_t t) const { return t < tables_.size() ? mean_of(tables_[t].total) : 0.0; }
+    /// Of the last steps.
+    Spread step() const { return step_.spread(); }
+    Spread host() const { return host_.spread(); }
+    Spread of_component(std::uint32_t i) const { return owns(i) ? own_[i].window.spread() : Spread{}; }
+    Spread of_table(std::uint32_t t) const { return t < tables_.size() ? tables_[t].window.spread() : Spread{}; }
+    bool owns(std::uint32_t i) const { return i < own_.size() && own_[i].table != kNone; }
+
+private:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    struct Account
+    {
+        std::uint32_t table = kNone;
+        double total = 0;
+        CostWindow window;
+    };
+    double mean_of(double total) const { return steps_ == 0 ? 0.0 : total / static_cast<double>(steps_); }
+
+    std::vector<Account> own_, tables_;
+    std::vector<std::uint32_t> owners_;
+    CostWindow step_, host_;
+    double total_ = 0, host_total_ = 0;
+    std::uint64_t steps_ = 0;
+};
+
+}  // namespace plab::simulation

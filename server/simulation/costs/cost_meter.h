@@ -1,0 +1,89 @@
+/// Where the time of a step goes. One meter for each thread that steps: what it measures is exclusive, so that all accounts
+/// together are the time between start() and stop().
+#pragma once
+
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <vector>
+
+#include "plab/stage.h"
+#include "simulation/clock.h"
+
+namespace plab::simulation
+{
+
+/// ns by account. Commands of dear types are timed for each component; those of cheap ones by type, and its rows share that.
+struct CostAccounts
+{
+    std::vector<std::int64_t> by_component;
+    std::vector<std::int64_t> by_table;
+    std::vector<std::uint32_t> phases;  ///< by table: which phases ran, as bits; never cleared
+    std::int64_t host = 0;  ///< whatever is no component's: contacts over time, mementos, the loop
+
+    void fit(std::size_t components, std::size_t tables)
+    {
+        by_component.resize(components, 0);
+        by_table.resize(tables, 0), phases.resize(tables, 0);
+    }
+    void clear();
+    CostAccounts& operator+=(const CostAccounts& other);
+    std::int64_t sum() const;
+};
+
+class CostMeter
+{
+public:
+    CostAccounts& accounts() { return accounts_; }
+    const CostAccounts& accounts() const { return accounts_; }
+
+    void start() { depth_ = 0, current_[0] = &accounts_.host, since_ = now(); }
+    /// All scopes have ended.
+    void stop() { accounts_.host += now() - since_; }
+
+    /// From now on time is that account's, until leave(). Two clock calls, some 40 ns, for each pair.
+    void enter(std::int64_t& account)
+    {
+        const std::int64_t at = now();
+        *current_[depth_] += at - since_;
+        since_ = at;
+        assert(depth_ + 1 < kDeepest);
+        current_[++depth_] = &account;
+    }
+    /// `weight`: one call of so many is measured; the others' share is taken off whoever calls.
+    void leave(std::int64_t weight = 1)
+    {
+        const std::int64_t at = now(), passed = at - since_;
+        *current_[depth_] += weight * passed;
+        *current_[--depth_] -= (weight - 1) * passed;
+        since_ = at;
+    }
+
+    std::int64_t& of_component(std::uint32_t i) { return accounts_.by_component[i]; }
+    std::int64_t& of_table(std::uint32_t t) { return accounts_.by_table[t]; }
+    void ran(std::uint32_t table, Phase phase) { accounts_.phases[table] |= 1u << static_cast<unsigned>(phase); }
+
+private:
+    static constexpr std::size_t kDeepest = 32;
+    static std::int64_t now() { return static_cast<std::int64_t>(now_ns()); }
+
+    CostAccounts accounts_;
+    std::array<std::int64_t*, kDeepest> current_{};
+    std::size_t depth_ = 0;
+    std::int64_t since_ = 0;
+};
+
+/// Time of a scope goes to an account.
+class CostScope
+{
+public:
+    CostScope(CostMeter& meter, std::int64_t& account) : meter_(meter) { meter.enter(account); }
+    ~CostScope() { meter_.leave(); }
+    CostScope(const CostScope&) = delete;
+    CostScope& operator=(const CostScope&) = delete;
+
+private:
+    CostMeter& meter_;
+};
+
+}  // namespace plab::simulation

@@ -1,0 +1,211 @@
+// How far two bodies are apart and until when they stay so, for bodies of several shapes too. A detection measures the two shapes that are
+// nearest; of the others the host knows how wide they are apart along some direction, which is no more than their gap: exact against
+// planes.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "plab/rotation.h"
+#include "simulation/events/event_locator.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// Directions square to the faces of a box, which is where it is likely to be apart from others.
+std::array<Vec3, 3> face_normals(const Shapes& shapes, const Mover& m)
+{
+    const ShapeExtent& e = *m.extent;
+    if (e.shape == kNoIndex || shapes.geometry[e.shape].kind != GeometryKind::Box) return {};
+    const Quat q = m.now.orientation * e.in_body.q;
+    return {rotate(q, {1, 0, 0}), rotate(q, {0, 1, 0}), rotate(q, {0, 0, 1})};
+}
+
+}  // namespace
+
+/// m/s: sum of the speeds of a point of each.
+double EventLocator::speeds_at(Ref a, const Vec3& point_a, Ref b, const Vec3& point_b) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    return length(bodies.velocity_at(a.index, point_a)) + length(bodies.velocity_at(b.index, point_b));
+}
+
+double EventLocator::smaller_radius(Ref a, Ref b) const
+{
+    const double radius = std::min(s_->radius_of_body_[a.index], s_->radius_of_body_[b.index]);
+    return std::isfinite(radius) ? radius : 0.0;
+}
+
+/// m: overlaps up to this, and sinking so far in a step, are rounding of where the two are and how they move.
+double EventLocator::slack_of(Ref a, Ref b, double speed) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    return 0x1p-46 * (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]) + speed * s_->frame_.step);
+}
+
+/// Contacts that overlap, and close within a whole step, by rounding only.
+bool EventLocator::slides(std::span<const FoundContact> contacts) const
+{
+    return std::all_of(contacts.begin(), contacts.end(),
+                       [&](const FoundContact& f)
+                       {
+                           const Contact& c = f.contact;
+                           const double rate = s_->normal_velocity(c), slack = slack_of(c.a, c.b, speeds_at(c.a, c.point, c.b, c.point));
+                           return c.depth <= slack && -rate * s_->frame_.step <= slack;
+                       });
+}
+
+/// Two shapes that touch, and sink no deeper than rounding in the rest of the step.
+bool EventLocator::slides(const Candidate& candidate, const ShapeGap& g, double time) const
+{
+    const double slack = slack_of(candidate.a, candidate.b, speeds_at(candidate.a, g.point_a, candidate.b, g.point_b));
+    const double left = s_->frame_.step - time;
+    return std::fabs(g.gap) <= slack && left > 0 && clearance_of(candidate, g, left).along(g.normal, slack) >= left;
+}
+
+/// Of the two bodies where they are now, or of two shapes of them.
+Clearance EventLocator::clearance_of(const Candidate& candidate, double left) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const std::uint32_t a = candidate.a.index, b = candidate.b.index;
+    return {bodies, s_->world_.host().shapes, mover(a, BodyState::of(bodies, a)), mover(b, BodyState::of(bodies, b)), left};
+}
+
+Clearance EventLocator::clearance_of(const Candidate& candidate, const ShapeGap& gap, double left) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    Mover a = mover(candidate.a.index, BodyState::of(bodies, candidate.a.index)),
+          b = mover(candidate.b.index, BodyState::of(bodies, candidate.b.index));
+    a.extent = gap.shape_a, b.extent = gap.shape_b;
+    return {bodies, s_->world_.host().shapes, a, b, left};
+}
+
+/// The direction along which two shapes are widest apart, of those that are likely to be it.
+EventLocator::ShapeGap EventLocator::gap_of_shapes(const Candidate& candidate, const ShapeExtent& shape_a, const ShapeExtent& shape_b,
+                                                   const Vec3& hint) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const Shapes& shapes = s_->world_.host().shapes;
+    ShapeGap out{&shape_a, &shape_b, -HUGE_VAL, hint, {}, {}, false};
+    const Clearance clearance = clearance_of(candidate, out, s_->frame_.step);
+    const Mover a{candidate.a.index, nullptr, &shape_a, BodyState::of(bodies, candidate.a.index)};
+    const Mover b{candidate.b.index, nullptr, &shape_b, BodyState::of(bodies, candidate.b.index)};
+    if (Vec3 n; clearance.find_half_space(n, out.gap))
+    {
+        const bool first = shape_a.is_plane;
+        const Mover& solid = first ? b : a;
+        out.normal = n, out.exact = true;
+        const Vec3 p = solid.now.position + support_point(bodies, shapes, solid.body, *solid.extent, solid.now.orientation, first ? -n : n);
+        out.point_a = first ? p - n * out.gap : p, out.point_b = first ? p : p + n * out.gap;
+        return out;
+    }
+    const auto offer = [&](const Vec3& n)
+    {
+        const double size = length(n);
+        if (!(size > 0)) return;
+        for (const double sign : {1.0, -1.0})
+            if (const double width = clearance.width_along(n * (sign / size)); width > out.gap)
+                out.gap = width, out.normal = n * (sign / size);
+    };
+    offer(hint);
+    const auto middle = [&](const Mover& m)
+    { return m.now.position + rotate(m.now.orientation, m.extent->in_body.p - bodies.center_B[m.body]); };
+    offer(middle(b) - middle(a));
+    for (const Mover* m : {&a, &b})
+        for (const Vec3& n : face_normals(shapes, *m)) offer(n);
+    out.point_a = middle(a), out.point_b = middle(b);
+    return out;
+}
+
+/// Of two bodies of which one has several shapes: how far each of the one is from each of the other. Which two are nearest is measured.
+void EventLocator::list_shape_gaps(const Candidate& candidate, const GapQuery& nearest)
+{
+    shape_gaps_.clear();
+    const BodyExtent &ea = extents_[candidate.a.index], &eb = extents_[candidate.b.index];
+    if (ea.shapes.size() <= 1 && eb.shapes.size() <= 1) return;
+    std::size_t best = 0;
+    double least = HUGE_VAL;
+    for (const ShapeExtent& a : ea.shapes)
+        for (const ShapeExtent& b : eb.shapes)
+        {
+            if (a.shape == kNoIndex || b.shape == kNoIndex || (a.is_plane && b.is_plane)) continue;
+            ShapeGap& g = shape_gaps_.emplace_back(gap_of_shapes(candidate, a, b, nearest.normal));
+            // No two others are as near along the normal of the nearest.
+            const double width = g.exact ? (g.normal == nearest.normal ? g.gap : HUGE_VAL)
+                                         : clearance_of(candidate, g, s_->frame_.step).width_along(nearest.normal);
+            if (const double off = std::fabs((std::isfinite(width) ? width : g.gap) - nearest.gap); off < least)
+                least = off, best = shape_gaps_.size() - 1;
+        }
+    budget_.spend(0.25 * static_cast<double>(shape_gaps_.size()));
+    if (shape_gaps_.empty()) return;
+    ShapeGap& g = shape_gaps_[best];
+    g.gap = nearest.gap, g.normal = nearest.normal, g.point_a = nearest.point_a, g.point_b = nearest.point_b, g.exact = true;
+    std::swap(shape_gaps_.front(), g);
+}
+
+/// How far the pair is apart where it is now, at `time`. Where the shapes that are nearest just slide along one another, it is the planes
+/// beside them that may be met.
+GapQuery EventLocator::measure(const Candidate& candidate, double time)
+{
+    const Detector& detector = s_->detectors_[candidate.detector];
+    world::Table& table = *s_->world_.tables()[detector.table];
+    GapQuery query;
+    query.a = candidate.a, query.b = candidate.b;
+    StepContext context;
+    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+    PhaseCall call;
+    call.context = &context, call.rows = Rows(&detector.row, 1);
+    call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.gap = &query;
+    (void)detector.gap->run(call, table.rows());
+    budget_.spend(1);
+    list_shape_gaps(candidate, query);
+    if (shape_gaps_.empty() || !slides(candidate, shape_gaps_.front(), time)) return query;
+    const ShapeGap* next = nullptr;
+    for (const ShapeGap& g : shape_gaps_)
+        if (g.exact && (!next || g.gap < next->gap) && !slides(candidate, g, time)) next = &g;
+    if (next) query.gap = next->gap, query.point_a = next->point_a, query.point_b = next->point_b, query.normal = next->normal;
+    return query;
+}
+
+/// s from the last look until which they cannot come nearer than `slack` (m) deep; `closing`: the first-order bound on their speed, m/s.
+double EventLocator::clear_for(const Candidate& candidate, const Look& look, const Vec3& turn, double slack, double& closing) const
+{
+    const double left = s_->frame_.step - look.time;
+    const Clearance whole = clearance_of(candidate, left);
+    closing = whole.fastest_closing(look.query.normal);
+    const double balls = whole.of_balls();
+    if (shape_gaps_.empty()) return std::max(balls, whole.along(look.query.normal, std::max(0.0, look.query.gap) + slack, turn));
+    double clear = left;
+    for (const ShapeGap& g : shape_gaps_)
+    {
+        const Clearance clearance = clearance_of(candidate, g, left);
+        // None is nearer than the nearest.
+        double of_shapes = std::max(clearance.in_any_direction(std::max(g.gap, shape_gaps_.front().gap)), clearance.of_balls());
+        const bool is_nearest = g.normal == look.query.normal && g.gap == look.query.gap;
+        const double allowed = is_nearest ? slack : std::fabs(g.gap) <= look.slack ? look.slack : 0.0;
+        const double open = std::max(0.0, g.gap) + allowed;
+        if (of_shapes < left && open > 0) of_shapes = std::max(of_shapes, clearance.along(g.normal, open, is_nearest ? turn : Vec3{}));
+        clear = std::min(clear, of_shapes);
+    }
+    return std::max(balls, clear);
+}
+
+/// Whether nothing of the pair met between two looks, `last` the last one.
+bool EventLocator::was_clear(const Candidate& candidate, const Look& clear, const Look& last) const
+{
+    const double left = s_->frame_.step - last.time, ago = last.time - clear.time;
+    const Vec3 turn = turn_between(clear, last);
+    if (shape_gaps_.empty()) return clearance_of(candidate, left).was_clear(last.query.normal, std::max(last.query.gap, 0.0), ago, turn);
+    return std::all_of(
+        shape_gaps_.begin(), shape_gaps_.end(),
+        [&](const ShapeGap& g)
+        {
+            const bool is_nearest = g.normal == last.query.normal && g.gap == last.query.gap;
+            const double allowed = !is_nearest && std::fabs(g.gap) <= last.slack ? last.slack : 0;
+            return clearance_of(candidate, g, left).was_clear(g.normal, std::max(g.gap, 0.0) + allowed, ago, is_nearest ? turn : Vec3{});
+        });
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,91 @@
+/// What the step thread is at, for other threads: written without locks as the work goes on, read by whoever shows it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace plab::simulation
+{
+
+enum class Activity : std::uint8_t
+{
+    Nothing,  ///< between two steps
+    Step,
+    TrialOfOld,  ///< a swap's first step with the old component
+    TrialOfNew,
+    Again,  ///< steps of the past are made again
+};
+
+class Progress
+{
+public:
+    struct Look
+    {
+        Activity activity = Activity::Nothing;
+        std::uint8_t node = 0;         ///< of the step tree: what the step is at
+        std::int64_t step = 0;         ///< that follows on this many
+        std::uint64_t since_ns = 0;    ///< monotonic, when the activity began
+        std::uint64_t node_ns = 0;     ///< monotonic, when the node began
+        std::uint64_t work = 0;        ///< evaluations of forces, looks at contacts and events so far
+    };
+
+    // Step thread ------------------------------------------------------------------------------------------------------
+    void begin(Activity activity, std::int64_t step, std::uint64_t now_ns)
+    {
+        const Change change(version_);
+        activity_.store(activity, relaxed), step_.store(step, relaxed), since_.store(now_ns, relaxed);
+        node_.store(0, relaxed), node_since_.store(now_ns, relaxed), work_.store(0, relaxed);
+    }
+    void enter(std::uint8_t node, std::uint64_t now_ns)
+    {
+        const Change change(version_);
+        node_.store(node, relaxed), node_since_.store(now_ns, relaxed);
+    }
+    /// Also by the threads that help it: a count may be lost between two of them.
+    void count() { work_.store(work_.load(relaxed) + 1, relaxed); }
+    void end()
+    {
+        const Change change(version_);
+        activity_.store(Activity::Nothing, relaxed);
+    }
+
+    // Any thread -------------------------------------------------------------------------------------------------------
+    Look look() const
+    {
+        for (;;)
+        {
+            const std::uint32_t before = version_.load(std::memory_order_acquire);
+            Look out{activity_.load(relaxed),   node_.load(relaxed),       step_.load(relaxed),
+                     since_.load(relaxed),      node_since_.load(relaxed), work_.load(relaxed)};
+            std::atomic_thread_fence(std::memory_order_acquire);
+            if (before % 2 == 0 && version_.load(relaxed) == before) return out;
+        }
+    }
+
+private:
+    static constexpr auto relaxed = std::memory_order_relaxed;
+    /// Odd while it lasts: who reads meanwhile reads again.
+    class Change
+    {
+    public:
+        explicit Change(std::atomic<std::uint32_t>& version) : version_(version)
+        {
+            version_.store(version_.load(relaxed) + 1, relaxed);
+            std::atomic_thread_fence(std::memory_order_release);
+        }
+        ~Change() { version_.store(version_.load(relaxed) + 1, std::memory_order_release); }
+        Change(const Change&) = delete;
+        Change& operator=(const Change&) = delete;
+
+    private:
+        std::atomic<std::uint32_t>& version_;
+    };
+
+    std::atomic<std::uint32_t> version_{0};
+    std::atomic<Activity> activity_{Activity::Nothing};
+    std::atomic<std::uint8_t> node_{0};
+    std::atomic<std::int64_t> step_{0};
+    std::atomic<std::uint64_t> since_{0}, node_since_{0}, work_{0};
+};
+
+}  // namespace plab::simulation

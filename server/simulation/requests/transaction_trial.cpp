@@ -1,0 +1,221 @@
+// A transaction's trials: one step with the old components and one with the new ones, of those whom the request can touch.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/values.h"
+#include "simulation/clock.h"
+#include "simulation/requests/transaction.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const StepOutcome kNotTried{kNaN, {kNaN, kNaN, kNaN}, kNaN, kNaN};
+
+constexpr double kLeastBudget = 5e6;    // ns
+constexpr double kUnknownBudget = 1e8;  // ns: while no step has told what one costs
+constexpr double kStepsOfBudget = 10;
+
+/// With * for any text and ? for any character.
+bool is_pattern(const std::string& id) { return id.find_first_of("*?") != std::string::npos; }
+
+bool matches(std::string_view pattern, std::string_view text)
+{
+    // Greedy, with the last star as the place to try again from: linear but for stars that share what they swallow.
+    std::size_t p = 0, t = 0, star = std::string_view::npos, from = 0;
+    while (t < text.size())
+    {
+        if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t]) && pattern[p] != '*')
+            ++p, ++t;
+        else if (p < pattern.size() && pattern[p] == '*')
+            star = p++, from = t;
+        else if (star != std::string_view::npos)
+            p = star + 1, t = ++from;
+        else
+            return false;
+    }
+    while (p < pattern.size() && pattern[p] == '*') ++p;
+    return p == pattern.size();
+}
+
+std::chrono::nanoseconds as_duration(double ns) { return std::chrono::nanoseconds(static_cast<std::int64_t>(std::clamp(ns, 0.0, 1e18))); }
+
+}  // namespace
+
+Result<void> Transaction::expand(const SwapOperation& op, std::vector<Operation>& out) const
+{
+    const world::World& world = *s_->world_;
+    const std::vector<std::string> known = s_->world_->types().names();
+    std::size_t named = 0;
+    const std::size_t first = out.size();
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        const world::Component& c = world.component(i);
+        if (c.table == kNoIndex || !matches(op.id, c.id)) continue;
+        ++named;
+        // A short name is one of the component's own family.
+        const std::string& from = world.type_of(i)->info.name;
+        const auto name = model::full_type_name(op.type, known, from.substr(0, from.rfind('/') + 1));
+        if (!name) continue;
+        const auto type = s_->world_->types().require(*name);
+        if (!type || !(*type)->why_not_exchangeable(*world.type_of(i)).empty()) continue;
+        SwapOperation one = op;
+        one.id = c.id;
+        out.push_back(std::move(one));
+    }
+    if (out.size() > first) return {};
+    if (named == 0) return Error{{}, op.id, "no component's id matches"};
+    return Error{{}, op.id, "matches " + std::to_string(named) + " components, none of which can be exchanged for " + op.type};
+}
+
+Result<void> Transaction::expand_patterns()
+{
+    const auto has_pattern = [](const Operation& op)
+    {
+        const auto* swap = std::get_if<SwapOperation>(&op);
+        return swap && is_pattern(swap->id);
+    };
+    if (std::none_of(request_->operations.begin(), request_->operations.end(), has_pattern)) return {};
+    for (const Operation& op : request_->operations)
+    {
+        if (!has_pattern(op))
+            operations_.push_back(op);
+        else if (auto done = expand(std::get<SwapOperation>(op), operations_); !done)
+            return done;
+    }
+    return {};
+}
+
+void Transaction::mark_touched(TrialScope& scope) const
+{
+    const auto mark = [&](const std::string& id)
+    {
+        // What an earlier operation of the request adds is not there yet, what one removes is not there any more.
+        if (const auto component = find_typed(id))
+            scope.add(*component);
+        else
+            scope.add_everything();
+    };
+    for (const Operation& operation : operations_.empty() ? request_->operations : operations_)
+    {
+        if (const auto* swap = std::get_if<SwapOperation>(&operation))
+            mark(swap->id);
+        else if (const auto* set = std::get_if<SetOperation>(&operation))
+            mark(set->id);
+        else if (const auto* push = std::get_if<PushOperation>(&operation))
+            mark(push->id);
+        else if (concerns_the_course(operation))
+            scope.add_everything();
+    }
+}
+
+TrialStep Transaction::next_step() const
+{
+    const double start = s_->time_at(s_->tick_);
+    return {s_->tick_, start, s_->time_at(s_->tick_ + 1) - start};
+}
+
+double Transaction::budget_ns() const
+{
+    switch (request_->trial.budget)
+    {
+        case TrialChoice::Budget::Unlimited:
+            return std::numeric_limits<double>::infinity();
+        case TrialChoice::Budget::Given:
+            return request_->trial.ns;
+        case TrialChoice::Budget::None:
+            return 0;
+        case TrialChoice::Budget::Automatic:
+            break;
+    }
+    return s_->mean_step_ns_ > 0 ? std::max(kLeastBudget, kStepsOfBudget * s_->mean_step_ns_) : kUnknownBudget;
+}
+
+std::vector<std::uint32_t> Transaction::swapped() const
+{
+    std::vector<std::uint32_t> out;
+    for (const Operation& op : operations_.empty() ? request_->operations : operations_)
+        if (const auto* swap = std::get_if<SwapOperation>(&op))
+        {
+            // What an earlier operation of the request adds is not there yet: it had no error.
+            const auto component = find_typed(swap->id);
+            out.push_back(component ? *component : kNoIndex);
+        }
+    return out;
+}
+
+void Transaction::try_old(TrialScope& scope)
+{
+    const double budget = budget_ns();
+    Interruption deadline(s_->interruption_);
+    // Half of it is for the new one, which has more to prove.
+    if (std::isfinite(budget)) deadline.ask(as_duration(0.5 * budget));
+    s_->progress_.begin(Activity::TrialOfOld, s_->tick_, now_ns());
+    old_ = Trial(*s_->world_, *s_->stepper_, next_step()).run(scope, swapped(), deadline, s_->progress_, true);
+    s_->progress_.end();
+    old_tried_ = !old_.given_up;
+}
+
+Result<void> Transaction::try_new(TrialScope& scope)
+{
+    TrialReport& told = reply_.trial;
+    told.budget_ns = budget_ns();
+    Interruption deadline(s_->interruption_);
+    const double spent = static_cast<double>(now_ns() - trial_begin_);
+    if (std::isfinite(told.budget_ns)) deadline.ask(as_duration(told.budget_ns - spent));
+    s_->progress_.begin(Activity::TrialOfNew, s_->tick_, now_ns());
+    std::vector<std::uint32_t> components;
+    for (const SwapReport& report : reply_.swaps) components.push_back(s_->world_->find(report.id));
+    const TrialResult with_new =
+        Trial(*s_->world_, *s_->stepper_, next_step()).run(scope, components, deadline, s_->progress_, !reply_.swaps.empty());
+    s_->progress_.end();
+    told.ns = static_cast<double>(now_ns() - trial_begin_), told.objects = scope.objects(), told.everything = scope.has_everything();
+    told.fate = with_new.given_up                      ? TrialReport::Fate::GivenUp
+                : !reply_.swaps.empty() && !old_tried_ ? TrialReport::Fate::WithoutOld
+                                                       : TrialReport::Fate::Made;
+    write_reports(with_new);
+    if (s_->interruption_ && s_->interruption_->due()) return reason("the server is to end: the trial was given up");
+    if (with_new.given_up)
+    {
+        if (!request_->trial.must) return {};
+        return reason("its trial took longer than its budget of " + model::format_real(1e-6 * told.budget_ns) +
+                      " ms and was given up, and without a trial it was not to be carried out");
+    }
+    if (!with_new.failure.empty() && (!old_tried_ || old_.failure.empty())) return reason("the first step failed: " + with_new.failure);
+    if (const std::string why = makes_energy(with_new); !why.empty()) return reason(why);
+    return {};
+}
+
+void Transaction::write_reports(const TrialResult& with_new)
+{
+    const bool is_new = reply_.trial.fate != TrialReport::Fate::None && reply_.trial.fate != TrialReport::Fate::GivenUp;
+    for (std::size_t k = 0; k < reply_.swaps.size(); ++k)
+    {
+        SwapReport& report = reply_.swaps[k];
+        report.energy_before = old_tried_ ? old_.before : is_new ? with_new.before : energy_before_;
+        report.with_old = old_tried_ ? old_.outcome : kNotTried;
+        report.with_new = is_new ? with_new.outcome : kNotTried;
+        if (old_tried_ && k < old_.errors.size()) report.with_old.error = old_.errors[k];
+        if (is_new && k < with_new.errors.size()) report.with_new.error = with_new.errors[k];
+    }
+}
+
+/// Motion that comes from nowhere: more of it than was there before, and more energy in all. What a spring or a height gives back is no
+/// gain, and what a field of another strength holds is no motion.
+std::string Transaction::makes_energy(const TrialResult& with_new) const
+{
+    if (reply_.swaps.empty() || !std::isfinite(request_->trial.energy_factor)) return {};
+    const double scale = std::max({with_new.least, with_new.moving, old_tried_ ? old_.moving : 0.0, old_tried_ ? old_.kinetic_after : 0.0});
+    const double gain = energy_applied_ - energy_before_ + with_new.outcome.energy - with_new.before;
+    const double made = std::min(with_new.kinetic_after, gain);
+    if (!(made > request_->trial.energy_factor * scale)) return {};
+    return "the first step would take the kinetic energy of what it touches from " + model::format_real(with_new.moving) + " J to " +
+           model::format_real(with_new.kinetic_after) + " J, and nothing gives so much: more than " +
+           model::format_real(request_->trial.energy_factor) +
+           " times as much has to be asked for (energy FACTOR; plabctl: --allow-energy)";
+}
+
+}  // namespace plab::simulation

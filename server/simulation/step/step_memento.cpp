@@ -1,0 +1,40 @@
+#include "simulation/step/step_memento.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+constexpr unsigned kChanging = world::kind_bit(FieldKind::State) | world::kind_bit(FieldKind::Output);
+
+}  // namespace
+
+void StepMemento::save(const world::World& world, const Stepper& stepper)
+{
+    motion_.save(world.host());
+    cells_.clear();
+    world.save_fields(kChanging, cells_);
+    contacts_.copy(stepper.contacts());
+    work_ = stepper.work();
+    departed_work_ = stepper.departed_work(), requests_work_ = stepper.requests_work();
+    told_ = stepper.told();
+    split_ = stepper.split();
+    frame_ = stepper.frame();
+}
+
+void StepMemento::restore(world::World& world, Stepper& stepper) const
+{
+    ByteReader cells(cells_.bytes());
+    world.load_fields(kChanging, cells);
+    motion_.restore(world.host());
+    (void)stepper.rebuild();  // what fitted together at the start of the step does so still
+    motion_.restore(world.host());
+    stepper.contacts() = contacts_;
+    stepper.work() = work_;
+    stepper.departed_work() = departed_work_, stepper.requests_work() = requests_work_;
+    stepper.told() = told_;
+    stepper.continue_split(split_);
+    stepper.continue_after(frame_.tick, frame_.start_time, frame_.step);
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,72 @@
+#include "simulation/totals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plab::simulation
+{
+
+Totals totals_of(world::World& world, const Stepper& stepper, double time, Tick tick)
+{
+    Totals t;
+    t.work = stepper.departed_work() + stepper.requests_work();
+    const world::HostTables& host = world.host();
+    for (const std::uint32_t i : world.in_id_order())
+    {
+        const world::Component& c = world.component(i);
+        if (c.facet == Facet::Body && host.bodies.dynamic(c.host_index))
+        {
+            const std::uint32_t b = c.host_index;
+            t.kinetic += host.bodies.kinetic_energy(b);
+            const Vec3 p = host.bodies.velocity[b] * host.bodies.mass[b];
+            t.momentum += p;
+            t.angular_momentum += cross(host.bodies.position[b], p) + host.bodies.angular_momentum[b];
+        }
+        if (c.facet == Facet::Shaft && host.shafts.dynamic(c.host_index))
+        {
+            t.kinetic += host.shafts.kinetic_energy(c.host_index);
+            t.shaft_momentum += host.shafts.inertia[c.host_index] * host.shafts.speed[c.host_index];
+        }
+        // Whoever came within a transaction has no account before the stepper is rebuilt, and has done nothing.
+        if (i < stepper.work().size()) t.work += stepper.work()[i];
+    }
+    t.stored = stored_energy_of(world, stepper, time, tick);
+    return t;
+}
+
+double stored_energy_of(world::World& world, const Stepper& stepper, double time, Tick tick)
+{
+    StoredEnergy stored;
+    PhaseCall call;
+    StepContext context;
+    context.time = time, context.tick = tick;
+    call.context = &context, call.stored = &stored;
+    call.bodies = &world.host().bodies, call.shafts = &world.host().shafts, call.shapes = &world.host().shapes;
+    for (const Block& block : stepper.schedule().of(Phase::Potential))
+    {
+        const world::Table& table = *world.tables()[block.table];
+        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+        call.rows = block.rows;
+        (void)block.command->run(call, table.rows());
+    }
+    return stored.joule;
+}
+
+double least_energy(const world::HostTables& host, std::span<const double> radius_of_body, double h)
+{
+    constexpr double kShare = 0.03;
+    double sum = 0;
+    for (std::uint32_t b = 0; b < host.bodies.size(); ++b)
+    {
+        if (!host.bodies.dynamic(b)) continue;
+        const double radius = b < radius_of_body.size() && radius_of_body[b] > 0 && std::isfinite(radius_of_body[b])
+                                  ? radius_of_body[b]
+                                  : std::sqrt((host.bodies.inertia_B[b](0, 0) + host.bodies.inertia_B[b](1, 1)) / host.bodies.mass[b]);
+        sum += 0.5 * host.bodies.mass[b] * (kShare * radius / h) * (kShare * radius / h);
+    }
+    for (std::uint32_t s = 0; s < host.shafts.size(); ++s)
+        if (host.shafts.dynamic(s)) sum += 0.5 * host.shafts.inertia[s] * (kShare / h) * (kShare / h);
+    return sum;
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,16 @@
+// Extremes over more steps, and in pairs.
+#include "extremes.h"
+
+using namespace plab::test;
+
+TEST_CASE("every numeric field alone at extremes, for 60 steps")
+{
+    for (const Subject& subject : subjects())
+        for (const std::string& trouble : run_extremes(single_extremes(subject), 60)) FAIL_CHECK(trouble);
+}
+
+TEST_CASE("every pair of numeric fields at extremes")
+{
+    for (const Subject& subject : subjects())
+        for (const std::string& trouble : run_extremes(paired_extremes(subject), 3)) FAIL_CHECK(trouble);
+}

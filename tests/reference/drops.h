@@ -1,0 +1,131 @@
+/// Bodies that tumble onto a plane, with contacts answered at the ends of steps: what may happen to their energy.
+#pragma once
+
+#include <algorithm>
+
+#include "plab/random.h"
+#include "statics_scene.h"
+
+namespace plab::test
+{
+
+/// A way of answering contacts: Resolution, and Manager/X or Response/Impulse.
+struct Way
+{
+    const char* resolution;
+    const char* manager;  ///< "Impulse": Response/Impulse
+};
+
+struct Drop
+{
+    Vec3 half{0.5, 0.02, 0.02};  ///< m, of a box of 1 kg
+    Vec3 inertia;                ///< kg m^2; 0: the box's
+    Vec3 axis{0, 0, 1};
+    double angle = 0;
+    Vec3 velocity, spin;
+    double height = 1;  ///< m
+    double friction = 0;
+    double until = 1;  ///< s
+    double h = 1.0 / 240;
+};
+
+inline std::string scene_of(const Drop& d, const Way& way)
+{
+    const Vec3 n = d.axis / length(d.axis);
+    std::string more = "orientation=\"axis " + text(n) + " " + text(d.angle) + "\" linear_velocity=\"" + text(d.velocity) +
+                       "\" angular_velocity=\"" + text(d.spin) + "\"";
+    if (d.inertia != Vec3{}) more += " center_of_mass=\"0 0 0\" inertia=\"" + text(d.inertia) + "\"";
+    const bool impulse = way.manager == std::string("Impulse");
+    return std::string(kGround) + box("f", d.half, 1, {0, 0, d.height}, more) + gravity("f") +
+           (impulse ? "<component id=\"contact\" type=\"CDetection/ODE\" between=\"f ground\" resolution=\"Resolution/" +
+                          std::string(way.resolution) + "\" response=\"Response/Impulse\" response.friction=\"" + text(d.friction) +
+                          "\" response.restitution=\"0\"/>"
+                    : contact("f ground", way.manager, d.friction, 0, way.resolution));
+}
+
+/// J, with gravity's.
+inline double mechanical_energy(const Scene& s)
+{
+    const Bodies& bodies = s.simulation().world().host().bodies;
+    double sum = 0;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+        if (bodies.dynamic(b)) sum += bodies.kinetic_energy(b) + 9.81 * bodies.mass[b] * bodies.position[b].z;
+    return sum;
+}
+
+struct Fall
+{
+    double start = 0, highest = 0, last = 0;  ///< J
+    double lifted = 0;                        ///< J, largest rise in a step
+    double gain() const { return highest / start; }
+};
+
+inline Fall play(const Drop& d, const Way& way)
+{
+    Scene s(scene_of(d, way), "dt=\"" + text(d.h) + "\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = true;
+    Fall out;
+    out.start = out.highest = out.last = mechanical_energy(s);
+    while (s.simulation().time() < d.until)
+    {
+        s.step();
+        const double now = mechanical_energy(s);
+        out.highest = std::max(out.highest, std::isfinite(now) ? now : HUGE_VAL);
+        out.lifted = std::max(out.lifted, now - out.last);
+        out.last = now;
+    }
+    return out;
+}
+
+inline Vec3 any_direction(std::uint64_t& random)
+{
+    Vec3 v;
+    do
+        for (int i = 0; i < 3; ++i) v[i] = 2 * next_uniform(random) - 1;
+    while (length(v) > 1 || length(v) < 0.1);
+    return v / length(v);
+}
+
+inline constexpr Way kWays[] = {{"None", "Direct"},         {"None", "SequentialImpulse"}, {"None", "SoftStep"},
+                                {"None", "Impulse"},        {"Speculative", "Direct"},     {"Speculative", "SequentialImpulse"},
+                                {"Speculative", "SoftStep"}};
+
+/// A body that falls and tumbles: inertia ratios up to 1e4, h from 1/30 to 1/1000, w h up to 2, every other one with friction.
+inline Drop any_drop(std::uint64_t& random)
+{
+    Drop d;
+    const auto log_between = [&](double low, double high) { return low * std::pow(high / low, next_uniform(random)); };
+    d.half = {0.5, 0.5 * log_between(0.01, 1), 0.5 * log_between(0.01, 1)};
+    d.h = log_between(1e-3, 1.0 / 30);
+    d.axis = any_direction(random), d.angle = 3 * next_uniform(random);
+    d.spin = any_direction(random) * (2 * next_uniform(random) / d.h);
+    d.velocity = any_direction(random) * (3 * next_uniform(random));
+    d.height = length(d.half) + 0.3 * next_uniform(random) + 0.01;  // clear of the plane, however it is turned
+    d.friction = next_uniform(random) < 0.5 ? 0.0 : next_uniform(random);
+    d.until = std::min(1.0, 150 * d.h);
+    return d;
+}
+
+/// J: what parting overlap may lift in a fall. A step takes a body g h^2 deep at most where nothing meets it, a few times.
+inline double allowance(const Drop& d) { return 10 * std::pow(9.81 * d.h, 2); }
+
+inline void check_drops(std::uint64_t random, int count)
+{
+    for (int i = 0; i < count; ++i)
+    {
+        const Drop d = any_drop(random);
+        for (const Way& way : kWays)
+        {
+            const Fall f = play(d, way);
+            CAPTURE(i);
+            CAPTURE(way.resolution);
+            CAPTURE(way.manager);
+            CAPTURE(d.h);
+            CAPTURE(f.start);
+            CHECK(f.highest - f.start <= 1e-9 * f.start + allowance(d));
+        }
+    }
+}
+
+}  // namespace plab::test

@@ -1,0 +1,6 @@
+// A thousand bodies that tumble onto a plane, each answered in every way at the ends of steps: none gains energy.
+#include "drops.h"
+
+using namespace plab::test;
+
+TEST_CASE("a thousand random drops gain no energy") { check_drops(12, 1000); }

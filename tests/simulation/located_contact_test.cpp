@@ -1,0 +1,158 @@
+// Steps that locate impacts end, whatever slides along or lies on what: what touches for a whole step is a contact and no event.
+#include <algorithm>
+
+#include "plab/random.h"
+#include "reference/impacts.h"
+
+using namespace plab;
+using namespace plab::test;
+
+namespace
+{
+
+const char* const kLocating[] = {"LocalRoot", "ConservativeAdvancement", "LocalBisection", "Bisection"};
+const char* const kResponses[] = {"Impulse", "Rows"};
+
+/// The most that locating may do in one step of these scenes, in looks: a multiple of a few impacts. A test ends there.
+constexpr int kMostTrials = 5000;
+
+void run_bounded(Scene& s, double until)
+{
+    while (s.simulation().time() < until - 1e-9)
+    {
+        s.step();
+        REQUIRE(s.simulation().stepper().report().trials < kMostTrials);
+    }
+}
+
+std::string law(double restitution, double friction)
+{
+    return "response.restitution=\"" + text(restitution) + "\" response.friction=\"" + text(friction) + "\"";
+}
+
+std::string contact(const char* resolution, const char* response, const std::string& who, double restitution, double friction)
+{
+    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + who + "\" resolution=\"Resolution/" + resolution +
+           "\" response=\"Response/" + response + "\" " + law(restitution, friction) + "/>";
+}
+
+template <class Test>
+void for_all_laws(const Test& test)
+{
+    for (const char* resolution : kLocating)
+        for (const char* response : kResponses)
+            for (const double friction : {0.0, 0.4})
+                for (const double restitution : {0.0, 0.5, 1.0})
+                {
+                    CAPTURE(resolution);
+                    CAPTURE(response);
+                    CAPTURE(friction);
+                    CAPTURE(restitution);
+                    test(resolution, response, restitution, friction);
+                }
+}
+
+/// Floor and wall are planes of one static body; the wall is x = 0, to its right is free.
+const char* const kRoom =
+    "<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"wall\" type=\"Shape/Plane\" orientation=\"axis 0 1 0 90 deg\"/>"
+    "<component id=\"room\" type=\"State/Static\" shape=\"floor wall\"/>";
+
+}  // namespace
+
+TEST_CASE("a ball that falls along a wall which it touches bounces on the floor of the same body as if there were no wall")
+{
+    for (const double away : {0.0, 1e-15, 1e-12})
+        for (const double speed : {0.0, 1e-9})
+            for_all_laws(
+                [&](const char* resolution, const char* response, double restitution, double friction)
+                {
+                    CAPTURE(away);
+                    CAPTURE(speed);
+                    Scene s(std::string(kRoom) + sphere("ball", 0.1, at({0.1 + away, 0, 0.6}, {speed, 0, 0})) + gravity("ball") +
+                            contact(resolution, response, "ball room", restitution, friction));
+                    REQUIRE_MESSAGE(s.loaded(), s.error());
+                    run_bounded(s, 0.4);
+                    const double fall = std::sqrt(2 * 0.5 / 9.81), up = restitution * 9.81 * fall, t = s.simulation().time() - fall;
+                    CHECK(std::fabs(s.vec("ball", "position").z - (0.1 + up * t - (restitution > 0 ? 0.5 * 9.81 * t * t : 0.0))) < 1e-9);
+                    CHECK(std::fabs(s.vec("ball", "position").x - 0.1) < 1e-8);
+                });
+}
+
+TEST_CASE("what falls along a wall, touching it, falls freely: compounds, boxes, capsules and cylinders")
+{
+    struct Body
+    {
+        const char* name;
+        const char* shape;
+        double half;  // m, towards the wall
+    };
+    const Body bodies[] = {
+        {"dumbbell",
+         "<component id=\"left\" type=\"Shape/Sphere\" radius=\"0.1\" position=\"-0.2 0 0\"/><component id=\"right\" type=\"Shape/Sphere\" "
+         "radius=\"0.1\" position=\"0.2 0 0\"/><component id=\"b.shape\" type=\"Shape/Compound\" parts=\"left right\"/>",
+         0.3},
+        {"box", "<component id=\"b.shape\" type=\"Shape/Box\" half_extents=\"0.3 0.1 0.2\"/>", 0.3},
+        {"capsule", "<component id=\"b.shape\" type=\"Shape/Capsule\" radius=\"0.1\" length=\"0.4\"/>", 0.1},
+        {"cylinder", "<component id=\"b.shape\" type=\"Shape/Cylinder\" radius=\"0.1\" height=\"0.4\"/>", 0.1},
+        {"ball", "<component id=\"b.shape\" type=\"Shape/Sphere\" radius=\"0.1\"/>", 0.1},
+    };
+    for (const Body& body : bodies)
+        for (const double away : {0.0, 1e-15})
+            for_all_laws(
+                [&](const char* resolution, const char* response, double restitution, double friction)
+                {
+                    CAPTURE(body.name);
+                    CAPTURE(away);
+                    Scene s(box("wall", {0.5, 0.5, 5}, "position=\"0 0 0\"", "Static") + body.shape +
+                            "<component id=\"b\" type=\"State/RigidBody\" shape=\"b.shape\" " + at({0.5 + body.half + away, 0, 1}) + "/>" +
+                            gravity("b") + contact(resolution, response, "b wall", restitution, friction));
+                    REQUIRE_MESSAGE(s.loaded(), s.error());
+                    run_bounded(s, 0.25);
+                    CHECK(std::fabs(s.vec("b", "position").z - (1 - 0.5 * 9.81 * 0.0625)) < 1e-9);
+                    CHECK(std::fabs(s.vec("b", "position").x - (0.5 + body.half)) < 1e-9);
+                });
+}
+
+TEST_CASE("a heap of falling bodies: each step's work is bounded, the state stays finite, and repeats bit for bit")
+{
+    constexpr int kBodies = 32;
+    const auto heap = [](const char* resolution, const char* response)
+    {
+        std::uint64_t seed = 5;
+        std::string out = kGround, all;
+        for (int i = 0; i < kBodies; ++i)
+        {
+            const auto jitter = [&] { return 0.06 * next_uniform(seed) - 0.03; };
+            const std::string id = "b" + std::to_string(100 + i);
+            const double x = 0.26 * (i % 4) + jitter(), y = 0.26 * (i / 4 % 4) + jitter(), z = 0.15 + 0.3 * (i / 16) + jitter();
+            out += i % 2 == 0 ? sphere(id, 0.1, at({x, y, z})) : box(id, {0.1, 0.1, 0.1}, at({x, y, z}));
+            all += id + " ";
+        }
+        // Hardly more than the allowance that every step has: these heaps meet it.
+        return out + gravity(all) + "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + all +
+               "ground\" resolution=\"Resolution/" + resolution + "\" resolution.max_work=\"0.01\" response=\"Response/" + response +
+               "\" response.restitution=\"0.5\"/>";
+    };
+    for (const char* resolution : kLocating)
+        for (const char* response : kResponses)
+        {
+            CAPTURE(resolution);
+            CAPTURE(response);
+            std::uint64_t hash = 0;
+            for (int run = 0; run < (std::string(response) == "Impulse" ? 2 : 1); ++run)
+            {
+                Scene s(heap(resolution, response), "dt=\"1/60\"");
+                REQUIRE_MESSAGE(s.loaded(), s.error());
+                s.warnings_expected = true, s.keep_events = true;
+                for (int i = 0; i < 24; ++i)
+                {
+                    s.step();
+                    REQUIRE(s.simulation().stepper().report().trials < 60000);
+                }
+                CHECK(s.count("resolution.over_budget") > 0);
+                for (int i = 0; i < kBodies; ++i) CHECK(std::isfinite(length(s.vec("b" + std::to_string(100 + i), "position"))));
+                if (run == 0) hash = s.hash();
+                CHECK(s.hash() == hash);
+            }
+        }
+}

@@ -1,0 +1,224 @@
+// What proves a swap: trials of those whom it can touch, within a budget, and what becomes of swaps that make energy.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "support/scene.h"
+
+using namespace plab;
+using namespace plab::simulation;
+using plab::test::first_error;
+using plab::test::Scene;
+
+namespace
+{
+
+Reply ask(Scene& s, std::vector<Operation> operations, TrialChoice trial = {})
+{
+    Request request;
+    request.operations = std::move(operations), request.trial = trial;
+    return s.simulation().carry_out_now(request);
+}
+
+TrialChoice budget(double ms, bool must = false)
+{
+    TrialChoice out;
+    out.budget = TrialChoice::Budget::Given, out.ns = 1e6 * ms, out.must = must;
+    return out;
+}
+TrialChoice no_trial()
+{
+    TrialChoice out;
+    out.budget = TrialChoice::Budget::None;
+    return out;
+}
+
+std::string numbered(const char* format, int i)
+{
+    char text[512];
+    std::snprintf(text, sizeof text, format, i, i, i, i, i, i);
+    return text;
+}
+
+/// Trains of gears beside balls that rest on a floor.
+std::string gears_and_balls(int trains, int balls)
+{
+    std::string out = R"(<component id="f" type="Shape/Plane"/><component id="ground" type="State/Static" shape="f"/>
+      <component id="r" type="Shape/Sphere" radius="0.1"/><component id="g" type="Field/Gravity" between="*"/>)";
+    for (int i = 0; i < trains; ++i)
+        out += numbered(
+            R"(<component id="in%d" type="State/Shaft" inertia="1" angular_velocity="3"/><component id="out%d" type="State/Shaft" inertia="2"/>
+          <component id="gears.%d" type="Constraint/AngularVelocity/Graph" driver="in%d" driven="out%d" velocity_factor="0.5"/>)",
+            i);
+    for (int i = 0; i < balls; ++i)
+    {
+        char text[256];
+        std::snprintf(text, sizeof text, R"(<component id="b%03d" type="State/RigidBody" mass="1" shape="r" position="%d %d 0.1"/>)", i,
+                      i % 20, i / 20);
+        out += text;
+    }
+    return out + R"(<component id="c" type="CDetection/ODE" between="*" resolution="Resolution/None" response="Response/Rows"/>)";
+}
+
+const char* const kImpulse = "Constraint/AngularVelocity/Impulse";
+
+}  // namespace
+
+TEST_CASE("a trial steps those whom the swap can touch, and nobody else")
+{
+    Scene s(gears_and_balls(3, 40));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(20);
+    const Reply gear = ask(s, {SwapOperation{"gears.1", kImpulse, {}}});
+    REQUIRE_MESSAGE(gear.done, first_error(gear.errors));
+    CHECK(gear.trial.fate == TrialReport::Fate::Made);
+    CHECK(gear.trial.objects == 2);
+    CHECK(!gear.trial.everything);
+    // Energies are those of the train: 1/2 1 w^2 + 1/2 2 (w/2)^2, with w from the 3 rad/s that were shared.
+    const double w = s.spin("in1");
+    CHECK(gear.swaps[0].energy_before == doctest::Approx(0.5 * w * w + 0.25 * w * w).epsilon(1e-12));
+    CHECK(gear.swaps[0].with_new.energy == doctest::Approx(gear.swaps[0].energy_before).epsilon(1e-9));
+    // Whoever collides is touched by another response.
+    const Reply response = ask(s, {SwapOperation{"c.response", "Response/Impulse", {}}});
+    REQUIRE_MESSAGE(response.done, first_error(response.errors));
+    CHECK(response.trial.objects == 40);
+}
+
+TEST_CASE("a trial leaves no trace: with it and without it the run has the same bits")
+{
+    Scene with(gears_and_balls(3, 40)), without(gears_and_balls(3, 40));
+    with.step(20), without.step(20);
+    const auto both = [&](const std::string& id, const std::string& type)
+    {
+        CAPTURE(id);
+        CHECK(ask(with, {SwapOperation{id, type, {}}}).done);
+        CHECK(ask(without, {SwapOperation{id, type, {}}}, no_trial()).done);
+        CHECK(with.hash() == without.hash());
+        for (int i = 0; i < 10; ++i)
+        {
+            with.step(), without.step();
+            REQUIRE(with.hash() == without.hash());
+        }
+    };
+    both("gears.0", kImpulse);
+    both("c.response", "Response/Penalty");
+    both("b003", "State/Kinematic");
+    both("c.response", "Response/Rows");
+    both("gears.0", "Constraint/AngularVelocity/Graph");
+    both("g", "Field/Gravity");
+}
+
+TEST_CASE("whoever is met in the trial's step takes part in it")
+{
+    // b flies into c, which stands alone, within the next step.
+    Scene s(R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
+      <component id="a" type="State/RigidBody" mass="1" shape="r" position="-0.5 0 0" linear_velocity="100 0 0"/>
+      <component id="b" type="State/RigidBody" mass="1" shape="r"/>
+      <component id="other" type="State/RigidBody" mass="1" shape="r" position="9 0 0"/>
+      <component id="push" type="Field/Load" between="a" force="1 0 0"/>
+      <component id="c" type="CDetection/ODE" between="*" resolution="Resolution/LocalRoot" response.restitution="1"/>)");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    const Reply reply = ask(s, {SwapOperation{"push", "Field/Load", {{"force", std::string("2 0 0")}}}});
+    REQUIRE_MESSAGE(reply.done, first_error(reply.errors));
+    CHECK(reply.trial.objects == 2);
+    // Both after the impact: momentum is what a had, and what pushed it.
+    CHECK(reply.swaps[0].with_new.momentum.x == doctest::Approx(100 + 2.0 / 240).epsilon(1e-12));
+    CHECK(reply.swaps[0].with_new.energy == doctest::Approx(5000).epsilon(1e-3));
+}
+
+TEST_CASE("a trial that takes longer than its budget is given up: carried out without it, or refused, as was asked")
+{
+    // The first spring is slack, the second one swings a million times in a step of 100 s.
+    const std::string scene = R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
+      <component id="a" type="State/RigidBody" mass="1" shape="r" position="1 0 0"/><component id="b" type="State/RigidBody" mass="1" shape="r"/>
+      <component id="s" type="Constraint/SpringDamper" a="a" b="b" length="0.5" stiffness="0"/>
+      <component id="solver" type="Solver/DormandPrince54" max_substeps="1000000000"/>)";
+    const std::string settings = "dt=\"100\" solver=\"solver\"";
+    Scene s(scene, settings), refused(scene, settings);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(3), refused.step(3);
+    const std::uint64_t before = refused.hash();
+    const auto swap = [](const char* stiffness) {
+        return SwapOperation{"s", "Constraint/SpringDamper", {{"stiffness", std::string(stiffness)}}};
+    };
+    const Reply no = ask(refused, {swap("1e9")}, budget(20, true));
+    CHECK(!no.done);
+    CHECK_MESSAGE(first_error(no.errors).find("budget of 20 ms") != std::string::npos, first_error(no.errors));
+    CHECK(no.trial.fate == TrialReport::Fate::GivenUp);
+    CHECK(no.pause_ns < 500e6);
+    CHECK(refused.hash() == before);
+    refused.step();
+    const Reply yes = ask(s, {swap("1e9")}, budget(20));
+    REQUIRE_MESSAGE(yes.done, first_error(yes.errors));
+    CHECK(yes.trial.fate == TrialReport::Fate::GivenUp);
+    CHECK(yes.trial.budget_ns == 20e6);
+    CHECK(yes.pause_ns < 500e6);
+    CHECK(std::isnan(yes.swaps[0].with_new.energy));
+    CHECK(s.real("s", "stiffness") == 1e9);
+    const Reply none = ask(s, {swap("0")}, no_trial());
+    CHECK(none.done);
+    CHECK(none.trial.fate == TrialReport::Fate::None);
+}
+
+TEST_CASE("one request exchanges all that a pattern names, as one transaction")
+{
+    Scene s(gears_and_balls(12, 0)), one_by_one(gears_and_balls(12, 0));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(5), one_by_one.step(5);
+    const Reply all = ask(s, {SwapOperation{"gears.*", kImpulse, {}}});
+    REQUIRE_MESSAGE(all.done, first_error(all.errors));
+    REQUIRE(all.swaps.size() == 12);
+    CHECK(all.trial.objects == 24);
+    CHECK(all.revision == 1);
+    for (const SwapReport& swap : all.swaps) CHECK(swap.to == kImpulse);
+    for (int i = 0; i < 12; ++i) CHECK(ask(one_by_one, {SwapOperation{"gears." + std::to_string(i), kImpulse, {}}}).done);
+    s.step(50), one_by_one.step(50);
+    CHECK(s.hash() == one_by_one.hash());
+
+    const Reply some = ask(s, {SwapOperation{"gears.?", "Constraint/AngularVelocity/Graph", {}}});
+    REQUIRE(some.done);
+    CHECK(some.swaps.size() == 10);
+    const Reply none = ask(s, {SwapOperation{"gear.*", kImpulse, {}}});
+    CHECK(!none.done);
+    CHECK(first_error(none.errors).find("no component's id matches") != std::string::npos);
+    const Reply wrong = ask(s, {SwapOperation{"in*", kImpulse, {}}});
+    CHECK(!wrong.done);
+    CHECK(first_error(wrong.errors).find("none of which can be exchanged") != std::string::npos);
+    // One that does not work out takes all of them back.
+    const std::uint64_t before = s.hash();
+    const Reply bad = ask(s, {SwapOperation{"gears.*", kImpulse, {}}, SwapOperation{"nobody", kImpulse, {}}});
+    CHECK(!bad.done);
+    CHECK(s.hash() == before);
+    CHECK(s.simulation().world().type_of(s.simulation().world().find("gears.1"))->info.name == "Constraint/AngularVelocity/Graph");
+}
+
+TEST_CASE("a swap whose first step makes a hundred times the energy is refused, and taken back bit for bit, unless it is asked for")
+{
+    const std::string scene = R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
+      <component id="a" type="State/RigidBody" mass="1" shape="r" linear_velocity="3 0 0"/>
+      <component id="s" type="Script/Lua" driven="a"><param name="code">function force(t, state) driven:add_force(vec(1, 0, 0)) end</param></component>)";
+    Scene s(scene), alone(scene);
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(3), alone.step(3);
+    // v = 1e5 / 240 after the step: 8.7e4 J out of 4.5.
+    const SwapOperation swap{"s", "Script/Lua", {{"code", std::string("function force(t, state) driven:add_force(vec(1e5, 0, 0)) end")}}};
+    const Reply no = ask(s, {swap});
+    CHECK(!no.done);
+    const std::string why = first_error(no.errors);
+    CHECK_MESSAGE(why.find("kinetic energy") != std::string::npos, why);
+    CHECK_MESSAGE(why.find("4.5") != std::string::npos, why);
+    CHECK(s.hash() == alone.hash());
+    s.step(10), alone.step(10);
+    CHECK(s.hash() == alone.hash());
+
+    TrialChoice wanted;
+    wanted.energy_factor = 1e6;
+    CHECK(ask(s, {swap}, wanted).done);
+    // What a spring has stored may well come out.
+    Scene spring(R"(<component id="r" type="Shape/Sphere" radius="0.1"/>
+      <component id="a" type="State/RigidBody" mass="1" shape="r" position="1 0 0"/><component id="b" type="State/RigidBody" mass="1" shape="r"/>
+      <component id="s" type="Constraint/SpringDamper" a="a" b="b" length="0.5" stiffness="1e4" damping="0"/>)");
+    REQUIRE_MESSAGE(spring.loaded(), spring.error());
+    const Reply again = ask(spring, {SwapOperation{"s", "Constraint/SpringDamper", {}}});
+    CHECK_MESSAGE(again.done, first_error(again.errors));
+}
