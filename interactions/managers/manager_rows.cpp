@@ -80,6 +80,13 @@ void report(Island& island, const Verdict& verdict)
     island.converged = verdict.converged, island.fell_back = verdict.fell_back;
 }
 
+/// Work that was given up leaves its memory half written.
+template <class Memory>
+void forget_if_given_up(const Island& island, Memory& memory)
+{
+    if (island.interruption && island.interruption->due()) memory = Memory{};
+}
+
 }  // namespace
 
 void Account::describe(Schema& s)
@@ -154,6 +161,7 @@ void solve_sequential(const StepContext& context, Row row, SequentialRows& rows,
     StepChoices choices;
     choices.slop = rows.slop[row], choices.parted_share = rows.overlap_share[row];
     report(island, advance_island(island, bodies, shafts, method, choices, rows.memory[row]));
+    forget_if_given_up(island, rows.memory[row]);
     rows.account.add(context, row, island, rows.tolerance[row]);
 }
 
@@ -193,6 +201,7 @@ void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies&
         Exactly method(memory.newton, how);
         report(island, advance_island(island, bodies, shafts, method, {}, memory.step));
     }
+    forget_if_given_up(island, memory);
     rows.account.add(context, row, island, rows.tolerance[row]);
 }
 
@@ -225,6 +234,7 @@ void solve_soft_step(const StepContext& context, Row row, SoftStepRows& rows, Bo
                               rows.hertz[row],           rows.damping_ratio[row],
                               rows.push_speed[row],      rows.tolerance[row]};
     report(island, advance_softly(island, bodies, shafts, choices, rows.memory[row]));
+    forget_if_given_up(island, rows.memory[row]);
     rows.account.add(context, row, island, rows.tolerance[row]);
 }
 

@@ -70,7 +70,7 @@ private:
     void move();
     bool gains() const;
     int step_hard();
-    void scale_down();
+    bool scale_down();
     void sweep_points(bool soft);
     void sweep_lines(bool soft);
     int calm();
@@ -246,8 +246,9 @@ void SoftIsland::gather()
 
 bool SoftIsland::gains() const { return !is_driven(problem_) && kinetic_energy(problem_) > most_ * (1 + 1e-9); }
 
-/// With v0 without impulses and dv by them: the energy of s of them is 1/2 |v0 + s dv|^2, that of none again at this s.
-void SoftIsland::scale_down()
+/// With v0 without impulses and dv by them, a share s of them has the energy 1/2 |v0 + s dv|^2. Keeps the largest share that gains none;
+/// false if even that of no impulses is too much, as bodies have turned since they were kicked.
+bool SoftIsland::scale_down()
 {
     double linear = 0, square = 0;
     for (std::size_t i = 0; i < problem_.movers.size(); ++i)
@@ -257,8 +258,12 @@ void SoftIsland::scale_down()
         linear += m.mass * dot(m.v, dv) + dot(m.w, dw);
         square += m.mass * length_squared(dv) + dot(problem_.movers[i].w - m.w, dw);
     }
-    problem_.scale_impulses(std::clamp(-2 * linear / square, 0.0, 1.0));
+    const double room = most_ - kinetic_energy_without(problem_), discriminant = linear * linear + 2 * square * room;
+    const double share = (-linear + std::sqrt(discriminant)) / square;
+    if (!(share >= 0)) return false;
+    problem_.scale_impulses(std::min(share, 1.0));
     problem_.apply_impulses();
+    return true;
 }
 
 /// The sub-step once more, from where it began, without what pushes overlap apart: sweeps that only take energy, and a motion that
@@ -278,21 +283,23 @@ int SoftIsland::step_hard()
     for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
     const Swept done = sweep(problem_, {kSweeps, 0, 1});
     problem_.apply_impulses();
-    if (gains()) scale_down();
+    if (gains() && !scale_down()) problem_.clear_impulses();
     write();
     move();
     return done.sweeps;
 }
 
-/// Where the sub-step made energy: hard sweeps, and if those do not get it out again, another sub-step.
+/// Where the sub-step made energy: hard sweeps, then as much off all impulses as leaves none, and if that is not to be had, another sub-step.
 int SoftIsland::calm()
 {
     constexpr int kSweeps = 2;
     if (!gains()) return 0;
     for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].least = std::min(0.0, memory_.depth[i]) * rate_;
     const Swept done = sweep(problem_, {kSweeps, 0, 1});
+    problem_.apply_impulses();
+    if (gains() && !scale_down()) return done.sweeps + step_hard();
     write();
-    return done.sweeps + (gains() ? step_hard() : 0);
+    return done.sweeps;
 }
 
 /// Impulses that give back a share of the restitution; the kinetic energy with them, J.

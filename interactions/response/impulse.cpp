@@ -24,6 +24,7 @@ void ImpulseRows::describe(Schema& s)
     s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(500).positive().at_most(1e6);
     s.output(residual, "residual", unit::metre_per_second, "largest closing speed left in this step").reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps and single impacts in this step");
+    s.output(step, "step", unit::one, "the step that these figures are of; -1: none yet").or_else(-1);
     s.scratch(workspace, "workspace", "working memory");
 }
 
@@ -41,7 +42,7 @@ void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bod
         const Vec3 u = work.points[i].velocity(bodies);
         impact.contacts[i].slip = std::hypot(u.x, u.y);
     }
-    if (work.tick != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, work.tick = context.tick;
+    if (rows.step[row] != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, rows.step[row] = context.tick;
     rows.residual[row] = std::max(rows.residual[row], impact.residual);
     rows.iterations[row] += impact.iterations;
 }

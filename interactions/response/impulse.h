@@ -49,7 +49,6 @@ struct Workspace
     std::vector<std::uint32_t> together;  ///< patches that are hit at once
     std::vector<HitContact> hit;          ///< and their contacts
     std::vector<HitBody> saved;           ///< their bodies ahead of an impact
-    Tick tick = -1;                       ///< whose outputs are being summed
 };
 
 struct ImpulseRows
@@ -61,6 +60,7 @@ struct ImpulseRows
     Column<std::int64_t> max_iterations;
     Column<double> residual;  // m/s
     Column<std::int64_t> iterations;
+    Column<Tick> step;  ///< whose outputs are being summed
     Column<Workspace> workspace;
 
     void describe(Schema& schema);

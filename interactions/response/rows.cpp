@@ -79,6 +79,7 @@ void RowsRows::describe(Schema& s)
         .not_negative();
     s.output(residual, "residual", unit::metre_per_second, "largest closing speed that impacts left in this step").reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps over impacts in this step");
+    s.output(step, "step", unit::one, "the step that these figures are of; -1: none yet").or_else(-1);
     s.scratch(workspace, "workspace", "working memory");
 }
 
@@ -121,7 +122,7 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
         c.resting = rests(c, std::max(0.0, u.z), bounce);
     }
     impact.iterations = result.sweeps, impact.residual = std::max(0.0, result.residual), impact.converged = result.converged;
-    if (work.tick != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, work.tick = context.tick;
+    if (rows.step[row] != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, rows.step[row] = context.tick;
     rows.residual[row] = std::max(rows.residual[row], impact.residual);
     rows.iterations[row] += impact.iterations;
 }

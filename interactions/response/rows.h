@@ -22,6 +22,7 @@ struct RowsRows
     Column<double> rest_speed;   // m/s
     Column<double> residual;     // m/s
     Column<std::int64_t> iterations;
+    Column<Tick> step;  ///< whose outputs are being summed
     Column<Workspace> workspace;
 
     void describe(Schema& schema);

@@ -89,19 +89,23 @@ ErrorFigure own_error(const simulation::Simulation& s, std::uint32_t component)
     return out;
 }
 
-Result<ErrorFigure> shadow_error(const simulation::Simulation& s, std::uint32_t component, const std::string& finer)
+Result<ErrorFigure> shadow_error(const simulation::Simulation& s, std::uint32_t component, const std::string& finer,
+                                 const Interruption* interruption)
 {
     const simulation::Snapshot now = s.capture();
     std::vector<std::string> ids;
     for (const std::uint32_t i : concerned(s.world(), component)) ids.push_back(s.world().id_of(i));
     simulation::Simulation as_it_is(s.world().types()), with_finer(s.world().types());
     for (simulation::Simulation* each : {&as_it_is, &with_finer})
+    {
         if (auto restored = each->restore(now); !restored) return restored.errors();
+        each->obey(interruption);
+    }
     simulation::Request request;
     request.operations.push_back(simulation::SwapOperation{s.world().id_of(component), finer, {}});
+    request.trial.budget = simulation::TrialChoice::Budget::None;  // its first step follows here anyway
     if (const simulation::Reply reply = with_finer.carry_out_now(request); !reply.done) return reply.errors;
-    (void)as_it_is.step_once();
-    (void)with_finer.step_once();
+    if (!as_it_is.step_once() || !with_finer.step_once()) return Error{{}, "", "a step took too long"};
     const Apart difference = apart(as_it_is, with_finer, ids, s.dt());
     return ErrorFigure{difference.any_body ? difference.bodies : difference.shafts, difference.any_body ? "m/s2" : "rad/s2",
                        "per second of a step, against " + finer};
@@ -126,7 +130,7 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
     if (share_ <= 0) return;
     if (run_ != s.run() || revision_ != s.revision())
     {
-        run_ = s.run(), revision_ = s.revision(), longest_ = 0;
+        run_ = s.run(), revision_ = s.revision(), longest_ /= 2;  // what was dear may be less so
         std::erase_if(known_,
                       [&](const auto& known)
                       {
@@ -140,8 +144,8 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
     const model::ComponentType& type = *s.world().type_of(i);
     const std::string finer = finer_than(type.info.name);
     last_ = s.world().id_of(i);
-    // Two restored copies and some steps, those of the swap's trial among them.
-    const auto expected = std::max(longest_, static_cast<Nanoseconds>(8 * s.stepper().cost().step().median));
+    // Two restored copies, and a step of each.
+    const auto expected = std::max(longest_, static_cast<Nanoseconds>(4 * s.stepper().cost().step().median));
     if (expected > kLongestLook)
     {
         due_ = now + 1'000'000'000;
@@ -149,7 +153,9 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
         return;
     }
     const Nanoseconds begin = monotonic_now();
-    auto figure = shadow_error(s, i, finer);
+    Interruption deadline;
+    deadline.ask(std::chrono::nanoseconds(kLongestLook));
+    auto figure = shadow_error(s, i, finer, &deadline);
     const Nanoseconds took = monotonic_now() - begin;
     longest_ = std::max(longest_, took);
     due_ = now + static_cast<Nanoseconds>(static_cast<double>(took) / share_);

@@ -24,8 +24,9 @@ ErrorFigure own_error(const simulation::Simulation& simulation, std::uint32_t co
 /// One step from the present state with the component as it is, and one with `finer` in its place, on copies: how far the
 /// participants (or, where it has none of its own, all objects) are apart behind it, per second. Of bodies the largest of
 /// |dv| + r |dw| (r: radius of gyration) and |dx| / dt, over dt, in m/s2; of shafts alone of |dw| and |da| / dt, in rad/s2.
-/// The simulation itself keeps every bit. An error if the two cannot be exchanged.
-Result<ErrorFigure> shadow_error(const simulation::Simulation& simulation, std::uint32_t component, const std::string& finer);
+/// The simulation itself keeps every bit. An error if the two cannot be exchanged, or the interruption came first.
+Result<ErrorFigure> shadow_error(const simulation::Simulation& simulation, std::uint32_t component, const std::string& finer,
+                                 const Interruption* interruption = nullptr);
 
 /// Looks at one component after the other, now and then.
 class ErrorProbe

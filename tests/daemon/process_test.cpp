@@ -230,7 +230,7 @@ TEST_CASE("too many components are refused where they come in, with the place an
     CHECK(has(run.text, "many.xml:2:"));
     CHECK(has(run.text, "makes 900000 components: a scene has at most 100000 (--max-components N raises that)"));
     std::ofstream(scene) << "<plab version=\"1\">\n  <repeat count=\"30\">\n    <component id=\"b\" "
-                            "type=\"State/RigidBody\" mass=\"1\"/>\n  </repeat>\n</plab>";
+                            "type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"/>\n  </repeat>\n</plab>";
     CHECK(plabd(scene + " --check --max-components 20").code == 1);
     CHECK(plabd(scene + " --check --max-components 40").code == 0);
 }

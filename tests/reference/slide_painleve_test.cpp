@@ -61,6 +61,8 @@ TEST_CASE("C22: Painleve's rod: an impulse ends the slip, it is said, and energy
     // told; and the spin behind after one step.
     // The fall of one step is 9.81e-3 m/s; what lies has 9.81e-3 J.
     constexpr Bound<8> table[] = {
+        // What sank in by the way of one turning step is lifted out again.
+        {"certified", "Impulse", {3 * 9.81e-3, 1e-12, 1e-12, 6e-6, 0.01, 0.01, 1, 0.06}, {0, 0, 0, 0, 0, 0, 1, 0}},
         {"*", "Impulse", {3 * 9.81e-3, 1e-12, 1e-12, 1e-14, 0.01, 0.01, 1, 0.06}, {0, 0, 0, 0, 0, 0, 1, 0}},
         {"*", "Rows/Direct", {3 * 9.81e-3, 1e-12, 1e-12, 2e-10, 0.01, 0.01, 1, 0.06}, {0, 0, 0, 0, 0, 0, 1, 0}},
         {"*", "Rows/SequentialImpulse", {3 * 9.81e-3, 1e-12, 0.34, 1.1e-3, 0.011, 0.011, 1, 1e-9}, {0, 0, 0.08, 0, 0, 0, 1, 0}},

@@ -12,7 +12,7 @@
 // | rung                              | bound at h = 1/100, after 4 s                                     |
 // |-----------------------------------|-------------------------------------------------------------------|
 // | Rows/Direct, any resolution       | speeds 2e-14 m/s, sideways 4e-15, yaw 2e-16 rad/s: rounding       |
-// | Impulse, certifying               | speeds 5e-13                                                      |
+// | Impulse, certifying               | speeds 2e-11                                                      |
 // | Impulse, None and bisections      | with four balls only: they begin to touch one by one, and each is |
 // |                                   | answered with all the others; 25 take seconds                     |
 // | Rows/SequentialImpulse            | 1.4e-4 m/s: up to its tolerance, 1e-6 m/s, in each of 400 steps   |
@@ -86,7 +86,7 @@ TEST_CASE("C16: a box with balls on it is pushed as far in any direction")
     };
     for (const Case& c :
          {Case{{"None", "Rows"}, 2e-14, 4e-15, 2e-16}, Case{{"Speculative", "Rows"}, 2e-14, 4e-15, 2e-16},
-          Case{{"LocalRoot", "Rows"}, 2e-14, 4e-15, 2e-16}, Case{{"LocalRoot", "Impulse"}, 5e-13, 5e-13, 6e-16},
+          Case{{"LocalRoot", "Rows"}, 2e-14, 4e-15, 2e-16}, Case{{"LocalRoot", "Impulse"}, 2e-11, 5e-13, 2e-15},
           Case{{"None", "Rows", "SequentialImpulse"}, 1.4e-4, 1.5e-5, 6e-7}, Case{{"None", "Rows", "SoftStep"}, 1.5e-4, 1.5e-4, 3e-6}})
         for (const double angle : {std::numbers::pi / 2, std::numbers::pi / 3})
         {
@@ -105,7 +105,7 @@ TEST_CASE("C16: with four balls for a second, by every rung")
     // Speeds along the push, across it, m/s; yaw, rad/s: the worst of two directions.
     constexpr Bound<3> table[] = {
         {"None", "Impulse", {0.02, 3e-4, 1.3e-5}, {4e-3, 0, 0}}, {"halved", "*", {1.2e-12, 5e-13, 4e-13}},
-        {"certified", "Impulse", {1.6e-13, 6e-14, 3e-15}},       {"*", "Rows/Direct", {4e-14, 5e-15, 1.2e-16}},
+        {"certified", "Impulse", {1.6e-13, 6e-14, 3e-14}},       {"*", "Rows/Direct", {4e-14, 5e-15, 2e-16}},
         {"*", "Rows/SequentialImpulse", {6e-8, 7e-9, 4e-10}},    {"*", "Rows/SoftStep", {5e-4, 1.3e-5, 7e-7}, {1e-4, 0, 0}},
         {"*", "Penalty", {6e-4, 5e-13, 4e-13}, {1e-4, 0, 0}},
     };

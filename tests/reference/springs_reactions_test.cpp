@@ -163,12 +163,12 @@ TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are n
         double robertson, van_der_pol;  ///< relative; 0: the event says it all
     };
     const Row table[] = {
-        {{"SemiImplicitEuler"}, "script.error", 0, 0},
-        {{"StoermerVerlet"}, "script.error", 0, 0},
-        {{"RungeKutta4"}, "script.error", 0, 0},
-        {{"RotationSplitting", "order=\"2\""}, "script.error", 0, 0},
-        {{"RotationSplitting"}, "script.error", 0, 0},
-        {{"Exact"}, "script.error", 0, 0},                       // RotationSplitting
+        {{"SemiImplicitEuler"}, "lost", 0, 0},
+        {{"StoermerVerlet"}, "lost", 0, 0},
+        {{"RungeKutta4"}, "lost", 0, 0},
+        {{"RotationSplitting", "order=\"2\""}, "lost", 0, 0},
+        {{"RotationSplitting"}, "lost", 0, 0},
+        {{"Exact"}, "lost", 0, 0},                       // RotationSplitting
         {{"Exponential"}, "solver.fell_back", 2.2e-5, 3.9e-11},  // to Radau5
     };
     for (const Row& row : table)
@@ -181,7 +181,9 @@ TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are n
             REQUIRE_MESSAGE(s.loaded(), s.error());
             s.warnings_expected = s.keep_events = true;
             s.step(1000);
-            CHECK(s.count(row.event) == 1);
+            // By a script whose rates leave the numbers, or by values that do.
+            const bool lost = row.event == "lost";
+            CHECK((lost ? s.count("script.error") + s.count("state.not_finite") >= 1 : s.count(row.event) == 1));
             const double bound = reaction == &kRobertson ? row.robertson : row.van_der_pol;
             if (bound > 0) CHECK(relative_error(*reaction, row.rung, 1000) < 2 * bound);
         }

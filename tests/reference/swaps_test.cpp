@@ -37,7 +37,7 @@ std::string two_balls(const std::string& response, const std::string& resolution
     return solid("a", "Sphere' radius='0.1'", 1, {-0.12, 0, 0}, "linear_velocity='1 0.1 0' angular_velocity='0 0 2'") +
            solid("b", "Sphere' radius='0.1'", 2, {0.12, 0, 0}) +
            "<component id='contact' type='CDetection/ODE' between='a b' resolution='Resolution/" + resolution + "' response='Response/" +
-           response + "'/>";
+           response + (response == "Penalty" || response == "HuntCrossley" ? "' response.restitution='1'/>" : "'/>");
 }
 
 double energy_of(const Scene& s)

@@ -101,10 +101,12 @@ TEST_CASE("bodies that stay sunk into one another are reported; an overlap that 
     {
         return "<component id=\"floor\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"floor\"/>"
                "<component id=\"cube\" type=\"Shape/Box\" half_extents=\"0.5 0.5 0.5\"/>"
+               // So wide that the low one does not slip out under it.
+               "<component id=\"slab\" type=\"Shape/Box\" half_extents=\"5 5 0.5\"/>"
                "<component id=\"low\" type=\"State/RigidBody\" mass=\"1\" shape=\"cube\" position=\"0 0 0.45\"/>"
                "<component id=\"high\" type=\"State/RigidBody\" mass=\"" +
                mass +
-               "\" shape=\"cube\" position=\"0 0 1.45\"/><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>"
+               "\" shape=\"slab\" position=\"0 0 1.45\"/><component id=\"g\" type=\"Field/Gravity\" between=\"*\"/>"
                "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" response=\"Response/Rows\" response.manager=\"Manager/" +
                manager + "\" resolution=\"Resolution/None\"/>";
     };

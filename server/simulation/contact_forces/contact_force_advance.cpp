@@ -31,7 +31,7 @@ constexpr double kUnseen = 0.25;
 double thinnest(const Geometry& g)
 {
     if (const double known = least_half_width(g); known > 0) return known;
-    return 0.5 * std::min({half_width_along(g, {1, 0, 0}), half_width_along(g, {0, 1, 0}), half_width_along(g, {0, 0, 1})});
+    return 0.5 * std::min({half_way_through(g, {1, 0, 0}), half_way_through(g, {0, 1, 0}), half_way_through(g, {0, 0, 1})});
 }
 }  // namespace
 
@@ -125,7 +125,7 @@ double ContactForces::time_through(const NearPair& p) const
             const Geometry& g = host.shapes.geometry[shape.index];
             if (g.kind == GeometryKind::Plane) continue;
             double rate = 0;  // 1/s
-            if (speed > 0) rate += speed / half_width_along(g, rotate_back(bodies.orientation[r.index] * g.pose.q, way * (1 / speed)));
+            if (speed > 0) rate += speed / half_way_through(g, rotate_back(bodies.orientation[r.index] * g.pose.q, way * (1 / speed)));
             if (turning > 0) rate += turning / thinnest(g);
             if (rate > 0) least = std::min(least, 1 / rate);
         }

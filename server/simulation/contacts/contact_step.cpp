@@ -7,6 +7,7 @@
 #include "plab/rotation.h"
 #include "simulation/contacts/island_step.h"
 #include "simulation/contacts/paradox.h"
+#include "simulation/contacts/settled.h"
 #include "simulation/events/speculation.h"
 #include "simulation/step/stepper.h"
 
@@ -19,8 +20,6 @@ namespace
 constexpr double kNoApproach = 1e-9;
 /// Of the smaller body's radius: a standing pair is never looked at as if it were closer than this.
 constexpr double kMostShare = 0.1;
-/// Steps after which a pair that touched all the while slides, and does not bounce.
-constexpr Tick kSettled = 8;
 
 /// m: radius of the most curved round shape of a body; infinite where it has none, and for what is concave.
 double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
@@ -53,6 +52,17 @@ const PairState* known_pair(const ContactCache& cache, const world::World& world
 double opening_by_curves(double speed, double h, double radii)
 {
     return 4 * speed * speed * h * h / radii;
+}
+
+/// m, beyond `base`: what slides along a curve is off it by a little more than others at the end of a step, and still held: without, it
+/// would hop. Not what parts faster than the curve makes it: that bounces.
+double sliding_margin(const world::HostTables& host, Ref a, Ref b, const Vec3& normal, double base, double radius, double h)
+{
+    const Vec3 v = host.bodies.velocity[b.index] - host.bodies.velocity[a.index];
+    const double parting = dot(v, normal), along = length(v - parting * normal);
+    const double curves = curve_radius(host.bodies, host.shapes, a.index) + curve_radius(host.bodies, host.shapes, b.index);
+    if (parting > 2 * along * along * h / curves) return base;
+    return base + std::min(opening_by_curves(along, h, curves), kMostShare * radius);
 }
 
 }  // namespace
@@ -124,10 +134,18 @@ void Stepper::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& o
     if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, frame_.step));
     const std::size_t first = out.size();
     detect(detector, index, {}, false, out, margin);
+    // By the normal that is seen, not the one that is known: this look serves the next step as well, and a step that begins from a
+    // snapshot looks with other knowledge.
+    const auto margin_of = [&](const Contact& c)
+    {
+        const PairState* pair = known_pair(cache_, world_, detector.component, c);
+        const double base = standing_margin(c.a, c.b), radius = std::min(radius_of_body_[c.a.index], radius_of_body_[c.b.index]);
+        if (!pair || frame_.tick - pair->since < kSettled || !std::isfinite(radius)) return base;
+        return sliding_margin(world_.host(), c.a, c.b, c.normal, base, radius, frame_.step);
+    };
     const auto far = [&](const FoundContact& f)
     {
-        const PairState* pair = known_pair(cache_, world_, detector.component, f.contact);
-        if (f.contact.depth > -(pair ? standing_margin(*pair) : standing_margin(f.contact.a, f.contact.b))) return false;
+        if (f.contact.depth > -margin_of(f.contact)) return false;
         return !detector.speculates || !may_close(bodies, radius_of_body_, f.contact, acceleration, frame_.step);
     };
     out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
@@ -220,19 +238,12 @@ SurfaceLaw Stepper::response_law(std::uint32_t detector) const
     return {number_of(response, "friction"), number_of(response, "restitution")};
 }
 
-/// What slides along a curve is off it by a little more than others at the end of a step, and still held: without, it would hop.
-/// Not what touches since a few steps only, or parts faster than the curve makes it: that bounces.
+/// Not what touches since a few steps only: that bounces.
 double Stepper::standing_margin(const PairState& pair) const
 {
     const double base = standing_margin(pair.a, pair.b), radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
     if (frame_.tick - pair.since < kSettled || !std::isfinite(radius)) return base;
-    const Bodies& bodies = world_.host().bodies;
-    const Shapes& shapes = world_.host().shapes;
-    const Vec3 v = bodies.velocity[pair.b.index] - bodies.velocity[pair.a.index];
-    const double parting = dot(v, pair.normal), along = length(v - parting * pair.normal);
-    const double curves = curve_radius(bodies, shapes, pair.a.index) + curve_radius(bodies, shapes, pair.b.index);
-    if (parting > 2 * along * along * frame_.step / curves) return base;
-    return base + std::min(opening_by_curves(along, frame_.step, curves), kMostShare * radius);
+    return sliding_margin(world_.host(), pair.a, pair.b, pair.normal, base, radius, frame_.step);
 }
 
 double Stepper::standing_margin(Ref a, Ref b) const

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/contacts/settled.h"
 #include "simulation/contacts/island_step.h"
 #include "simulation/step/stepper.h"
 
@@ -31,9 +32,10 @@ bool HeldIslands::is_current() const
 {
     const Bodies& bodies = s_->world_.host().bodies;
     if (!known_ || known_positions_ != bodies.position || known_orientations_ != bodies.orientation) return false;
-    // How far gaps are looked for depends on speeds where they speculate.
-    const bool speculates = std::any_of(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.speculates; });
-    return !speculates || (known_velocities_ == bodies.velocity && known_spins_ == bodies.angular_velocity);
+    // How far gaps are looked for depends on speeds, and on whether a pair is one that slides: from this step on, for some.
+    if (known_velocities_ != bodies.velocity || known_spins_ != bodies.angular_velocity) return false;
+    const auto settles = [&](const PairState& p) { return s_->frame_.tick - p.since == kSettled; };
+    return std::none_of(s_->cache_.pairs().begin(), s_->cache_.pairs().end(), settles);
 }
 
 void HeldIslands::begin_step()

@@ -164,9 +164,11 @@ void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> gro
     }
     for (Isle* isle : isles)
         if (!s_->frame_.give_up()) solve(*isle, system, from, to, book, trial);
-    if (book.work) book_forces(system, isles, to - from);
+    const bool given_up = s_->frame_.give_up();  // then isles may not have been solved, and nobody reads what is booked
+    if (book.work && !given_up) book_forces(system, isles, to - from);
     system.finish_held();
-    for (const Isle* isle : isles) report_rows(*isle, system, to - from, book);
+    if (!given_up)
+        for (const Isle* isle : isles) report_rows(*isle, system, to - from, book);
     system.hold_rows(false);
     s_->finish_advance(system, system.all_finite(), to, trial);
 }

@@ -8,7 +8,8 @@ namespace plab::simulation
 
 /// Half the least width of a shape, m; 0 where it is not known (hulls, planes).
 double least_half_width(const Geometry& shape);
-/// Half the width along a direction (unit, in the shape's frame), m; infinite for a plane.
-double half_width_along(const Geometry& shape, const Vec3& direction);
+/// Half of the longest way through a shape along a direction (unit, in the shape's frame), m: of a hull that through the box around it;
+/// infinite for a plane.
+double half_way_through(const Geometry& shape, const Vec3& direction);
 
 }  // namespace plab::simulation

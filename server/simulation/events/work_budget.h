@@ -13,10 +13,10 @@ class WorkBudget
 {
 public:
     /// Units that every step has, however small its scene: some thousand impacts of a few bodies.
-    static constexpr double kBase = 50'000;
+    static constexpr double kBase = 100'000;
     static constexpr double kMultiple = 20;
     /// One sweep over one row of a contact or joint, and one pair that a list of neighbours names, in units.
-    static constexpr double kSweptRow = 1.0 / 16, kListedPair = 1.0 / 16;
+    static constexpr double kSweptRow = 1.0 / 32, kListedPair = 1.0 / 16;
     /// One group or known pair of the scene, gone through to find out what stands on what, in units.
     static constexpr double kGoneThrough = 1.0 / 64;
 

@@ -157,7 +157,6 @@ void Trial::measure_again(Stepper& part, const TrialScope& scope, const Interrup
 {
     constexpr double kShort = 1e6;  // ns
     if (outcome.cost_ns >= kShort || deadline.due()) return;
-    put_back();
     fix_everybody_else(scope);
     set_up(part, scope);
     const std::uint64_t begin = now_ns();
@@ -182,7 +181,7 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         part.obey(&deadline, &progress);
         part.on_changes(&Trial::apply_changes, this);
         part_ = &part;
-        bool grown = false;
+        bool grown = false, tried = false;
         if (auto built = part.rebuild(); !built)
             out.failure = built.error().text();
         else
@@ -190,11 +189,16 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
             world_.host() = fixed;  // what a stepper derives from structure may touch it
             set_up(part, scope);
             out = once(part, components, deadline);
-            grown = !out.given_up && grow(scope, part);
-            if (measured && !grown && !out.given_up && out.failure.empty()) measure_again(part, scope, deadline, out.outcome);
+            tried = !out.given_up;
+        }
+        put_back();  // before others come in: nobody is fixed then
+        if (tried) grown = grow(scope, part);
+        if (tried && !grown && measured && out.failure.empty())
+        {
+            measure_again(part, scope, deadline, out.outcome);
+            put_back();
         }
         part_ = nullptr;
-        put_back();
         if (!grown) break;
     }
     return out;

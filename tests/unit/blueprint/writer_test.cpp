@@ -154,7 +154,7 @@ TEST_CASE("numbers keep their bits")
         "<scene dt='0.0123456789' seed='18446744073709551615'><camera id='c' position='0.1 0.2 0.3' field_of_view='33 "
         "deg'/></scene>"
         "<component id='b' type='State/RigidBody' mass='0.1 g' inertia='1.1 2.2 3.3 0.01 -0.02 0.030000000000000002' "
-        "orientation='axis 1 2 3 10 deg' position='1.7976931348623157e308 5e-324 -0.3333333333333333'/>"
+        "orientation='axis 1 2 3 10 deg' position='9.9999999999999997e99 5e-324 -0.3333333333333333'/>"
         "<component id='s' type='State/Shaft' inertia='0.7' axis='1 1 1' angle='370 deg' prescribed='true'/>"
         "<component id='r' type='Response/Impulse' friction='inf'/>"));
 }

@@ -202,8 +202,8 @@ TEST_CASE("numbers that are out of range are refused, with a number that would d
     CHECK(steps.code == 0);
     // It was asked for once; how often the request had to be sent is nobody's concern.
     CHECK_MESSAGE(!has(steps.out, "carried out before"), steps.out);
-    CHECK(lab("step --json").json()["repeated"] == false);
     CHECK(server.last().parts.at(0).argument == "9223372036854775807");
+    CHECK(lab("step --json").json()["repeated"] == false);
     CHECK(lab("pause --at 9223372036854775807").code == 0);
     CHECK(server.last().at == 9223372036854775807);
     CHECK(lab("objects --timeout 1e8").code == 0);
