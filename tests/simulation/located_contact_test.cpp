@@ -115,7 +115,7 @@ TEST_CASE("what falls along a wall, touching it, falls freely: compounds, boxes,
 
 TEST_CASE("a heap of falling bodies: each step's work is bounded, the state stays finite, and repeats bit for bit")
 {
-    constexpr int kBodies = 32;
+    constexpr int kBodies = 64;
     const auto heap = [](const char* resolution, const char* response)
     {
         std::uint64_t seed = 5;

@@ -208,9 +208,9 @@ TEST_CASE("part of the repository's catalogue: every ladder has its heat-map, an
     suite["studies"] = part;
     const std::string copy = kFolder + "/part.json";
     std::ofstream(copy) << suite;
-    const Outcome done = study({"--suite", copy, "--repeat", "1", "-o", where, "--progress"});
+    const Outcome done = study({"--suite", copy, "--repeat", "1", "-o", where});
     REQUIRE_MESSAGE(done.code == 0, done.errors);
-    CHECK(has(done.errors, " of 8, "));
+    CHECK(has(done.errors, "plab-study: 8 studies"));
     const auto json = nlohmann::json::parse(read(where + "/suite.json"));
     REQUIRE(json["studies"].size() == 8);
     for (const auto& s : json["studies"]) CHECK_MESSAGE(!s.contains("trouble"), s.dump());
