@@ -6,6 +6,7 @@
 
 #include "plab/collision.h"
 #include "plab/context.h"
+#include "plab/number_text.h"
 #include "plab/schema.h"
 
 namespace plab::resolution
@@ -18,9 +19,8 @@ inline double shortest_bracket(const Trial& trial, double tolerance = 0) { retur
 inline void describe_work(Schema& s, Column<double>& max_work)
 {
     s.param(max_work, "max_work", unit::one,
-            "what locating may take in a step, as a multiple of the step without it, beside 50000 looks that are always allowed; beyond it "
-            "the "
-            "rest of the step is answered at its end (resolution.over_budget)")
+            "what locating may take in a step, as a multiple of the step without it, beside 100000 looks that are always allowed; beyond "
+            "it the rest of the step is answered at its end (resolution.over_budget)")
         .or_else(20)
         .positive();
 }
@@ -29,7 +29,7 @@ inline void describe_work(Schema& s, Column<double>& max_work)
 inline void tell_grazing(const StepContext& context, Row row, const Trial& trial)
 {
     context.emit(row, "resolution.grazing", Severity::Warning,
-                 "two bodies pass one another within " + std::to_string(trial.gap_begin) + " m; after " + std::to_string(trial.iteration) +
+                 "two bodies pass one another within " + rounded_text(trial.gap_begin) + " m; after " + std::to_string(trial.iteration) +
                      " looks it is not certain that they do not touch; allow more max_iterations or take shorter steps",
                  {trial.begin, trial.gap_begin});
 }
