@@ -1,6 +1,5 @@
 #include "idl/topics.h"
 
-#include <algorithm>
 #include <array>
 
 namespace plab::wire
@@ -97,13 +96,6 @@ Qos partition_qos(const std::string& partition)
     Qos qos(dds_create_qos());
     dds_qset_partition1(qos.get(), partition.c_str());
     return qos;
-}
-
-bool is_server_name(const std::string& name)
-{
-    const auto allowed = [](char c)
-    { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-'; };
-    return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), allowed);
 }
 
 }  // namespace plab::wire

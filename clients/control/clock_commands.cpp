@@ -121,7 +121,9 @@ void add_cancel(CLI::App& app, Context& context)
                                     {"cancel", "take back a request that waits",
                                      "  plabctl cancel 3f9c01d2a4b5e6f70819a2b3c4d5e6f7:1\n"
                                      "The name is what a time-out of plabctl tells.\n"},
-                                    [name](Context& c) { return send(c, {{"cancel", "", *name}}); });
+                                    [name](Context& c) {
+                                        return send(c, {{"cancel", "", *name}});
+                                    });
     command.add_option("request", *name, "as the time-out named it: client and number")->required()->type_name("CLIENT:NUMBER");
 }
 

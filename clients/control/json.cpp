@@ -206,11 +206,16 @@ Json json_of(const link::SwapReport& s)
 
 Json json_of(const link::Reply& r)
 {
-    return {{"outcome", r.outcome},     {"repeated", r.repeated},
-            {"reasons", r.reasons},     {"run", r.run},
-            {"revision", r.revision},   {"step", r.step},
-            {"time", r.time},           {"pause_ns", r.pause_ns},
-            {"waited_ns", r.waited_ns}, {"trial", r.trial},
+    return {{"outcome", r.outcome},
+            {"repeated", r.repeated},
+            {"reasons", r.reasons},
+            {"run", r.run},
+            {"revision", r.revision},
+            {"step", r.step},
+            {"time", r.time},
+            {"pause_ns", r.pause_ns},
+            {"waited_ns", r.waited_ns},
+            {"trial", r.trial},
             {"swaps", array(r.swaps, [](const link::SwapReport& s) { return json_of(s); })}};
 }
 

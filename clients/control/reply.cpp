@@ -68,6 +68,16 @@ std::string change_text(const double (&a)[3], const double (&b)[3])
     return number(b[0] - a[0]) + " " + number(b[1] - a[1]) + " " + number(b[2] - a[2]);
 }
 
+/// The server tells the old one's cost only where it differs from the new one's by more than chance.
+void add_cost(Table& table, const link::StepOutcome& old, const link::StepOutcome& now)
+{
+    const auto text = [](double ns) { return std::isfinite(ns) ? duration_text(ns) : std::string("-"); };
+    if (!std::isfinite(now.cost_ns) && !std::isfinite(old.cost_ns)) return;
+    const double more = now.cost_ns - old.cost_ns;
+    table.add(
+        {"cost of the step", text(old.cost_ns), text(now.cost_ns), std::isfinite(more) ? duration_text(more) : "none that can be told"});
+}
+
 void print_swap(const Console& console, const link::SwapReport& swap)
 {
     console.out(console.styled(Style::Bold, printable(swap.component)) + ": " + printable(swap.from) + " -> " +
@@ -86,7 +96,7 @@ void print_swap(const Console& console, const link::SwapReport& swap)
     table.add({"energy, J", exact_number(a.energy), exact_number(b.energy), number(b.energy - a.energy)});
     table.add({"momentum, N s", vector_text(a.momentum), vector_text(b.momentum), change_text(a.momentum, b.momentum)});
     table.add({"error", exact_number(a.error), exact_number(b.error), number(b.error - a.error)});
-    table.add({"cost of the step", duration_text(a.cost_ns), duration_text(b.cost_ns), duration_text(b.cost_ns - a.cost_ns)});
+    add_cost(table, a, b);
     table.print(console);
     console.out("energy at the boundary " + exact_number(swap.energy_before) + " J\n");
 }

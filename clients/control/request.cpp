@@ -30,7 +30,8 @@ std::string fate_of_unanswered(const Context& context, const link::Caller& calle
     switch (caller.presence())
     {
         case link::Presence::There:
-            return (timing.at ? step + " may still be ahead: the request stands, " : "the request stands, and can take effect before " + step + ": ") +
+            return (timing.at ? step + " may still be ahead: the request stands, "
+                              : "the request stands, and can take effect before " + step + ": ") +
                    std::string("--timeout waits longer, ") + back;
         case link::Presence::Silent:
             return "the server shows no sign of life: if it comes back, the request can still take effect before " + step + "; " + back;

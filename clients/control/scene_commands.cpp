@@ -114,12 +114,15 @@ void add_swap(CLI::App& app, Context& context)
     command.add_option("id", o->ids, "components; * and ? stand for any text and any character: all of the new type's family that match")
         ->required()
         ->type_name("ID");
-    command.add_option("--trial", o->trial,
-                       "how long the first step may be tried, in ms, or none; default: ten steps' mean cost, at least 5 ms. Beyond it the swap is "
-                       "carried out without the proof")
+    command
+        .add_option(
+            "--trial", o->trial,
+            "how long the first step may be tried, in ms, or none; default: ten steps' mean cost, at least 5 ms. Beyond it the swap is "
+            "carried out without the proof")
         ->type_name("MS");
     command.add_flag("--or-refuse", o->or_refuse, "refuse the swap if its trial takes longer");
-    command.add_option("--allow-energy", o->energy, "by how much the first step may multiply the energy, or any; default: 100")->type_name("FACTOR");
+    command.add_option("--allow-energy", o->energy, "by how much the first step may multiply the energy, or any; default: 100")
+        ->type_name("FACTOR");
     command.add_option("--to", o->to, "the new type")->required()->type_name("TYPE");
     command.add_option("--param", o->parameters, "a value of the new component (may be repeated)")
         ->take_all()

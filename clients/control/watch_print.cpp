@@ -87,7 +87,8 @@ void WatchPrinter::metrics(const link::Metrics& metrics)
     link::Metrics m = metrics;
     std::erase_if(m.interactions, [&](const link::InteractionMetrics& i) { return !selection_.takes(i.component); });
     if (json_) return print(console_, json_of(m));
-    console_.out(console_.styled(Style::Bold, when(m.step, m.time)) + "  " + (m.real_time_factor > 0 ? number(m.real_time_factor) + "x  " : "") + (m.step_ns > 0 ? duration_text(m.step_ns) : "-") +
+    console_.out(console_.styled(Style::Bold, when(m.step, m.time)) + "  " +
+                 (m.real_time_factor > 0 ? number(m.real_time_factor) + "x  " : "") + (m.step_ns > 0 ? duration_text(m.step_ns) : "-") +
                  " a step  kinetic " + number(m.kinetic) + " J  stored " + number(m.stored) + " J  unexplained " + number(m.unexplained) +
                  " J  " + std::to_string(m.contacts) + " contacts  deepest " + number(m.deepest) + " m\n");
     Table table({{"interaction", Align::Left, Shrink::Middle},

@@ -29,7 +29,8 @@ Severity severity_of(std::string_view word)
 
 bool Filter::wants(const plab_v2_EventInfo& e) const
 {
-    return events && severity_of(e.severity) >= severity && begins_with_one(e.kind, kinds) && names_one({e.component_id, e.a, e.b}, objects);
+    return events && severity_of(e.severity) >= severity && begins_with_one(e.kind, kinds) &&
+           names_one({e.component_id, e.a, e.b}, objects);
 }
 
 bool Filter::wants(const plab_v2_CollisionInfo& c) const

@@ -105,8 +105,8 @@ void add_segments(Page& page, const std::vector<Segment>& segments)
                             number(s.work)});
     if (rows.empty()) return;
     page.paragraph("Each interaction with each algorithm that it had. A click on a column's head sorts by it.");
-    add_table(page, head({"interaction", "algorithm", "run", "from, s", "to, s", "cost, µs/step", "largest error", "unit", "work, J"}), rows,
-              segments.size());
+    add_table(page, head({"interaction", "algorithm", "run", "from, s", "to, s", "cost, µs/step", "largest error", "unit", "work, J"}),
+              rows, segments.size());
 }
 
 void add_requests(Page& page, const Log& log)

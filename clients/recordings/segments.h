@@ -17,7 +17,7 @@ struct Segment
     double mean_cost = 0;  ///< ns per step
     double largest_error = 0;
     std::string error_unit;  ///< of it; errors that were measured in another unit before are left out
-    double work = 0;  ///< J, done in this time
+    double work = 0;         ///< J, done in this time
 };
 
 /// By component, then time.

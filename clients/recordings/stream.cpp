@@ -25,10 +25,10 @@ void Troubles::merge(const Troubles& other)
 struct Stream::Samples
 {
     recording::Decoder decoder;
-    std::tuple<Sample<plab_v2_Server>, Sample<plab_v2_Scene>, Sample<plab_v2_SceneObject>, Sample<plab_v2_Shape>, Sample<plab_v2_Interaction>,
-               Sample<plab_v2_Type>, Sample<plab_v2_Frame>, Sample<plab_v2_Collisions>, Sample<plab_v2_Events>, Sample<plab_v2_Metrics>,
-               Sample<plab_v2_Request>, Sample<plab_v2_Reply>, Sample<plab_v2_Image>, Sample<plab_v2_Journal>, Sample<plab_v2_Hashes>,
-               Sample<plab_v2_Snapshot>, Sample<plab_v2_Gone>>
+    std::tuple<Sample<plab_v2_Server>, Sample<plab_v2_Scene>, Sample<plab_v2_SceneObject>, Sample<plab_v2_Shape>,
+               Sample<plab_v2_Interaction>, Sample<plab_v2_Type>, Sample<plab_v2_Frame>, Sample<plab_v2_Collisions>, Sample<plab_v2_Events>,
+               Sample<plab_v2_Metrics>, Sample<plab_v2_Request>, Sample<plab_v2_Reply>, Sample<plab_v2_Image>, Sample<plab_v2_Journal>,
+               Sample<plab_v2_Hashes>, Sample<plab_v2_Snapshot>, Sample<plab_v2_Gone>>
         all;
 };
 

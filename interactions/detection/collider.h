@@ -21,7 +21,7 @@ enum class ColliderKind : std::uint8_t
     Hull,
     Capsule,
     Cylinder,
-    Bowl,       ///< surfaces (plab/surface.h): they meet solids, but neither one another nor planes
+    Bowl,  ///< surfaces (plab/surface.h): they meet solids, but neither one another nor planes
     Bore,
     Triangles,
 };
@@ -38,7 +38,7 @@ public:
     ColliderKind kind() const { return kind_; }
     const Pose& pose() const { return source_.pose; }  ///< X_BS
     const Vec3& size() const { return source_.size; }  ///< of bowls and bores: x radius, z reach
-    const Hull& hull() const { return hull_; }  ///< of meshes
+    const Hull& hull() const { return hull_; }         ///< of meshes
     const TriangleSurface& triangles() const { return triangles_; }
     /// Why a shape that should collide does not; empty if nothing is wrong.
     const std::string& complaint() const { return complaint_; }

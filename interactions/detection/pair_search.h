@@ -41,7 +41,8 @@ public:
     virtual void find(std::vector<PartPair>& pairs) = 0;
 };
 
-/// `kind`: "tree" (of older files: "hash"), or an ODE space: "simple", "sweep_and_prune" or "quadtree". `parts`: one more than the largest index.
+/// `kind`: "tree" (of older files: "hash"), or an ODE space: "simple", "sweep_and_prune" or "quadtree". `parts`: one more than the largest
+/// index.
 std::unique_ptr<PairSearch> make_pair_search(std::string_view kind, std::size_t parts);
 
 }  // namespace plab::detection

@@ -12,6 +12,8 @@ PLAB_PLUGIN("detection", registrar)
         .command<detection::detect>(Phase::Detect, "CDetection/Handle", "finds where bodies touch")
         .command<detection::measure_gap>(Phase::Gap, "CDetection/Gap", "measures how far two bodies are apart")
         .cost("one bounding volume per shape; hash and sweep_and_prune about linear in bodies")
-        .limits("half-spaces and surfaces meet neither one another nor themselves; meshes collide as their convex hulls or as surfaces; no continuous collision")
+        .limits(
+            "half-spaces and surfaces meet neither one another nor themselves; meshes collide as their convex hulls or as surfaces; no "
+            "continuous collision")
         .source("ODE 0.16.2 (box-box, spaces); Snethen, XenoCollide, Game Programming Gems 7 (2008) for hulls");
 }

@@ -171,8 +171,9 @@ void meet_edges(const Solid& K, const RoundWall& wall, MeetingSink& out)
                 for (std::uint32_t k = 0; k < 3; ++k)
                 {
                     if (i & (1u << k)) continue;
-                    const auto corner = [&](std::uint32_t c)
-                    { return K.from_local({c & 1 ? h.x : -h.x, c & 2 ? h.y : -h.y, c & 4 ? h.z : -h.z}); };
+                    const auto corner = [&](std::uint32_t c) {
+                        return K.from_local({c & 1 ? h.x : -h.x, c & 2 ? h.y : -h.y, c & 4 ? h.z : -h.z});
+                    };
                     meet_edge(corner(i), corner(i | (1u << k)), 0, 3 * i + k, wall, out);
                 }
             return;
@@ -186,7 +187,8 @@ void meet_edges(const Solid& K, const RoundWall& wall, MeetingSink& out)
         case Core::Cylinder:
         {
             // The line along the barrel that is furthest out where it crosses.
-            const Vec3 u = K.axis(2), out_of_middle = wall.outwards(K.pose().p), across = normalized(out_of_middle - dot(out_of_middle, u) * u);
+            const Vec3 u = K.axis(2), out_of_middle = wall.outwards(K.pose().p),
+                       across = normalized(out_of_middle - dot(out_of_middle, u) * u);
             const Vec3 aside = K.pose().p + h.x * across;
             return meet_edge(aside - h.z * u, aside + h.z * u, 0, 0, wall, out);
         }

@@ -13,9 +13,9 @@ namespace plab::detection
 /// One place where a solid may touch a surface.
 struct Meeting
 {
-    double gap = 0;            ///< m; < 0: overlap
+    double gap = 0;  ///< m; < 0: overlap
     Vec3 on_solid, on_surface;
-    Vec3 normal;               ///< unit
+    Vec3 normal;  ///< unit
     std::uint32_t feature = 0;
 };
 

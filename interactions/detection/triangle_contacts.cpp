@@ -193,10 +193,7 @@ private:
 class SolidOnTriangles
 {
 public:
-    SolidOnTriangles(const Surface& s, const Solid& K, MeetingSink& out)
-        : s_(s), K_(K), out_(out), size_(K.extent() + K.radius())
-    {
-    }
+    SolidOnTriangles(const Surface& s, const Solid& K, MeetingSink& out) : s_(s), K_(K), out_(out), size_(K.extent() + K.radius()) {}
 
     void meet(std::uint32_t index)
     {
@@ -313,7 +310,9 @@ void meet_triangles(const Solid& K, const Collider& collider, MeetingSink& out)
     if (K.core() == Core::Point) return BallOnTriangles(surface, K.pose().p, K.radius(), out).run();
     SolidOnTriangles pair(surface, K, out);
     const auto meet = [&](std::uint32_t t) { pair.meet(t); };
-    if (!std::isfinite(out.limit())) return surface.visit_near(K.center(), [&] { return out.limit() + K.extent() + K.radius(); }, meet);
+    if (!std::isfinite(out.limit()))
+        return surface.visit_near(
+            K.center(), [&] { return out.limit() + K.extent() + K.radius(); }, meet);
     Vec3 lower, upper;
     for (int k = 0; k < 3; ++k)
     {

@@ -64,7 +64,8 @@ private:
     struct Node
     {
         Vec3 lower, upper;
-        std::uint32_t first = 0, count = 0;  ///< leaf: triangles in order_; else count = 0 and `first` is the left child, first + 1 the right
+        std::uint32_t first = 0,
+                      count = 0;  ///< leaf: triangles in order_; else count = 0 and `first` is the left child, first + 1 the right
     };
     static constexpr std::size_t kDepth = 64;
 

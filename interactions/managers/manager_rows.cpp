@@ -41,9 +41,9 @@ public:
         const double residual = violation(problem);
         return {done.sweeps, residual, residual <= tolerance_, false};
     }
-    Verdict find_displacements(Problem& problem) override
+    Verdict find_displacements(Problem& problem, double tolerance) override
     {
-        const Swept done = sweep(problem, {position_iterations_, kPositionTolerance, relaxation_});
+        const Swept done = sweep(problem, {position_iterations_, tolerance, relaxation_});
         problem.apply_impulses();
         return {done.sweeps, 0, true, false};
     }
@@ -58,10 +58,10 @@ class Exactly final : public Method
 public:
     Exactly(NewtonSolver& newton, const Solving& how) : newton_(newton), how_(how) {}
     Verdict find_impulses(Problem& problem) override { return verdict(newton_.solve(problem, how_)); }
-    Verdict find_displacements(Problem& problem) override
+    Verdict find_displacements(Problem& problem, double tolerance) override
     {
         Solving how = how_;
-        how.tolerance = 0.1 * kPositionTolerance;
+        how.tolerance = 0.1 * tolerance;
         return verdict(newton_.solve(problem, how));
     }
 
@@ -71,6 +71,9 @@ private:
     NewtonSolver& newton_;
     Solving how_;
 };
+
+/// Of a body's size a step (or of a rad): a violation that is told of.
+constexpr double kMatters = 0x1p-23;
 
 int whole(std::int64_t n) { return static_cast<int>(std::min<std::int64_t>(n, 1'000'000)); }
 
@@ -113,7 +116,9 @@ void Account::add(const StepContext& context, Row row, const Island& island, dou
     contacts[row] += static_cast<std::int64_t>(island.contacts.size());
     fallbacks[row] += island.fell_back ? 1 : 0;
     residual[row] = std::max(residual[row], island.residual);
-    if (island.converged) return;
+    // What moves nobody by 2^-23 of its size in a step is left to the output.
+    const double size = island.bodies.empty() ? 1 : island.size;
+    if (island.converged || island.residual * island.h <= kMatters * size) return;
     const bool told = last_failure[row] >= 0 && last_failure[row] + 1 >= context.tick;
     if (!told)
         context.emit(row, "manager.not_converged", Severity::Warning,

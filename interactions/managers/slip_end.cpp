@@ -8,8 +8,10 @@ namespace plab::managers
 namespace
 {
 constexpr int kMostCuts = 8;
-/// Slower than this is no slip, m/s.
-constexpr double kNoSlip = 1e-11;
+/// Slower than this share of the island's size a step is no slip.
+constexpr double kNoSlip = 0x1p-41;
+/// Of Contact::turning: slip that may be none.
+constexpr double kOfTurning = 0x1p-6;
 /// A part of the step that is not worth a cut.
 constexpr double kSliver = 1e-9;
 }  // namespace
@@ -51,7 +53,9 @@ Verdict SlipEnds::try_part(double h)
 bool SlipEnds::slides(std::size_t i) const
 {
     const Point& p = memory_.problem.points[i];
-    return p.frictional() && p.impulse.z > 0 && std::hypot(memory_.slips[i].x, memory_.slips[i].y) > no_slip_;
+    // Half way along a curve, what rolls seems to slip by the turn of the normal times what that makes of its speed.
+    const double least = std::max(no_slip_, kOfTurning * std::fabs(island_.contacts[i].turning));
+    return p.frictional() && p.impulse.z > 0 && std::hypot(memory_.slips[i].x, memory_.slips[i].y) > least;
 }
 
 /// Slip at the end of the part along that at its start, m/s; none if it ended or turned back.
@@ -120,7 +124,7 @@ Verdict SlipEnds::advance()
         Verdict verdict = try_part(rest);
         tried_ = rest, looked_ = false;
         // What sweeps did not settle is no slip.
-        no_slip_ = std::max(kNoSlip, 10 * verdict.residual);
+        no_slip_ = std::max(kNoSlip * island_.size / island_.h, 10 * verdict.residual);
         const double end = cuts < kMostCuts && verdict.converged ? first_end(rest) : rest;
         const bool cut = end < rest * (1 - kSliver);
         const double part = cut ? end : rest;

@@ -93,7 +93,7 @@ private:
     double h_, rate_;
     Softness soft_, against_fixed_;
     bool bounces_ = false;
-    double most_ = 0;     ///< J: kinetic energy after the sub-step's kick, which contacts may not add to
+    double most_ = 0;  ///< J: kinetic energy after the sub-step's kick, which contacts may not add to
     bool limits_bounce_ = false;
     double allowed_ = 0;  ///< J: kinetic energy that the start and the forces on the way allow
 };
@@ -289,7 +289,8 @@ int SoftIsland::step_hard()
     return done.sweeps;
 }
 
-/// Where the sub-step made energy: hard sweeps, then as much off all impulses as leaves none, and if that is not to be had, another sub-step.
+/// Where the sub-step made energy: hard sweeps, then as much off all impulses as leaves none, and if that is not to be had, another
+/// sub-step.
 int SoftIsland::calm()
 {
     constexpr int kSweeps = 2;

@@ -12,12 +12,12 @@ namespace plab::managers
 namespace
 {
 
-/// A gap that counts as touching while others collide, m.
-constexpr double kTouching = 1e-6;
+/// A gap that counts as touching while others collide: share of the island's size.
+constexpr double kTouching = 0x1p-17;
 /// Steps in which a contact that parts is left to itself.
 constexpr double kSoon = 8;
-/// Slower than this nothing meets, m/s.
-constexpr double kSlow = 1e-9;
+/// Slower than this share of the island's size a step nothing meets.
+constexpr double kSlow = 0x1p-34;
 
 bool meets(const Contact& c, double h) { return c.approach > 0 && (c.depth >= 0 || c.approach * h > -c.depth); }
 
@@ -53,7 +53,7 @@ void set_impact_targets(Problem& problem, const Island& island, std::span<const 
         if (meets(c, island.h))
             p.least = restitution * c.approach;
         else
-            p.least = c.depth >= -kTouching || c.impulse != Vec3{} ? -restitution * std::max(0.0, before[i].z) : kFar;
+            p.least = c.depth >= -kTouching * island.size || c.impulse != Vec3{} ? -restitution * std::max(0.0, before[i].z) : kFar;
     }
     for (Line& line : problem.lines)
     {
@@ -133,7 +133,7 @@ void set_targets(Problem& problem, const Island& island, double h, double slop, 
     {
         // What pressed may stand up to the slop away; what comes is to touch, or it would never bounce.
         const Contact& c = island.contacts[i];
-        problem.points[i].least = std::min(0.0, c.depth + (dot(c.impulse, c.normal) > 0 ? slop : 0.0)) / h;
+        problem.points[i].least = c.turning + std::min(0.0, c.depth + (dot(c.impulse, c.normal) > 0 ? slop : 0.0)) / h;
     }
     for (std::size_t i = 0; i < passing.size(); ++i) problem.points[i].least = std::min(problem.points[i].least, passing[i]);
     for (Line& line : problem.lines)
@@ -176,18 +176,25 @@ void displace(const Problem& problem, Bodies& bodies, Shafts& shafts)
     }
 }
 
+/// Its error is an angle.
+bool turns_only(const ConstraintRow& row)
+{
+    return std::all_of(row.blocks.begin(), row.blocks.begin() + row.count, [](const RowBlock& b) { return b.linear == Vec3{}; });
+}
+
 Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
 {
     Problem& problem = memory.problem;
     island.motion->refresh_depths();
     if (!island.rows.empty()) island.motion->refresh_rows();
+    const double length = island.bodies.empty() ? 1 : island.size;  // shafts alone count in rad
     double worst = 0;
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         const Contact& c = island.contacts[i];
         Point& p = problem.points[i];
         // What parts by itself soon, or meets in the next step, is left to its speed: being parted it would gain height.
-        const bool meets_next = i < memory.passing.size() && memory.passing[i] < -kSlow;
+        const bool meets_next = i < memory.passing.size() && memory.passing[i] * island.h < -kSlow * island.size;
         const bool leaves = c.depth > 0 && (meets_next || problem.slip(p).z * kSoon * island.h > c.depth);
         p.least = leaves ? kFar : (c.depth - choices.slop) * (c.depth > choices.slop ? choices.parted_share : 1.0);
         worst = std::max(worst, leaves || p.K(2, 2) == 0 ? 0.0 : p.least);
@@ -198,15 +205,15 @@ Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& met
         line.target = -row.error;
         const bool held = row.kind == RowKind::Equality;
         line.least = held ? -HUGE_VAL : 0.0, line.most = row.kind == RowKind::Rate || line.count == 0 ? 0.0 : HUGE_VAL;
-        if (line.most > 0) worst = std::max(worst, held ? std::fabs(row.error) : -row.error);
+        if (line.most > 0) worst = std::max(worst, (held ? std::fabs(row.error) : -row.error) * (turns_only(row) ? length : 1));
     }
-    if (worst <= kPositionTolerance) return {};
+    if (worst <= kPositionTolerance * length) return {};
     problem.turn_with(bodies);
     problem.rest();
     problem.clear_impulses();
     for (Point& p : problem.points) p.friction = 0;
     problem.apply_impulses();
-    const Verdict out = method.find_displacements(problem);
+    const Verdict out = method.find_displacements(problem, kPositionTolerance * length);
     displace(problem, bodies, shafts);
     return out;
 }

@@ -33,11 +33,11 @@ public:
     /// Impulses of `problem` from its present ones; speeds agree with them before and afterwards.
     virtual Verdict find_impulses(Problem& problem) = 0;
     /// The same for displacements (m instead of m/s), without friction.
-    virtual Verdict find_displacements(Problem& problem) = 0;
+    virtual Verdict find_displacements(Problem& problem, double tolerance) = 0;
 };
 
-/// Overlap or joint error that is left alone, m or rad.
-inline constexpr double kPositionTolerance = 1e-10;
+/// Overlap or joint error that is left alone: share of the island's size, or rad.
+inline constexpr double kPositionTolerance = 0x1p-30;
 /// Least speed of a contact that cannot act now.
 inline constexpr double kFar = -1e30;
 

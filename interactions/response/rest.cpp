@@ -59,7 +59,7 @@ void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodie
         const Contact& c = contacts[i];
         const ContactPoint& point = work.points[i];
         // A gap may close within the step, and no further.
-        const double least = c.depth < 0 && impact.dt > 0 ? c.depth / impact.dt : 0.0;
+        const double least = c.turning + (c.depth < 0 && impact.dt > 0 ? c.depth / impact.dt : 0.0);
         const Vec3 guess = point.to_contact(c.impulse);
         if (guess != Vec3{}) point.apply(bodies, guess, point.velocity(bodies).z + (point.K() * guess).z);
         work.cones.push_back({&point, c.friction, least, guess});

@@ -8,7 +8,7 @@ namespace plab::response
 namespace
 {
 
-constexpr double kTolerance = 1e-13;  // m/s, and 2^-48 of the speeds
+constexpr double kTolerance = 0x1p-46;  // of the speeds
 constexpr int kMostSweeps = 20000;
 
 struct Bounce
@@ -103,7 +103,7 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
         work.before.push_back(work.points[i].velocity(bodies));
         speed = std::max(speed, length(work.before.back()));
     }
-    const double tolerance = std::max(kTolerance, 0x1p-48 * speed);
+    const double tolerance = kTolerance * speed;
     // Newton's law with friction may give back more than there was; then less is given back, and nothing at last.
     ConeResult result;
     double share = 1;

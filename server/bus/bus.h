@@ -41,6 +41,10 @@ public:
     virtual void answer(publish::Answer&& answer) = 0;
     /// Empty while all is well; else why this server must end (another one has its name).
     virtual std::string lost() const = 0;
+    /// What became of the process that speaks with clients, if it ended and another one took its place since the last call.
+    virtual std::string take_restart() = 0;
+    /// That process; 0: there is none at present.
+    virtual int process() const = 0;
 };
 
 /// What bus.so exports under kEntryName. On failure (no such interface, the name is taken, ...) nothing, and the reason.

@@ -1,4 +1,4 @@
-/// What bus.so exports.
+/// What bus.so exports: the end of the bus that is in plabd.
 #include <exception>
 
 #include "bus/server_bus.h"

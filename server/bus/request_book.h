@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "idl/topics.h"
+#include "idl/limits.h"
 #include "publish/records.h"
 
 namespace plab::bus

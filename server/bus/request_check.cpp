@@ -2,77 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 
-#include "idl/topics.h"
+#include "idl/limits.h"
 
 namespace plab::bus
 {
 namespace
 {
-
-/// Copies text until the request's limit is used up or one is not UTF-8. Each text costs a byte more than it has, so
-/// that the limit bounds their number too.
-class TextReader
-{
-public:
-    std::string copy(const char* source, const char* what)
-    {
-        if (!wrong_.empty() || source == nullptr) return {};
-        const std::size_t length = strnlen(source, left_);
-        if (length == left_)
-        {
-            wrong_ = "the request has more than " + std::to_string(wire::kMostRequestBytes) + " bytes of text";
-            return {};
-        }
-        left_ -= length + 1;
-        if (!is_utf8({source, length})) wrong_ = std::string(what) + " is not UTF-8";
-        return {source, length};
-    }
-    bool ok() const { return wrong_.empty(); }
-    const std::string& wrong() const { return wrong_; }
-
-private:
-    std::size_t left_ = wire::kMostRequestBytes;
-    std::string wrong_;
-};
-
-publish::OperationText read_operation(const plab_v2_Operation& operation, TextReader& reader)
-{
-    publish::OperationText out;
-    out.verb = reader.copy(operation.verb, "a verb");
-    out.target = reader.copy(operation.target, "a target");
-    out.argument = reader.copy(operation.argument, "an argument");
-    out.blueprint = reader.copy(operation.blueprint, "a blueprint");
-    out.values.reserve(operation.values._length);
-    for (std::uint32_t i = 0; i < operation.values._length && reader.ok(); ++i)
-    {
-        std::string name = reader.copy(operation.values._buffer[i].name, "a name");
-        out.values.emplace_back(std::move(name), reader.copy(operation.values._buffer[i].text, "a value"));
-    }
-    return out;
-}
-
-std::string wrong_outside(const plab_v2_Request& request)
-{
-    const publish::ClientId client = client_of(request);
-    if (std::all_of(client.begin(), client.end(), [](std::uint8_t byte) { return byte == 0; }))
-        return "the request has no client id: 16 random bytes are right";
-    if (request.number == 0) return "the request has number 0: the first one of a client is 1";
-    if (request.at < -1) return "the request is for step " + std::to_string(request.at) + ": steps count from 0, and -1 is the next one";
-    if (request.revision < -1)
-        return "the request is for revision " + std::to_string(request.revision) + ": revisions count from 0, and -1 is any";
-    if (request.operations._length == 0) return "the request has no operation";
-    if (request.operations._length > wire::kMostOperations)
-        return "the request has " + std::to_string(request.operations._length) + " operations: at most " +
-               std::to_string(wire::kMostOperations) + " may be asked for at once";
-    // Before anybody compares each value's name with the others'.
-    for (std::uint32_t i = 0; i < request.operations._length; ++i)
-        if (const std::uint32_t values = request.operations._buffer[i].values._length; values > wire::kMostValues)
-            return "operation " + std::to_string(i + 1) + " has " + std::to_string(values) + " values: at most " +
-                   std::to_string(wire::kMostValues) + " may be given at once";
-    return {};
-}
 
 /// A lead byte of UTF-8: how many bytes follow, and what the first of them may be.
 struct Lead
@@ -118,12 +54,51 @@ bool is_utf8(std::string_view text)
     return true;
 }
 
-publish::ClientId client_of(const plab_v2_Request& request)
+std::string wrong_form(const RequestForm& form)
 {
-    publish::ClientId client;
-    static_assert(sizeof(request.client) == std::tuple_size_v<publish::ClientId>);
-    std::copy(std::begin(request.client), std::end(request.client), client.begin());
-    return client;
+    if (std::all_of(form.client.begin(), form.client.end(), [](std::uint8_t byte) { return byte == 0; }))
+        return "the request has no client id: 16 random bytes are right";
+    if (form.number == 0) return "the request has number 0: the first one of a client is 1";
+    if (form.at < -1) return "the request is for step " + std::to_string(form.at) + ": steps count from 0, and -1 is the next one";
+    if (form.revision < -1)
+        return "the request is for revision " + std::to_string(form.revision) + ": revisions count from 0, and -1 is any";
+    if (form.operations == 0) return "the request has no operation";
+    if (form.operations > wire::kMostOperations)
+        return "the request has " + std::to_string(form.operations) + " operations: at most " + std::to_string(wire::kMostOperations) +
+               " may be asked for at once";
+    return {};
+}
+
+std::string wrong_count(std::size_t operation, std::size_t values)
+{
+    if (values <= wire::kMostValues) return {};
+    return "operation " + std::to_string(operation + 1) + " has " + std::to_string(values) + " values: at most " +
+           std::to_string(wire::kMostValues) + " may be given at once";
+}
+
+std::string TextBudget::wrong(std::string_view text, const char* what)
+{
+    if (text.size() >= left_) return "the request has more than " + std::to_string(wire::kMostRequestBytes) + " bytes of text";
+    left_ -= text.size() + 1;
+    return is_utf8(text) ? std::string() : std::string(what) + " is not UTF-8";
+}
+
+std::string wrong_with(const publish::RequestText& request)
+{
+    std::string wrong = wrong_form({request.client, request.number, request.at, request.revision, request.operations.size()});
+    for (std::size_t i = 0; i < request.operations.size() && wrong.empty(); ++i)
+        wrong = wrong_count(i, request.operations[i].values.size());
+    TextBudget budget;
+    const auto look = [&](const std::string& text, const char* what)
+    {
+        if (wrong.empty()) wrong = budget.wrong(text, what);
+    };
+    for (const publish::OperationText& op : request.operations)
+    {
+        look(op.verb, "a verb"), look(op.target, "a target"), look(op.argument, "an argument"), look(op.blueprint, "a blueprint");
+        for (const auto& [name, text] : op.values) look(name, "a name"), look(text, "a value");
+    }
+    return wrong;
 }
 
 std::size_t bytes_of(const publish::RequestText& request)
@@ -143,18 +118,6 @@ bool is_shutdown(const publish::RequestText& request)
     if (request.operations.size() != 1) return false;
     const publish::OperationText& only = request.operations[0];
     return only.verb == "shutdown" && only.target.empty() && only.argument.empty() && only.blueprint.empty() && only.values.empty();
-}
-
-Result<publish::RequestText> read_request(const plab_v2_Request& request)
-{
-    if (std::string wrong = wrong_outside(request); !wrong.empty()) return reason(std::move(wrong));
-    TextReader reader;
-    publish::RequestText out;
-    out.client = client_of(request), out.number = request.number, out.at = request.at, out.revision = request.revision;
-    for (std::uint32_t i = 0; i < request.operations._length && reader.ok(); ++i)
-        out.operations.push_back(read_operation(request.operations._buffer[i], reader));
-    if (!reader.ok()) return reason(reader.wrong());
-    return out;
 }
 
 }  // namespace plab::bus

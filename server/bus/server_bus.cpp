@@ -1,34 +1,25 @@
 #include "bus/server_bus.h"
 
 #include <pthread.h>
+#include <unistd.h>
 
 #include <csignal>
 
-#include "idl/domain.h"
+#include "idl/limits.h"
 
 namespace plab::bus
 {
 namespace
 {
 
-constexpr std::size_t kChanges = 1024;  ///< of the catalogue, that may wait
+constexpr std::size_t kChanges = 1024;
+/// The first plab-bus has so long to join.
+constexpr std::chrono::seconds kLongestStart(10);
 
-struct ListenerDeleter
+std::int64_t since_1970_ns()
 {
-    void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
-};
-
-/// What a listener of DDS does, on a thread of DDS: leave a mark and ring.
-struct Bell
-{
-    std::atomic<bool>* mark;
-    publish::WakeUp* wake_up;
-    void ring() const
-    {
-        mark->store(true, std::memory_order_release);
-        wake_up->ring();
-    }
-};
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
@@ -39,78 +30,33 @@ Result<std::unique_ptr<ServerBus>> ServerBus::open(const BusOptions& options)
     auto lock = wire::NameLock::take(options.domain, options.name);
     if (!lock) return lock.errors();
     std::unique_ptr<ServerBus> bus(new ServerBus(options, lock.take()));
-    if (auto joined = bus->join(); !joined) return joined.errors();
-    bus->start();
-    return bus;
-}
-
-ServerBus::ServerBus(const BusOptions& options, wire::NameLock lock)
-    : options_(options),
-      lock_(std::move(lock)),
-      trouble_(options.log, options.log_argument),
-      changes_(kChanges),
-      catalogue_(options.name),
-      presence_(wire::identify(options.name, options.version)),
-      desk_(trouble_)
-{
-}
-
-Result<void> ServerBus::join()
-{
-    auto participant = wire::join({options_.domain, options_.network_interface});
-    if (!participant) return participant.errors();
-    participant_ = participant.take();
-    // What is created from the participant inherits its listener: no match and no sample comes before it.
-    const std::unique_ptr<dds_listener_t, ListenerDeleter> listener(dds_create_listener(this));
-    (void)dds_lset_publication_matched_arg(
-        listener.get(),
-        [](dds_entity_t, const dds_publication_matched_status_t, void* self) {
-            Bell{&static_cast<ServerBus*>(self)->matched_, &static_cast<ServerBus*>(self)->wake_up_}.ring();
-        },
-        this, false);
-    (void)dds_lset_data_available_arg(
-        listener.get(),
-        [](dds_entity_t, void* self) {
-            Bell{&static_cast<ServerBus*>(self)->arrived_, &static_cast<ServerBus*>(self)->wake_up_}.ring();
-        },
-        this, false);
-    if (const auto code = dds_set_listener(participant_.get(), listener.get()); code < 0)
-        return wire::failed("cannot listen to the bus", code);
-
-    auto publisher = wire::make_publisher(participant_, options_.name);
-    if (!publisher) return publisher.errors();
-    auto subscriber = wire::make_subscriber(participant_, options_.name);
-    if (!subscriber) return subscriber.errors();
-    publisher_ = publisher.take(), subscriber_ = subscriber.take();
-    if (auto opened = catalogue_.open(participant_, publisher_); !opened) return opened;
-    if (auto opened = states_.be(true, participant_, publisher_); !opened) return opened;
-    if (auto opened = events_.be(true, participant_, publisher_); !opened) return opened;
-    if (auto opened = metrics_.be(true, participant_, publisher_); !opened) return opened;
-    if (auto opened = journal_.be(true, participant_, publisher_); !opened) return opened;
-    if (auto opened = hashes_.be(true, participant_, publisher_); !opened) return opened;
-    if (auto opened = snapshots_.be(true, participant_, publisher_); !opened) return opened;
-    if (auto opened = desk_.open(participant_, publisher_, subscriber_); !opened) return opened;
-    return presence_.open(participant_, publisher_, subscriber_);
-}
-
-void ServerBus::start()
-{
+    if (bus->bell_.descriptor() < 0) return reason("cannot open the bus: no eventfd is left");
+    auto first = bus->first_.get_future();
     // Signals are the daemon's: none is delivered on this thread.
     sigset_t all, before;
     (void)sigfillset(&all);
     (void)pthread_sigmask(SIG_SETMASK, &all, &before);
-    thread_ = std::thread([this] { run(); });
+    bus->thread_ = std::thread([b = bus.get()] { b->run(); });
     (void)pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    (void)pthread_setname_np(thread_.native_handle(), "plab-bus");
+    (void)pthread_setname_np(bus->thread_.native_handle(), "plab-bus-link");
     // Batch: it does not push the step thread aside when it is woken on the same core.
     const sched_param priority{};
-    (void)pthread_setschedparam(thread_.native_handle(), SCHED_BATCH, &priority);
+    (void)pthread_setschedparam(bus->thread_.native_handle(), SCHED_BATCH, &priority);
+    if (first.wait_for(kLongestStart) != std::future_status::ready) return reason("plab-bus did not join the bus within 10 s");
+    if (auto joined = first.get(); !joined) return joined.errors();
+    return bus;
+}
+
+ServerBus::ServerBus(const BusOptions& options, wire::NameLock lock)
+    : options_(options), lock_(std::move(lock)), bell_(Bell::make()), changes_(kChanges)
+{
+    start_ = {options.name, options.version, options.network_interface, options.domain, getpid(), since_1970_ns()};
 }
 
 ServerBus::~ServerBus()
 {
     stop_.store(true, std::memory_order_release);
-    wake_up_.ring();
+    bell_.ring_once();
     if (thread_.joinable()) thread_.join();
 }
 
@@ -152,67 +98,22 @@ std::uint64_t ServerBus::joins(publish::Stream stream) const
 void ServerBus::end_frame()
 {
     states_.end_push();
-    wake_up_.ring();
+    bell_.ring_once();
 }
 
-void ServerBus::collisions(publish::Batch<publish::CollisionRecord>&& batch)
+void ServerBus::hash(std::uint64_t run, Tick step, std::uint64_t hash)
 {
-    collisions_.begin_push() = std::move(batch);
-    collisions_.end_push();
-    wake_up_.ring();
-}
-
-void ServerBus::events(publish::Batch<publish::EventRecord>&& batch)
-{
-    events_.begin_push() = std::move(batch);
-    events_.end_push();
-    wake_up_.ring();
-}
-
-void ServerBus::metrics(publish::Metrics&& metrics)
-{
-    metrics_.begin_push() = std::move(metrics);
-    metrics_.end_push();
-    wake_up_.ring();
-}
-
-void ServerBus::image(publish::Image&& image)
-{
-    images_.begin_push() = std::move(image);
-    images_.end_push();
-    wake_up_.ring();
-}
-
-void ServerBus::journal(publish::JournalRecord&& entry)
-{
-    journal_.begin_push() = std::move(entry);
-    journal_.end_push();
-    wake_up_.ring();
-}
-
-void ServerBus::hash(std::uint64_t run, Tick step, std::uint64_t hash) { push(hash_batch_.add(run, step, hash, publish::monotonic_now())); }
-
-void ServerBus::push(std::optional<publish::HashRecord> record)
-{
-    if (!record) return;
-    hashes_.begin_push() = *std::move(record);
-    hashes_.end_push();
-    wake_up_.ring();
-}
-
-void ServerBus::snapshot(publish::SnapshotRecord&& snapshot)
-{
-    snapshots_.begin_push() = std::move(snapshot);
-    snapshots_.end_push();
-    wake_up_.ring();
+    if (auto record = hash_batch_.add(run, step, hash, publish::monotonic_now())) push(hashes_, *std::move(record));
 }
 
 void ServerBus::status(const publish::Status& status)
 {
     // A run that stands still completes no batch; a status comes ten times a second at most.
-    push(status.paused ? hash_batch_.flush() : hash_batch_.flush_old(publish::monotonic_now()));
-    presence_.push(status);
-    wake_up_.ring();
+    if (auto record = status.paused ? hash_batch_.flush() : hash_batch_.flush_old(publish::monotonic_now()))
+        push(hashes_, *std::move(record));
+    statuses_.begin_push() = status;
+    statuses_.end_push();
+    bell_.ring_once();
 }
 
 bool ServerBus::catalogue(publish::CatalogueChange&& change)
@@ -222,16 +123,26 @@ bool ServerBus::catalogue(publish::CatalogueChange&& change)
     changes_waiting_.fetch_add(1, std::memory_order_relaxed);
     changes_.begin_push() = std::move(change);
     changes_.end_push();
-    wake_up_.ring();
+    bell_.ring_once();
     return true;
 }
 
 void ServerBus::answer(publish::Answer&& answer)
 {
     desk_.answer(std::move(answer));
-    wake_up_.ring();
+    bell_.ring_once();
 }
 
 std::string ServerBus::lost() const { return is_lost_.load(std::memory_order_acquire) ? why_lost_ : std::string(); }
+
+std::string ServerBus::take_restart()
+{
+    if (!restarted_.load(std::memory_order_relaxed)) return {};
+    // The step thread waits for nobody: what is being written is there at the next step.
+    const std::unique_lock guard(restart_mutex_, std::try_to_lock);
+    if (!guard.owns_lock()) return {};
+    restarted_.store(false, std::memory_order_relaxed);
+    return std::exchange(restart_, {});
+}
 
 }  // namespace plab::bus

@@ -1,18 +1,21 @@
-/// The server's end of the bus: rings that the step thread fills, and one thread that empties them into DDS.
+/// The server's end of the bus: rings that the step thread fills, and one thread that empties them into the pipe to plab-bus,
+/// which it starts, and starts again when it ends.
 #pragma once
 
 #include <array>
 #include <atomic>
+#include <future>
+#include <mutex>
 #include <thread>
 
 #include "bus/bus.h"
-#include "bus/catalogue.h"
-#include "bus/presence.h"
+#include "bus/bus_process.h"
+#include "bus/catalogue_mirror.h"
+#include "bus/feed.h"
+#include "bus/log_limit.h"
 #include "bus/request_desk.h"
-#include "bus/stream.h"
 #include "idl/name_lock.h"
 #include "publish/hash_batch.h"
-#include "publish/wake_up.h"
 
 namespace plab::bus
 {
@@ -28,69 +31,109 @@ public:
     std::uint64_t joins(publish::Stream stream) const override;
     publish::Frame& begin_frame() override { return states_.begin_push(); }
     void end_frame() override;
-    void collisions(publish::Batch<publish::CollisionRecord>&& batch) override;
-    void events(publish::Batch<publish::EventRecord>&& batch) override;
-    void metrics(publish::Metrics&& metrics) override;
-    void image(publish::Image&& image) override;
-    void journal(publish::JournalRecord&& entry) override;
+    void collisions(publish::Batch<publish::CollisionRecord>&& batch) override { push(collisions_, std::move(batch)); }
+    void events(publish::Batch<publish::EventRecord>&& batch) override { push(events_, std::move(batch)); }
+    void metrics(publish::Metrics&& metrics) override { push(metrics_, std::move(metrics)); }
+    void image(publish::Image&& image) override { push(images_, std::move(image)); }
+    void journal(publish::JournalRecord&& entry) override { push(journal_, std::move(entry)); }
     void hash(std::uint64_t run, Tick step, std::uint64_t hash) override;
-    void snapshot(publish::SnapshotRecord&& snapshot) override;
+    void snapshot(publish::SnapshotRecord&& snapshot) override { push(snapshots_, std::move(snapshot)); }
     void status(const publish::Status& status) override;
     bool catalogue(publish::CatalogueChange&& change) override;
     bool take(publish::RequestText& request) override { return desk_.take(request); }
     void answer(publish::Answer&& answer) override;
     std::string lost() const override;
+    std::string take_restart() override;
+    int process() const override { return pid_.load(std::memory_order_relaxed); }
 
 private:
     using Clock = std::chrono::steady_clock;
+    using Nanoseconds = std::chrono::nanoseconds;
     ServerBus(const BusOptions& options, wire::NameLock lock);
 
-    Result<void> join();
-    void start();
-    // Bus thread ------------------------------------------------------------------------------------------------------
-    void run();
+    template <class Record>
+    void push(Feed<Record>& feed, Record&& record)
+    {
+        feed.begin_push() = std::move(record);
+        feed.end_push();
+        bell_.ring_once();
+    }
     template <class Function>
     auto of(publish::Stream stream, Function function) const;
+    template <class Function>
+    void each(Function function);
+
+    // Bus thread ------------------------------------------------------------------------------------------------------
+    void run();
+    /// Starts plab-bus if it is not there and may be started.
+    void supervise(Clock::time_point now);
+    void end_process(const std::string& why, Clock::time_point now);
+    void begin_anew(Clock::time_point now);
     /// Does what there is to do, a little of everything. True if there is more.
-    bool pass();
+    bool pass(Clock::time_point now);
     bool receive(Clock::time_point now);
-    void look_at_readers();
+    void handle(const MessageReader::Message& message, Clock::time_point now);
+    void note_wants(const WantsMessage& wants);
+    bool send(Clock::time_point now);
+    void send_status(Clock::time_point now);
     void send_catalogue();
-    void follow_scene();
-    void push(std::optional<publish::HashRecord> record);
-    std::vector<wire::Dropped> dropped() const;
+    template <class Function>
+    bool next_change(Function f);
+    void send_answers();
+    void watch(Clock::time_point now);
+    bool was_stopped(Clock::time_point now);
+    void sleep(Nanoseconds longest);
     void say_goodbye();
-    Clock::duration idle_time(Clock::time_point now) const;
+    void wake() const
+    {
+        if (options_.wake != nullptr) options_.wake(options_.wake_argument);
+    }
+    void log(const std::string& line);
 
     BusOptions options_;
     wire::NameLock lock_;
-    Trouble trouble_;
-
-    publish::WakeUp wake_up_;
-    std::atomic<bool> matched_{true}, arrived_{true};  ///< set by listeners of DDS, on its threads
+    StartMessage start_;
+    Bell bell_;  ///< rung by the step thread and by plab-bus
     std::atomic<bool> stop_{false};
     std::atomic<bool> is_lost_{false};
     std::string why_lost_;  // written once, before is_lost_
-
-    // Before all that is made of them; and the listeners ring until the participant is gone.
-    wire::Entity participant_, publisher_, subscriber_;
+    std::atomic<int> pid_{0};
+    std::atomic<bool> restarted_{false};
+    std::mutex restart_mutex_;  ///< held for a moment, after restarted_ was set
+    std::string restart_;
 
     publish::Ring<publish::CatalogueChange> changes_;
     std::atomic<std::size_t> changes_waiting_{0};
-    Stream<plab_v2_Frame, wire::FrameSample, publish::Frame> states_{8};
-    Stream<plab_v2_Collisions, wire::CollisionsSample, publish::Batch<publish::CollisionRecord>> collisions_{1024};
-    Stream<plab_v2_Events, wire::EventsSample, publish::Batch<publish::EventRecord>> events_{1024};
-    Stream<plab_v2_Metrics, wire::MetricsSample, publish::Metrics> metrics_{4};
-    Stream<plab_v2_Image, wire::ImageSample, publish::Image> images_{2};
-    Stream<plab_v2_Journal, wire::JournalSample, publish::JournalRecord> journal_{1024};
-    Stream<plab_v2_Hashes, wire::HashesSample, publish::HashRecord> hashes_{1024};
-    Stream<plab_v2_Snapshot, wire::SnapshotSample, publish::SnapshotRecord> snapshots_{2};
+    Feed<publish::Frame> states_{publish::Stream::States, 8};
+    Feed<publish::Batch<publish::CollisionRecord>> collisions_{publish::Stream::Collisions, 1024};
+    Feed<publish::Batch<publish::EventRecord>> events_{publish::Stream::Events, 1024};
+    Feed<publish::Metrics> metrics_{publish::Stream::Metrics, 4};
+    Feed<publish::Image> images_{publish::Stream::Images, 2};
+    Feed<publish::JournalRecord> journal_{publish::Stream::Journal, 1024};
+    Feed<publish::HashRecord> hashes_{publish::Stream::Hashes, 1024};
+    Feed<publish::SnapshotRecord> snapshots_{publish::Stream::Snapshots, 2};
+    publish::Ring<publish::Status> statuses_{4};
     publish::HashBatch hash_batch_;  ///< step thread's
-
-    Catalogue catalogue_;
-    Presence presence_;
     RequestDesk desk_;
-    Clock::time_point reported_{};
+
+    // Bus thread's
+    std::unique_ptr<BusProcess> process_;
+    bool has_joined_ = false, is_broken_ = false, has_hung_up_ = false;
+    std::string failed_;  ///< why the present plab-bus could not join
+    std::promise<Result<void>> first_;
+    bool was_first_told_ = false;
+    CatalogueMirror mirror_;
+    std::optional<AnswerMessage> answer_;  ///< waits for room
+    StatusMessage status_;
+    bool has_status_ = false, status_is_new_ = false;
+    Clock::time_point started_{}, start_at_{}, heard_{}, died_{}, status_sent_{};
+    Clock::time_point stopped_{};  ///< when it was looked at whether plab-bus is stopped
+    Clock::duration delay_{};
+    int stopped_looks_ = 0;
+    int silent_ = 0;       ///< seconds in which this thread was awake and plab-bus said nothing
+    bool is_new_ = false;  ///< the present plab-bus has not been told of its readers for long
+    std::string why_restarted_;
+    LogLimit log_limit_;
     std::thread thread_;
 };
 

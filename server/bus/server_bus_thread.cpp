@@ -1,6 +1,9 @@
-/// What the bus thread does.
+/// What the thread does that speaks with plab-bus.
+#include <poll.h>
+
 #include <algorithm>
 
+#include "bus/request_check.h"
 #include "bus/server_bus.h"
 
 namespace plab::bus
@@ -8,136 +11,352 @@ namespace plab::bus
 namespace
 {
 
+using std::chrono::milliseconds;
+
 constexpr std::size_t kBurst = 64;  ///< records of one stream before the others have their turn
-constexpr std::chrono::seconds kSecond(1);
-constexpr std::chrono::milliseconds kRetry(10), kGoodbye(200);
+constexpr int kMostMessages = 256;  ///< from plab-bus before the rest has its turn
+constexpr milliseconds kSecond(1000);
+constexpr milliseconds kSettling(1000);  ///< readers have so long to find a new plab-bus before what they wanted is given up
+constexpr milliseconds kGoodbye(2000), kLastWords(1000), kHangUp(100), kBusyLook(500);
+constexpr milliseconds kFirstDelay(50), kLongestDelay(10000);
+constexpr std::chrono::seconds kGoodLife(30);  ///< who lived so long is started again at once
+constexpr int kLongestSilence = 4;             ///< s; a deleted writer that a reader does not acknowledge holds plab-bus up for one
+constexpr milliseconds kStopped(100);          ///< between looks at one that was stopped
+constexpr int kMostStopped = 2;                ///< of these looks: a stop of both processes ends for both at about the same time
+
+/// Text of another process, for a log: no control characters, no more than a line.
+std::string one_line(std::string text)
+{
+    constexpr std::size_t kLongest = 300;
+    if (text.size() > kLongest) text.resize(kLongest), text += " ...";
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return is_utf8(text) ? text : "(no text)";
+}
+
+template <class T>
+bool decode(const MessageReader::Message& message, T& out)
+{
+    Decoder decoder(message.bytes);
+    decoder.get(out);
+    return decoder.whole();
+}
 
 }  // namespace
 
 void ServerBus::run()
 {
     while (!stop_.load(std::memory_order_acquire))
-        if (!pass()) wake_up_.sleep(idle_time(Clock::now()));
-    // What was handed over before the end still goes out.
-    constexpr int kMostPasses = 1000;
-    for (int i = 0; i < kMostPasses && pass(); ++i) continue;
+    {
+        const Clock::time_point now = Clock::now();
+        supervise(now);
+        if (pass(now)) continue;
+        const Clock::duration next = process_ ? (process_->stopped() ? kStopped : kBusyLook) : start_at_ - now;
+        sleep(std::min<Nanoseconds>(next, kBusyLook));
+        bell_.heard();
+    }
     say_goodbye();
+    if (!was_first_told_) first_.set_value(reason("the bus was closed"));
 }
 
-bool ServerBus::pass()
+void ServerBus::sleep(Nanoseconds longest)
 {
-    const Clock::time_point now = Clock::now();
-    bool more = receive(now);
-    if (now - reported_ >= kSecond)
+    std::array<pollfd, 2> watched{pollfd{bell_.descriptor(), POLLIN, 0}, pollfd{process_ ? process_->lifeline() : -1, POLLIN, 0}};
+    timespec time{};
+    time.tv_sec = longest.count() / 1'000'000'000, time.tv_nsec = longest.count() % 1'000'000'000;
+    has_hung_up_ = ppoll(watched.data(), watched.size(), &time, nullptr) > 0 && watched[1].revents != 0;
+}
+
+void ServerBus::supervise(Clock::time_point now)
+{
+    if (process_)
     {
-        reported_ = now;
-        matched_.store(true, std::memory_order_relaxed);
-        trouble_.report();
+        watch(now);
+        if (is_broken_) return end_process("said what cannot be", now);
+        if (silent_ > kLongestSilence) return end_process("said nothing for " + std::to_string(kLongestSilence) + " s", now);
+        // Its end of the line is closed and it goes on: this thread would not sleep any more.
+        if (std::exchange(has_hung_up_, false) && !process_->wait(kHangUp)) return end_process("closed its line", now);
+        if (const std::string how = process_->ended(); !how.empty())
+        {
+            (void)receive(now);  // its last words
+            end_process(how, now);
+        }
+        else if (was_stopped(now))
+            end_process("was stopped", now);
+        return;
     }
-    if (matched_.exchange(false, std::memory_order_acquire)) look_at_readers();
-    send_catalogue();
-    const std::vector<wire::Dropped> given_up = dropped();
-    presence_.send(now, given_up, options_.busy != nullptr ? options_.busy(options_.busy_argument) : std::string(), trouble_);
-    desk_.retry(now);
-    // The catalogue was handed over before the answer: whoever has the reply finds in it what the request did.
-    while (desk_.next_answer()) send_catalogue(), desk_.send_answer(now);
-    more = events_.send(kBurst, trouble_) || more;
-    more = collisions_.send(kBurst, trouble_) || more;
-    more = states_.send(kBurst, trouble_) || more;
-    more = metrics_.send(kBurst, trouble_) || more;
-    more = journal_.send(kBurst, trouble_) || more;
-    more = hashes_.send(kBurst, trouble_) || more;
-    more = snapshots_.send(1, trouble_) || more;
-    return images_.send(1, trouble_) || more;
+    if (now < start_at_) return;
+    auto started = BusProcess::start(bus_program(), bell_, start_);
+    if (!started)
+    {
+        end_process("could not be started: " + started.error().reason, now);
+        return;
+    }
+    process_ = started.take();
+    pid_.store(process_->pid(), std::memory_order_relaxed);
+    started_ = heard_ = stopped_ = now, silent_ = stopped_looks_ = 0;
+    has_joined_ = is_broken_ = false, failed_.clear();
+}
+
+/// A plab-bus that hangs serves nobody. Only seconds count in which this thread was awake: it may have been stopped as well.
+void ServerBus::watch(Clock::time_point now)
+{
+    if (now - heard_ < kSecond) return;
+    heard_ = now, ++silent_;
+}
+
+/// Nobody is expected to let it go on; and looks count as the seconds above.
+bool ServerBus::was_stopped(Clock::time_point now)
+{
+    if (!process_->stopped())
+        stopped_looks_ = 0, stopped_ = now;
+    else if (now - stopped_ >= kStopped)
+        ++stopped_looks_, stopped_ = now;
+    return stopped_looks_ > kMostStopped;
+}
+
+void ServerBus::end_process(const std::string& why, Clock::time_point now)
+{
+    const std::string text = failed_.empty() ? why : failed_;
+    if (!was_first_told_)
+    {
+        // It was never there: open() says why, and nothing is tried again.
+        first_.set_value(reason(text));
+        was_first_told_ = true, start_at_ = Clock::time_point::max();
+        process_.reset();
+        return;
+    }
+    const bool had_joined = has_joined_;
+    const std::string name = process_ ? "plab-bus (process " + std::to_string(process_->pid()) + ")" : "plab-bus";
+    process_.reset();
+    pid_.store(0, std::memory_order_relaxed);
+    has_joined_ = is_broken_ = false;
+    // Who dies again and again is not started again and again at once.
+    if (had_joined && now - started_ >= kGoodLife) delay_ = {};
+    delay_ = std::clamp<Clock::duration>(2 * delay_, kFirstDelay, kLongestDelay);
+    start_at_ = now + delay_;
+    if (why_restarted_.empty()) died_ = now;
+    why_restarted_ = name + " " + text;
+    log(why_restarted_ + ": it is started again in " + std::to_string(std::chrono::duration_cast<milliseconds>(delay_).count()) + " ms");
+}
+
+/// The present plab-bus has joined: it gets all that clients may rely on. The step thread is not asked for anything.
+void ServerBus::begin_anew(Clock::time_point now)
+{
+    has_joined_ = true;
+    if (!was_first_told_)
+    {
+        first_.set_value({});
+        was_first_told_ = true;
+        return;
+    }
+    is_new_ = true, started_ = now;
+    each([](auto& feed) { feed.begin_anew(); });
+    if (!mirror_.empty()) is_broken_ = !process_->writer().send(Down::Catalogue, mirror_.everything());
+    status_is_new_ = has_status_;
+    const auto away = std::chrono::duration_cast<milliseconds>(now - died_).count();
+    {
+        const std::lock_guard guard(restart_mutex_);
+        restart_ = one_line(std::exchange(why_restarted_, {})) + "; process " + std::to_string(process_->pid()) + " took its place after " +
+                   std::to_string(away) + " ms";
+        restarted_.store(true, std::memory_order_relaxed);
+    }
+    wake();
+}
+
+bool ServerBus::pass(Clock::time_point now)
+{
+    const bool more = process_ && receive(now);
+    if (!has_joined_)
+        while (next_change([](const auto&) {})) continue;
+    if (!has_joined_ || is_broken_) return is_broken_;
+    return send(now) || more || is_broken_;
 }
 
 bool ServerBus::receive(Clock::time_point now)
 {
-    if (!arrived_.exchange(false, std::memory_order_acquire)) return false;
-    const RequestDesk::Received received = desk_.receive(now);
-    if (received.shutdown && options_.end != nullptr) options_.end(options_.end_argument);
-    if (received.any_new && options_.wake != nullptr) options_.wake(options_.wake_argument);
-    if (received.more) arrived_.store(true, std::memory_order_relaxed);
-    if (auto rival = presence_.look_for_rival(); rival && !is_lost_.load(std::memory_order_relaxed))
+    MessageReader::Message message;
+    for (int i = 0; i < kMostMessages && !is_broken_; ++i)
     {
-        why_lost_ = *std::move(rival);
-        is_lost_.store(true, std::memory_order_release);
-        if (options_.wake != nullptr) options_.wake(options_.wake_argument);
+        const auto state = process_->reader().next(message);
+        is_broken_ = state == MessageReader::State::Broken;
+        if (state == MessageReader::State::Whole) handle(message, now);
+        if (process_->reader().made_room()) process_->ring();
+        if (state == MessageReader::State::Nothing) return false;
     }
-    return received.more;
+    return true;
 }
 
-void ServerBus::look_at_readers()
+void ServerBus::handle(const MessageReader::Message& message, Clock::time_point now)
 {
-    bool first = states_.look();
-    first = collisions_.look() || first;
-    first = events_.look() || first;
-    first = metrics_.look() || first;
-    first = images_.look() || first;
-    first = journal_.look() || first;
-    first = hashes_.look() || first;
-    first = snapshots_.look() || first;
-    if (first && options_.wake != nullptr) options_.wake(options_.wake_argument);
+    heard_ = now, silent_ = 0;
+    std::string text;
+    switch (static_cast<Up>(message.kind))
+    {
+        case Up::Joined:
+            if (has_joined_) break;
+            return begin_anew(now);
+        case Up::Failed:
+            if (!decode(message, text)) break;
+            failed_ = one_line(text);
+            return;
+        case Up::Wants:
+        {
+            WantsMessage wants;
+            if (!decode(message, wants)) break;
+            return note_wants(wants);
+        }
+        case Up::Request:
+        {
+            RequestMessage request;
+            if (!decode(message, request)) break;
+            const auto received =
+                desk_.receive(std::move(request), std::chrono::duration_cast<Nanoseconds>(now.time_since_epoch()).count());
+            if (received.is_shutdown && options_.end != nullptr) options_.end(options_.end_argument);
+            if (received.is_new) wake();
+            return;
+        }
+        case Up::Lost:
+            if (!decode(message, text)) break;
+            if (is_lost_.load(std::memory_order_relaxed)) return;
+            why_lost_ = one_line(text);
+            is_lost_.store(true, std::memory_order_release);
+            return wake();
+        case Up::Log:
+            if (!decode(message, text)) break;
+            return log(one_line(text));
+        case Up::Alive:
+            return;
+    }
+    is_broken_ = true;
+}
+
+void ServerBus::note_wants(const WantsMessage& wants)
+{
+    bool came = false;
+    each([&](auto& feed) { came = feed.told(wants, !is_new_) || came; });
+    if (came) wake();
+}
+
+template <class Function>
+void ServerBus::each(Function function)
+{
+    function(events_), function(collisions_), function(states_), function(metrics_), function(journal_), function(hashes_),
+        function(snapshots_), function(images_);
+}
+
+bool ServerBus::send(Clock::time_point now)
+{
+    if (is_new_ && now - started_ >= kSettling)
+    {
+        is_new_ = false;
+        each([](auto& feed) { feed.forget(); });
+    }
+    MessageWriter& to = process_->writer();
+    if (!to.flush()) is_broken_ = true;
+    send_catalogue();
+    send_status(now);
+    send_answers();
+    bool more = false;
+    each(
+        [&](auto& feed)
+        {
+            if (is_broken_) return;
+            using Of = std::remove_reference_t<decltype(feed)>;
+            constexpr bool kIsLarge = std::is_same_v<Of, Feed<publish::Image>> || std::is_same_v<Of, Feed<publish::SnapshotRecord>>;
+            const Sent done = feed.send(kIsLarge ? 1 : kBurst, to, is_new_);
+            is_broken_ = done == Sent::Broken;
+            more = more || done == Sent::More;
+        });
+    if (to.committed()) process_->ring();
+    return more && to.ready();
+}
+
+/// The step thread's last one; and what that is at, when it says nothing for long.
+void ServerBus::send_status(Clock::time_point now)
+{
+    while (publish::Status* status = statuses_.begin_pop())
+    {
+        status_.status = *status, has_status_ = status_is_new_ = true;
+        statuses_.end_pop();
+    }
+    const bool is_due = status_is_new_ || (has_status_ && now - status_sent_ >= kBusyLook);
+    if (!is_due || !process_->writer().ready() || is_broken_) return;
+    std::string busy = options_.busy != nullptr ? options_.busy(options_.busy_argument) : std::string();
+    status_sent_ = now;
+    if (!status_is_new_ && busy.empty() && status_.status.busy.empty()) return;
+    status_.status.busy = std::move(busy);
+    status_.dropped = {states_.dropped(), collisions_.dropped(), events_.dropped(), metrics_.dropped(),
+                       images_.dropped(), journal_.dropped(),    hashes_.dropped(), snapshots_.dropped()};
+    is_broken_ = !process_->writer().send(Down::Status, status_);
+    status_is_new_ = false;
 }
 
 void ServerBus::send_catalogue()
 {
-    bool any = false;
-    while (publish::CatalogueChange* change = changes_.begin_pop())
+    while (has_joined_ && process_->writer().ready() && !is_broken_)
+        if (!next_change([this](const auto& change) { is_broken_ = !process_->writer().send(Down::Catalogue, change); })) return;
+}
+
+/// The next change is noted down, and handed to `f`. False if there is none.
+template <class Function>
+bool ServerBus::next_change(Function f)
+{
+    publish::CatalogueChange* const change = changes_.begin_pop();
+    if (change == nullptr) return false;
+    mirror_.apply(*change);
+    f(*change);
+    *change = {};
+    changes_.end_pop();
+    changes_waiting_.fetch_sub(1, std::memory_order_release);
+    return true;
+}
+
+/// The catalogue was handed over before the answer: whoever has the reply finds in it what the request did.
+void ServerBus::send_answers()
+{
+    MessageWriter& to = process_->writer();
+    std::uint64_t strays = 0;
+    while (!is_broken_)
     {
-        catalogue_.apply(*change, trouble_);
-        *change = {};
-        changes_.end_pop();
-        changes_waiting_.fetch_sub(1, std::memory_order_release);
-        any = true;
+        if (!answer_) answer_ = desk_.next_answer(strays);
+        if (!answer_) break;
+        send_catalogue();
+        if (!to.ready() || is_broken_) break;
+        is_broken_ = !to.send(Down::Answer, *answer_);
+        answer_.reset();
     }
-    if (any) follow_scene();
-}
-
-void ServerBus::follow_scene()
-{
-    const auto follow = [&](auto& stream, const char* prefix)
-    {
-        if (auto done = stream.be(catalogue_.has_type_below(prefix), participant_, publisher_); !done) trouble_.say(done.error().text());
-    };
-    follow(collisions_, "CDetection/");
-    follow(images_, "Camera/");
-}
-
-std::vector<wire::Dropped> ServerBus::dropped() const
-{
-    std::vector<wire::Dropped> out;
-    const auto add = [&](const auto& stream)
-    {
-        const std::uint64_t samples = stream.dropped() + trouble_.lost(stream.topic());
-        if (samples > 0) out.push_back({stream.topic(), samples});
-    };
-    add(states_), add(collisions_), add(events_), add(metrics_), add(images_), add(journal_), add(hashes_), add(snapshots_);
-    return out;
-}
-
-ServerBus::Clock::duration ServerBus::idle_time(Clock::time_point now) const
-{
-    if (desk_.retrying()) return kRetry;
-    return std::min<Clock::duration>(presence_.due_in(now), kSecond);
+    if (strays > 0) log(std::to_string(strays) + " answers to requests that nobody waits for were left out");
 }
 
 void ServerBus::say_goodbye()
 {
-    catalogue_.dispose_all(trouble_);
-    presence_.dispose(trouble_);
-    const Clock::time_point end = Clock::now() + kGoodbye;
-    const auto flush = [&](dds_entity_t writer)
+    if (!process_) return;
+    // What was handed over before the end still goes out.
+    const Clock::time_point last = Clock::now() + kLastWords;
+    for (Clock::time_point now = Clock::now(); has_joined_ && !is_broken_ && now < last; now = Clock::now())
     {
-        const std::chrono::nanoseconds left = end - Clock::now();
-        // A reader that does not answer must not hold the end up: what has not arrived by then is lost to it.
-        if (writer > 0 && left.count() > 0) (void)dds_wait_for_acks(writer, left.count());
-    };
-    flush(desk_.writer()), flush(events_.writer().get()), flush(collisions_.writer().get());
-    flush(journal_.writer().get()), flush(hashes_.writer().get());
-    for (const dds_entity_t writer : catalogue_.writers()) flush(writer);
-    flush(presence_.writer());
-    trouble_.report();
+        if (!process_->ended().empty()) return;
+        if (pass(now)) continue;
+        if (process_->writer().ready()) break;
+        sleep(milliseconds(10));
+        bell_.heard();
+    }
+    if (!is_broken_ && process_->writer().ready()) (void)process_->writer().send(Down::End);
+    process_->ring();
+    (void)process_->wait(kGoodbye);
+    process_.reset();
+}
+
+void ServerBus::log(const std::string& line)
+{
+    if (!log_limit_.may(Clock::now())) return;
+    std::string out = line;
+    if (const std::uint64_t n = log_limit_.left_out(); n > 0) out += " (and " + std::to_string(n) + " more lines)";
+    if (options_.log != nullptr)
+        options_.log(options_.log_argument, out.c_str());
+    else
+        (void)std::fprintf(stderr, "bus: %s\n", out.c_str());
 }
 
 }  // namespace plab::bus

@@ -21,8 +21,8 @@ foreach(plugin ${plugins})
   endif()
 endforeach()
 
-install(TARGETS plabd plabctl plab-log RUNTIME DESTINATION bin COMPONENT server)
-# No plugin for scenes: plabd loads it by its name when it joins the bus.
+install(TARGETS plabd plab-bus plabctl plab-log RUNTIME DESTINATION bin COMPONENT server)
+# No plugins for scenes: plabd loads them by their names, and starts the plab-bus beside it, when it joins the bus or records.
 install(TARGETS plab_bus plab_record LIBRARY DESTINATION lib/plab COMPONENT server)
 install(DIRECTORY scenes DESTINATION share/plab COMPONENT server PATTERN "*.md" EXCLUDE)
 install(TARGETS plab-view RUNTIME DESTINATION bin COMPONENT viewer)

@@ -304,7 +304,8 @@ Result<simulation::TrialChoice> parse_trial(const std::string& text)
     while (number.ends_with(' ')) number.remove_suffix(1);
     const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), ms);
     if (error != std::errc() || stop != number.data() + number.size() || !(ms > 0) || !(ms <= kMost))
-        return reason("'" + text.substr(0, 64) + "' is no budget of a trial: none, unlimited, or a time in ms, with 'or refuse' behind it where it has to be proved");
+        return reason("'" + text.substr(0, 64) +
+                      "' is no budget of a trial: none, unlimited, or a time in ms, with 'or refuse' behind it where it has to be proved");
     out.budget = Budget::Given, out.ns = 1e6 * ms;
     return out;
 }

@@ -1,28 +1,12 @@
 #include "daemon/figures_text.h"
 
-#include <cinttypes>
-#include <cmath>
-#include <cstdio>
-
+#include "model/exact_text.h"
 #include "publish/figures.h"
 
 namespace plab::daemon
 {
 
-std::string number(double v)
-{
-    if (!std::isfinite(v)) return "null";
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", v);
-    return text;
-}
-
-std::string hash_text(std::uint64_t h)
-{
-    char text[20];
-    std::snprintf(text, sizeof text, "%016" PRIx64, h);
-    return text;
-}
+std::string number(double v) { return model::exact_text(v, "null"); }
 
 bool is_told(const world::Component& c) { return publish::is_object(c) || c.facet == Facet::Quantities; }
 

@@ -10,8 +10,6 @@ namespace plab::daemon
 
 /// 17 significant digits; "null" for what is not finite.
 std::string number(double v);
-/// 16 hexadecimal digits.
-std::string hash_text(std::uint64_t hash);
 
 /// What has motion, or values, of its own.
 bool is_told(const world::Component& component);

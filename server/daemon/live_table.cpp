@@ -61,8 +61,8 @@ std::string interactions_text(const simulation::Simulation& s)
         const world::Component& c = s.world().component(i);
         const publish::ErrorFigure error = publish::own_error(s, i);
         out += line_of("  %-24.24s %-34.34s %13.0f ns  %-10s %s%s\n", c.id.c_str(), s.world().type_of(i)->info.name.c_str(),
-                       costs.of(i).last.median,
-                       std::isnan(error.value) ? "-" : line_of("%.2e", error.value).c_str(), error.unit.c_str(), c.quarantined ? "  quarantined" : "");
+                       costs.of(i).last.median, std::isnan(error.value) ? "-" : line_of("%.2e", error.value).c_str(), error.unit.c_str(),
+                       c.quarantined ? "  quarantined" : "");
     }
     return out + more_text(rows);
 }

@@ -239,7 +239,8 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     app.add_flag("--check", check, "only check the blueprint");
     app.add_flag("--expand", expand, "print the long form of the blueprint");
     app.add_flag("--explain", explain, "print what is loaded, resolved and left out, and why");
-    app.add_option("--reference", options.reference, "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
+    app.add_option("--reference", options.reference,
+                   "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
         ->expected(0, 1)
         ->type_name("[TYPE]");
     app.add_flag("--paused", options.paused, "wait before the first step until a client says resume or step");

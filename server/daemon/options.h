@@ -64,11 +64,11 @@ struct Options
     Task task = Task::Run;
     std::string scene;
     std::string reference;  ///< of which types; "": all
-    double until = -1;  ///< s; < 0: until a signal
-    std::string out;    ///< JSON of the end state; "-" is standard output
-    std::string trace;  ///< CSV over time
-    double every = 0;   ///< s between trace rows; 0: each step
-    double rate = -1;   ///< 1: real time; 0: as fast as it goes; < 0: not given
+    double until = -1;      ///< s; < 0: until a signal
+    std::string out;        ///< JSON of the end state; "-" is standard output
+    std::string trace;      ///< CSV over time
+    double every = 0;       ///< s between trace rows; 0: each step
+    double rate = -1;       ///< 1: real time; 0: as fast as it goes; < 0: not given
     int threads = 1;
     std::size_t max_components = model::CompileLimits().components;
     double error_share = 0.01;  ///< of real time for shadow steps

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "daemon/figures_text.h"
+#include "model/exact_text.h"
 #include "publish/error_probe.h"
 #include "publish/figures.h"
 #include "world/host_tables.h"
@@ -67,7 +68,9 @@ std::string interaction_json(const simulation::Simulation& s, std::uint32_t i, c
     const publish::ErrorFigure error = publish::own_error(s, i);
     std::string out = "{\"type\": " + quoted(world.type_of(i)->info.name) + ", \"cost_ns_per_step\": " + number(cost.mean) +
                       ", \"cost_quartiles_ns\": " + quartiles(cost.last) + ", \"cost_shared_by\": " + std::to_string(cost.shared) +
-                      ", \"work\": " + number(s.stepper().work()[i]) + ", \"error\": " + number(error.value) + ", \"error_unit\": " + quoted(error.unit) + ", \"error_meaning\": " + quoted(error.meaning);
+                      ", \"work\": " + number(s.stepper().work()[i]) + ", \"made\": " + number(s.stepper().contact_energy()[i].made) +
+                      ", \"lifted\": " + number(s.stepper().contact_energy()[i].lifted) + ", \"error\": " + number(error.value) +
+                      ", \"error_unit\": " + quoted(error.unit) + ", \"error_meaning\": " + quoted(error.meaning);
     for (const Field& field : world.table_of(i).schema().fields())
     {
         if (field.kind != FieldKind::Output) continue;
@@ -117,7 +120,7 @@ std::string end_state_json(const simulation::Simulation& s)
     }
     const simulation::CostBook& cost = s.stepper().cost();
     std::string out = "{\n  \"time\": " + number(s.time()) + ",\n  \"step\": " + std::to_string(s.tick());
-    out += ",\n  \"hash\": " + quoted(hash_text(s.state_hash()));
+    out += ",\n  \"hash\": " + quoted(model::hash_text(s.state_hash()));
     out += ",\n  \"energy\": " + number(totals.kinetic + totals.stored);
     out += ",\n  \"momentum\": " + array(totals.momentum);
     out += ",\n  \"angular_momentum\": " + array(totals.angular_momentum);

@@ -128,11 +128,12 @@ void Run::begin()
     service_.publish(false);
 }
 
-/// Requests that are due take effect; true if there were any.
+/// Requests that are due take effect; true if there were any, or one that ends the server.
 bool Run::serve()
 {
     service_.take_requests();
-    if (!s_.apply_due()) return false;
+    // Whoever is to end does not wait first, as one who is paused would.
+    if (!s_.apply_due()) return service_.shutdown_wanted();
     // The catalogue goes first: who has the reply can rely on it.
     service_.publish(false);
     fine_ = service_.answer() && fine_;
@@ -170,7 +171,8 @@ void Run::tell_rate(Clock::time_point now)
 void Run::tell_given_up()
 {
     const publish::Busy busy = publish::words_of(s_.progress().look(), simulation::now_ns());
-    spdlog::error("{}: given up, since the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy), s_.time());
+    spdlog::error("{}: given up, since the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy),
+                  s_.time());
     service_.take_requests();
 }
 

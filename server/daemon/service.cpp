@@ -36,9 +36,9 @@ void log_swap(const simulation::Reply& r, const simulation::SwapReport& swap)
     for (const simulation::FieldFate& f : swap.fields) fields += fmt::format(" {} {}", f.field, simulation::name_of(f.fate));
     spdlog::info("step {}: {} {} -> {}; pause {:.1f} us;{}", r.step, swap.id, swap.from, swap.to, r.pause_ns * 1e-3, fields);
     if (std::isnan(swap.with_new.energy)) return;  // not tried
-    spdlog::info("  first step: energy {:.9g} J -> {:.9g} J (old: {:.9g} J), error {:.3g} (old: {:.3g}), cost {:.1f} us (old: {:.1f} us)",
-                 swap.energy_before, swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error,
-                 swap.with_new.cost_ns * 1e-3, swap.with_old.cost_ns * 1e-3);
+    const std::string costs = simulation::text_of_costs(r.trial);
+    spdlog::info("  first step: energy {:.9g} J -> {:.9g} J (old: {:.9g} J), error {:.3g} (old: {:.3g}){}", swap.energy_before,
+                 swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error, costs.empty() ? "" : "; " + costs);
 }
 
 publish::CollectorOptions collector_options(const Options& options)
@@ -112,6 +112,7 @@ void Service::post(simulation::Request request, Origin origin)
 void Service::take_requests()
 {
     if (!bus_) return;
+    note_restart();
     publish::RequestText text;
     while (bus_->take(text))
     {
@@ -127,6 +128,15 @@ void Service::take_requests()
         else
             accept(text, wanted.take(), read_ns);
     }
+}
+
+void Service::note_restart()
+{
+    publish::EventRecord event;
+    event.message = bus_->take_restart();
+    if (event.message.empty()) return;
+    event.kind = "bus.restarted", event.severity = Severity::Warning;
+    collector_.note(*simulation_, std::move(event));
 }
 
 void Service::accept(const publish::RequestText& text, control::Wanted wanted, double read_ns)

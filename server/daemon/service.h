@@ -75,6 +75,7 @@ private:
     void answer_client(const Origin& origin, simulation::Reply reply);
     void shut_down(const publish::RequestText& text);
     void cancel(const publish::RequestText& text, const control::Wanted::Cancelled& which);
+    void note_restart();
     void note(const Origin& origin, const simulation::Reply& reply);
     void post(simulation::Request request, Origin origin);
     std::optional<Origin> origin_of(std::uint64_t request);

@@ -179,8 +179,7 @@ void print(const Outcome& o, const Future& without, const Future& with, const Sh
 
 }  // namespace
 
-int run_shadow(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop,
-               const Interruption& interruption)
+int run_shadow(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop, const Interruption& interruption)
 {
     auto snapshot = read_snapshot(options.load, library);
     if (!snapshot) return fail(snapshot.errors());

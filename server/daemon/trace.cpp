@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "daemon/figures_text.h"
+#include "model/exact_text.h"
 #include "world/host_tables.h"
 
 namespace plab::daemon
@@ -102,7 +103,7 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     last_ = s.tick();
     while (every_ > 0 && next_ <= s.time() * (1 + 1e-12)) next_ += every_;
     const simulation::Totals t = s.totals();
-    std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + hash_text(s.state_hash());
+    std::string row = number(s.time()) + "," + std::to_string(s.tick()) + "," + model::hash_text(s.state_hash());
     for (const double v : {t.kinetic + t.stored, t.kinetic, t.momentum.x, t.momentum.y, t.momentum.z}) row += "," + number(v);
     for (const Columns& c : columns_)
     {

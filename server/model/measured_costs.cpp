@@ -1,23 +1,89 @@
 #include "model/measured_costs.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace plab::model
 {
+namespace
+{
+
+/// Costs nearer than this are not put into an order: the machine had other work.
+constexpr double kAlike = 1.1;
+
+std::string figure(double us)
+{
+    if (us == kDear) return "more than " + std::to_string(kDearestStep) + " s";
+    char text[32];
+    std::snprintf(text, sizeof text, us < 999.5 ? "%.3g" : "%.0f", us);
+    return text;
+}
+
+std::string ordinal(std::size_t n)
+{
+    const std::size_t last = n % 100 > 10 && n % 100 < 14 ? 0 : n % 10;
+    return std::to_string(n) + (last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th");
+}
+
+double cost_in(const MeasuredCost& m, std::size_t kind) { return kind == 0 ? m.few : kind == 1 ? m.many : m.tied; }
+
+MeasuredLadder ladder_of(const MeasuredFamily& family, std::size_t kind)
+{
+    MeasuredLadder out{family.prefix, family.scenes[kind], {}};
+    for (const MeasuredCost& m : kMeasuredCosts)
+        if (m.type.starts_with(family.prefix) && cost_in(m, kind) >= 0) out.rungs.push_back({m.type, cost_in(m, kind)});
+    std::stable_sort(out.rungs.begin(), out.rungs.end(), [](const auto& a, const auto& b) { return a.us < b.us; });
+    return out;
+}
+
+}  // namespace
+
+std::size_t MeasuredLadder::place_of(std::string_view type) const
+{
+    const auto it = std::find_if(rungs.begin(), rungs.end(), [&](const Rung& r) { return r.type == type; });
+    if (it == rungs.end()) return 0;
+    return 1 + static_cast<std::size_t>(std::count_if(rungs.begin(), rungs.end(), [&](const Rung& r) { return r.us * kAlike < it->us; }));
+}
+
+std::string MeasuredLadder::text() const
+{
+    std::string out;
+    for (std::size_t k = 0; k < rungs.size(); ++k)
+    {
+        if (k > 0) out += rungs[k].us > kAlike * rungs[k - 1].us ? " < " : " ~ ";
+        out += "`" + std::string(rungs[k].type.substr(family.size())) + "` " + figure(rungs[k].us);
+    }
+    return out;
+}
+
+std::vector<MeasuredLadder> measured_ladders(std::string_view prefix)
+{
+    std::vector<MeasuredLadder> out;
+    for (const MeasuredFamily& family : kMeasuredFamilies)
+        for (std::size_t kind = 0; kind < family.scenes.size() && family.prefix.starts_with(prefix); ++kind)
+            out.push_back(ladder_of(family, kind));
+    return out;
+}
 
 std::string measured_cost_of(std::string_view type)
 {
-    const auto figure = [](double us) -> std::string
-    {
-        if (us < 0) return "refused";
-        char text[32];
-        std::snprintf(text, sizeof text, "%.3g us", us);
-        return text;
-    };
-    for (const MeasuredCost& m : kMeasuredCosts)
-        if (m.type == type)
-            return figure(m.few) + " with one body, " + figure(m.many) + " with 192, " + figure(m.tied) +
-                   (type.starts_with("Solver/") ? " with three hinged ones" : " in a stack of 20");
+    for (const MeasuredFamily& family : kMeasuredFamilies)
+        for (const MeasuredCost& m : kMeasuredCosts)
+        {
+            if (m.type != type || !type.starts_with(family.prefix)) continue;
+            std::string out;
+            for (std::size_t kind = 0; kind < family.scenes.size(); ++kind)
+            {
+                const MeasuredLadder ladder = ladder_of(family, kind);
+                const std::size_t place = ladder.place_of(type);
+                out += kind > 0 ? ", " : "";
+                out += place == 0 ? "refused"
+                                  : figure(cost_in(m, kind)) + (cost_in(m, kind) == kDear ? " (" : " us (") + ordinal(place) + " of " +
+                                        std::to_string(ladder.rungs.size()) + ")";
+                out += " for " + std::string(ladder.scene);
+            }
+            return out;
+        }
     return {};
 }
 

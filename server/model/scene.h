@@ -38,7 +38,7 @@ struct SceneSettings
 {
     StepLength dt;
     std::uint64_t seed = 1;
-    std::string solver = "solver";                   ///< id of the solver of whoever names none
+    std::string solver = "solver";                 ///< id of the solver of whoever names none
     std::string solver_type = "Solver/Automatic";  ///< its type, where the scene has no component of that id
     std::string title;
     std::vector<Camera> cameras;

@@ -47,8 +47,8 @@ struct Apart
 void add_body(const Bodies& one, std::uint32_t i, const Bodies& other, std::uint32_t k, double dt, Apart& out)
 {
     out.any_body = true;
-    const double speed = length(one.velocity[i] - other.velocity[k]) +
-                         radius_of(one, i) * length(one.angular_velocity[i] - other.angular_velocity[k]);
+    const double speed =
+        length(one.velocity[i] - other.velocity[k]) + radius_of(one, i) * length(one.angular_velocity[i] - other.angular_velocity[k]);
     out.bodies = std::max({out.bodies, speed / dt, length(one.position[i] - other.position[k]) / (dt * dt)});
 }
 
@@ -149,7 +149,8 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
     if (expected > kLongestLook)
     {
         due_ = now + 1'000'000'000;
-        known_[last_] = {type.info.name, {kUnknown, "", "a shadow step would hold the loop up for " + std::to_string(expected / 1'000'000) + " ms"}};
+        known_[last_] = {type.info.name,
+                         {kUnknown, "", "a shadow step would hold the loop up for " + std::to_string(expected / 1'000'000) + " ms"}};
         return;
     }
     const Nanoseconds begin = monotonic_now();

@@ -11,8 +11,8 @@ struct Finer
 {
     std::string_view type, finer;
 };
-/// By accuracy in the same role, not by cost: server/docs/ladders.md has what each costs in which kind of scene. Contact laws that
-/// are forces stand alone: another law is another model.
+/// By accuracy in the same role, not by cost: server/docs/reference.md has what each costs in which kind of scene, as measured. Contact
+/// laws that are forces stand alone: another law is another model.
 inline constexpr Finer kFiner[] = {
     {"Constraint/AngularVelocity/Assign", "Constraint/AngularVelocity/Graph"},
     {"Constraint/AngularVelocity/Impulse", "Constraint/AngularVelocity/Graph"},

@@ -34,7 +34,9 @@ InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, 
     out.work = i < s.stepper().work().size() ? s.stepper().work()[i] : 0.0;
     out.quarantined = world.component(i).quarantined;
     out.outputs = parameters_of(world, i, world::kind_bit(FieldKind::Output));
-    const auto account = [&](const char* name, std::string text, std::string unit) { out.outputs.push_back({name, std::move(text), std::move(unit), "account"}); };
+    const auto account = [&](const char* name, std::string text, std::string unit) {
+        out.outputs.push_back({name, std::move(text), std::move(unit), "account"});
+    };
     account("cost_quartiles", model::format_real(cost.last.low) + " " + model::format_real(cost.last.high), "ns");
     account("cost_steps", std::to_string(cost.last.samples), "");
     account("cost_shared_by", std::to_string(cost.shared), "");

@@ -191,11 +191,11 @@ Result<std::vector<std::pair<std::uint32_t, std::string>>> FileLog::objects(std:
 {
     std::map<std::uint32_t, std::string> names;
     auto done = each<plab_v2_SceneObject>({.topics = {wire::topic_of<plab_v2_SceneObject>().name}},
-                                     [&](const plab_v2_SceneObject& o, std::uint64_t)
-                                     {
-                                         if (o.run == run) names[o.handle] = o.component_id;
-                                         return true;
-                                     });
+                                          [&](const plab_v2_SceneObject& o, std::uint64_t)
+                                          {
+                                              if (o.run == run) names[o.handle] = o.component_id;
+                                              return true;
+                                          });
     if (!done) return done.errors();
     return std::vector<std::pair<std::uint32_t, std::string>>(names.begin(), names.end());
 }

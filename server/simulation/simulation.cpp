@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "model/alike.h"
 #include "simulation/clock.h"
 #include "simulation/requests/field_change.h"
 #include "simulation/requests/transaction.h"
@@ -31,7 +32,7 @@ Result<Simulation::Live> Simulation::build(const model::SceneSpec& scene)
         Errors errors = built.errors();
         for (Error& e : errors)
             if (e.where.file.empty()) e.where.file = scene.file;
-        return errors;
+        return model::first_of_alike(std::move(errors));
     }
     return live;
 }

@@ -16,7 +16,8 @@ struct Totals
     double shaft_momentum = 0;  ///< N m s, sum over shafts about their own axles
 };
 
-/// Of whatever takes part in the stepper's schedule; `time` in s. Changes nothing in the world: commands are handed what they could write to.
+/// Of whatever takes part in the stepper's schedule; `time` in s. Changes nothing in the world: commands are handed what they could write
+/// to.
 Totals totals_of(world::World& world, const Stepper& stepper, double time, Tick tick);
 /// J, of components that say so (Phase::Potential).
 double stored_energy_of(world::World& world, const Stepper& stepper, double time, Tick tick);

@@ -1,10 +1,10 @@
 // report.html: what was studied, what came out, every number behind it.
-#include <cinttypes>
 #include <cmath>
 #include <set>
 
 #include "figures/axes.h"
 #include "figures/page.h"
+#include "model/exact_text.h"
 #include "model/values.h"
 #include "study/plot/figures.h"
 #include "study/write.h"
@@ -75,10 +75,9 @@ void add_table(Page& page, const StudyResult& r)
     {
         const RunRecord& x = p.record;
         auto& row = rows.emplace_back();
-        char d[16], hash[20];
+        char d[16];
         std::snprintf(d, sizeof d, "%.1f", digits(p.error()));
-        std::snprintf(hash, sizeof hash, "%016" PRIx64, x.hash);
-        row.push_back({p.combination.label(), "", std::string("state hash ") + hash});
+        row.push_back({p.combination.label(), "", "state hash " + model::hash_text(x.hash)});
         if (x.ok() && std::isfinite(p.error()))
             row.push_back({(p.is_resolved() || p.error() == 0 ? "" : "≥ ") + std::string(d), key_of(digits(p.error())), ""});
         else

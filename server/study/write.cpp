@@ -1,10 +1,10 @@
 #include "study/write.h"
 
-#include <cinttypes>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 
+#include "model/exact_text.h"
 #include "study/plot/figures.h"
 
 namespace plab::study
@@ -12,20 +12,7 @@ namespace plab::study
 namespace
 {
 
-std::string number(double v)
-{
-    if (!std::isfinite(v)) return "";
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", v);
-    return text;
-}
-
-std::string hash_text(std::uint64_t h)
-{
-    char text[20];
-    std::snprintf(text, sizeof text, "%016" PRIx64, h);
-    return text;
-}
+std::string number(double v) { return model::exact_text(v, ""); }
 
 /// A cell of CSV: in quotes where it has to be.
 std::string cell(const std::string& text)
@@ -63,7 +50,7 @@ std::string row_of(const StudyResult& r, const Point& p)
                                    : std::string(",,,"));
     out += "," + number(p.cpu_min) + "," + number(p.cpu_median) + "," + number(p.cpu_per_second()) + "," + number(p.cpu_per_step());
     out += "," + std::to_string(x.evaluations) + "," + std::to_string(x.trials) + "," + std::to_string(x.rewinds) + "," +
-           count(x.allocations) + "," + hash_text(x.hash) + "," + cell(x.first_warning) + "," + cell(resolved);
+           count(x.allocations) + "," + model::hash_text(x.hash) + "," + cell(x.first_warning) + "," + cell(resolved);
     return out + "\n";
 }
 

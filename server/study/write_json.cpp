@@ -1,8 +1,8 @@
 // results.json. The schema is in server/docs/study.md.
-#include <cinttypes>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "model/exact_text.h"
 #include "study/write.h"
 
 namespace plab::study
@@ -93,8 +93,6 @@ Json energy_of(const Point& p)
 Json point_of(const StudyResult& r, const Point& p)
 {
     const RunRecord& x = p.record;
-    char hash[20];
-    std::snprintf(hash, sizeof hash, "%016" PRIx64, x.hash);
     Json settings = Json::object(), errors = Json::object();
     for (const Setting& s : p.combination.settings) settings[s.target] = s.value;
     for (std::size_t k = 0; k < r.quantities.size() && k < p.errors.size(); ++k)
@@ -109,7 +107,7 @@ Json point_of(const StudyResult& r, const Point& p)
              {"why", x.why},
              {"reached", number(x.reached)},
              {"steps", x.steps},
-             {"hash", hash},
+             {"hash", model::hash_text(x.hash)},
              {"error", number(p.error())},
              {"final_error", number(p.final_error())},
              {"digits", number(digits(p.error()))},

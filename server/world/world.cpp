@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "model/alike.h"
+
 namespace plab::world
 {
 
@@ -154,6 +156,22 @@ void World::initialize_motion(std::uint32_t component)
     }
 }
 
+namespace
+{
+
+/// With the component's name and place, where they are missing.
+void add_placed(Errors& out, const Errors& errors, const model::ComponentSpec& spec)
+{
+    for (Error e : errors)
+    {
+        if (e.element.empty()) e.element = spec.id + " (" + spec.type + ")";
+        if (e.where.file.empty()) e.where = spec.where;
+        out.push_back(std::move(e));
+    }
+}
+
+}  // namespace
+
 /// Rows for all components of `scene`, their values and roles; nothing is prepared yet.
 std::vector<World::Created> World::create_all(const model::SceneSpec& scene, Errors& errors)
 {
@@ -189,14 +207,18 @@ Result<void> World::add(const model::SceneSpec& scene)
                   });
         for (const Created& c : created)
         {
-            if (auto done = prepare(c.component); !done) errors.insert(errors.end(), done.errors().begin(), done.errors().end());
+            // prepare() looks for the place of an error among all components: after the first one that would take time with the square of
+            // their number. What it does besides is of no use any more, but for shapes, which bodies are measured by.
+            const bool in_full = errors.empty() || component(c.component).facet == Facet::Shape;
+            auto done = in_full || component(c.component).table == kNoIndex ? prepare(c.component) : run(c.component, Phase::Prepare);
+            if (!done) add_placed(errors, done.errors(), *c.spec);
             initialize_motion(c.component);
         }
         refresh_open_roles();
     }
     if (errors.empty()) return {};
     restore(before);
-    return errors;
+    return model::first_of_alike(std::move(errors));
 }
 
 void World::refresh_open_roles()

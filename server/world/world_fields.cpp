@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "model/alike.h"
 #include "world/state_hash.h"
 #include "world/world.h"
 
@@ -155,7 +156,7 @@ Result<void> World::prepare_all()
     for (const std::uint32_t i : order)
         if (auto done = prepare(i); !done) errors.insert(errors.end(), done.errors().begin(), done.errors().end());
     if (errors.empty()) return {};
-    return errors;
+    return model::first_of_alike(std::move(errors));
 }
 
 void World::save_state(std::uint32_t component, ByteWriter& out) const

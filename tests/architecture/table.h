@@ -33,9 +33,13 @@ inline const std::vector<Layer>& layers()
          {"nlohmann/"},
          false},
         {"server/wire", {"server/sdk", "server/model", "server/simulation", "server/publish", "idl"}, {}},
+        {"server/bus/channel", {"server/sdk", "server/model", "server/simulation", "server/publish"}, {"sys/", "unistd.h", "fcntl.h"}},
+        {"server/bus/process",
+         {"server/sdk", "server/model", "server/simulation", "server/publish", "server/wire", "server/bus", "server/bus/channel", "idl"},
+         {"dds/", "sys/", "unistd.h", "fcntl.h", "poll.h", "pthread.h"}},
         {"server/bus",
-         {"server/sdk", "server/model", "server/simulation", "server/publish", "server/wire", "idl"},
-         {"dds/", "sys/", "unistd.h", "semaphore.h", "pthread.h", "time.h"}},
+         {"server/sdk", "server/model", "server/simulation", "server/publish", "server/bus/channel", "idl"},
+         {"sys/", "unistd.h", "fcntl.h", "poll.h", "pthread.h", "spawn.h"}},
         {"server/record",
          {"server/sdk", "server/model", "server/simulation", "server/publish", "server/wire", "idl", "idl/recording"},
          {"unistd.h", "pthread.h"}},
@@ -80,9 +84,11 @@ inline const std::vector<Layer>& layers()
          {"server", "tests/support"},
          {"ode/", "btBulletDynamicsCommon.h", "BulletDynamics/", "Simbody.h", "nlohmann/", "unistd.h", "poll.h", "sys/"},
          false},
+        {"tests/bus/foreign", {"server", "clients", "idl", "tests"}, {"doctest/", "fastdds/", "plabPubSubTypes.h"}, false},
         {"tests",
          {"server", "interactions", "clients", "idl"},
-         {"doctest/", "nlohmann/", "dds/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/", "poll.h", "termios.h"}},
+         {"doctest/", "nlohmann/", "dds/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/", "poll.h", "termios.h", "arpa/",
+          "netinet/"}},
     };
     return table;
 }

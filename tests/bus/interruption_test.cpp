@@ -56,6 +56,18 @@ TEST_CASE("while a step takes long, what it is at is told, what only reads is an
     CHECK(has(server.process().errors(), "given up"));
 }
 
+TEST_CASE("shutdown ends a server at once, a paused one too")
+{
+    for (const char* option : {"--paused", "--rate=real"})
+    {
+        Server server(scene_file("fan_and_balloons.xml"), {option});
+        const auto begin = std::chrono::steady_clock::now();
+        CHECK(plabctl(server, {"shutdown"}).code == 0);
+        CHECK(server.process().wait(Milliseconds(5000)) == 0);
+        CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 0.8);
+    }
+}
+
 TEST_CASE("a request that waits is taken back by cancel, and whoever asked for it hears so")
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});

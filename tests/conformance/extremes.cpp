@@ -104,28 +104,10 @@ std::string trouble_of(const ExtremeCase& c, int steps)
     _exit(0);
 }
 
-/// How many numbers a text of the field has, of which the first is put at an extreme; 0: none.
-int count_of(FieldType type)
-{
-    switch (type)
-    {
-        case FieldType::Real:
-        case FieldType::Integer:
-            return 1;
-        case FieldType::Vector:
-        case FieldType::Matrix:
-            return 3;
-        case FieldType::Rotation:
-            return 4;
-        case FieldType::RealList:
-        case FieldType::IntegerList:
-            return 1;
-        default:
-            return 0;
-    }
-}
-
 bool is_whole(FieldType type) { return type == FieldType::Integer || type == FieldType::IntegerList; }
+
+/// How many numbers a text of the field has, of which the first is put at an extreme; 0: none.
+int count_of(FieldType type) { return is_whole(type) ? 1 : count_of_reals(type); }
 
 /// What the scene gives the field, or its default; empty: neither.
 std::string given_text(const Subject& subject, const Field& field)

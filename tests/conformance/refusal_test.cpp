@@ -16,29 +16,11 @@ namespace
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How many numbers a value of this type takes as text; 0: it is not made of real numbers.
-int count_of(FieldType type)
-{
-    switch (type)
-    {
-        case FieldType::Real:
-        case FieldType::RealList:
-            return 1;
-        case FieldType::Vector:
-        case FieldType::Matrix:
-            return 3;
-        case FieldType::Rotation:
-            return 4;
-        default:
-            return 0;
-    }
-}
-
 /// `word` as the last of the numbers that the field takes, the others 1.
 std::string last_is(const std::string& word, FieldType type)
 {
     std::string out;
-    for (int i = 1; i < count_of(type); ++i) out += "1 ";
+    for (int i = 1; i < count_of_reals(type); ++i) out += "1 ";
     return out + word;
 }
 
@@ -101,7 +83,7 @@ std::vector<std::string> bad_texts(const Field& field)
 {
     std::vector<std::string> out;
     add_misshapen(out, field);
-    if (const int count = count_of(field.type))
+    if (const int count = count_of_reals(field.type))
     {
         for (const char* word : {"many", "nan", "-nan", "0,5", "0x10", "1e999"}) out.push_back(last_is(word, field.type));
         if (!field.may_be_infinite) out.insert(out.end(), {last_is("inf", field.type), last_is("-inf", field.type)});

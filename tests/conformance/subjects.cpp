@@ -124,6 +124,23 @@ const Schema& schema_of(const Subject& subject)
     return (*type)->schema;
 }
 
+int count_of_reals(FieldType type)
+{
+    switch (type)
+    {
+        case FieldType::Real:
+        case FieldType::RealList:
+            return 1;
+        case FieldType::Vector:
+        case FieldType::Matrix:
+            return 3;
+        case FieldType::Rotation:
+            return 4;
+        default:
+            return 0;
+    }
+}
+
 model::Blueprint repeated(const Subject& subject)
 {
     model::Blueprint out = subject.blueprint;

@@ -35,6 +35,8 @@ model::Blueprint with_field(const model::Blueprint& scene, const std::string& na
 const Schema& schema_of(const Subject& subject);
 /// Whether a blueprint may give it.
 bool settable(const Field& field);
+/// How many real numbers a text of this type has, a list at least one; 0: it is not made of them.
+int count_of_reals(FieldType type);
 /// The same scene four times, 100 m apart.
 model::Blueprint repeated(const Subject& subject);
 

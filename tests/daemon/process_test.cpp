@@ -207,14 +207,15 @@ TEST_CASE("the reference of Script/Lua lists what a script can use, with units a
 {
     const Outcome lua = plabd("--reference Lua");
     REQUIRE(lua.code == 0);
-    for (const char* line : {"| `participant:add_force(force)` |", "| `body.velocity` | m/s |", "| `step.dt` | s |", "| `math.atan(y, x)` |",
-                             "texts of 4096 bytes"})
+    for (const char* line : {"| `participant:add_force(force)` |", "| `body.velocity` | m/s |", "| `step.dt` | s |",
+                             "| `math.atan(y, x)` |", "texts of 4096 bytes"})
         CHECK_MESSAGE(has(lua.text, line), line);
 }
 
 TEST_CASE("short names of types work on the command line and in a scene")
 {
-    const Outcome run = plabd(kScene + " --until 0.1 --swap \"10:contact.response=None\" --swap \"12:contact.resolution=LocalRoot\" --log-level info");
+    const Outcome run =
+        plabd(kScene + " --until 0.1 --swap \"10:contact.response=None\" --swap \"12:contact.resolution=LocalRoot\" --log-level info");
     CHECK_MESSAGE(run.code == 0, run.text);
     CHECK(has(run.text, "Response/Impulse -> Response/None"));
     CHECK(has(run.text, "-> Resolution/LocalRoot"));

@@ -28,7 +28,8 @@ std::string box(const std::string& response, const std::string& more = "position
 
 /// Four corners of 2500 N/m are 1e4 N/m.
 const char* const kSpring =
-    "Penalty\" response.stiffness=\"2500\" response.damping_ratio=\"0.7\" response.tangential_damping_ratio=\"1\" response.restitution=\"1\"";
+    "Penalty\" response.stiffness=\"2500\" response.damping_ratio=\"0.7\" response.tangential_damping_ratio=\"1\" "
+    "response.restitution=\"1\"";
 const std::vector<NamedValue> kSpringValues{{"stiffness", std::string("2500")},
                                             {"damping_ratio", std::string("0.7")},
                                             {"restitution", std::string("1")},

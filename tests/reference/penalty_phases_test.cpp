@@ -60,14 +60,16 @@ TEST_CASE("Hunt and Crossley: what comes back obeys (1 + e) s = ln((1 + s) / (1 
                 CAPTURE(s);
                 CAPTURE(v);
                 CAPTURE(law);
-                const std::string response = "HuntCrossley response.restitution='1' " + std::string(law) + " response.dissipation='" + text(s / v) + "'";
+                const std::string response =
+                    "HuntCrossley response.restitution='1' " + std::string(law) + " response.dissipation='" + text(s / v) + "'";
                 CHECK(std::fabs(restitution(1.0 / 60, 0.4, v, 0.3, response) - e) <= 2e-7);
             }
 }
 
 TEST_CASE("within a contact too, kinetic and stored energy are what came in")
 {
-    for (const char* response : {"Penalty response.restitution='1' response.stiffness='1e4'", "HuntCrossley response.restitution='1' response.stiffness='1e6'"})
+    for (const char* response :
+         {"Penalty response.restitution='1' response.stiffness='1e4'", "HuntCrossley response.restitution='1' response.stiffness='1e6'"})
     {
         CAPTURE(response);
         Scene s(falling(1e-3, 1, response) + "<component id='solver' type='Solver/RungeKutta4'/>", dt(1000));

@@ -154,7 +154,8 @@ TEST_CASE("the solver keeps its order through contacts")
     CHECK(order("RungeKutta4", 20, linear, 0.72924761428767) == doctest::Approx(4).epsilon(0.1));
     CHECK(order("SemiImplicitEuler", 100, linear, 0.72924761428767) > 0.9);
     // Hertz's force has no second derivative at the touch and at the end: order 2.5, with luck in where pieces end.
-    const auto hertz = [&](int pieces) { return error("RungeKutta4", pieces, "HuntCrossley\" response.restitution=\"1\" response.stiffness=\"1e7\"", 1); };
+    const auto hertz = [&](int pieces)
+    { return error("RungeKutta4", pieces, "HuntCrossley\" response.restitution=\"1\" response.stiffness=\"1e7\"", 1); };
     CHECK(std::log2(hertz(25) / hertz(800)) / 5 > 2.3);
 }
 

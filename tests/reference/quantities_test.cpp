@@ -8,7 +8,10 @@ using plab::test::Scene;
 namespace
 {
 
-Reals values(Scene& s, const std::string& id) { return std::get<Reals>(s.simulation().world().get(s.simulation().world().find(id), "values")); }
+Reals values(Scene& s, const std::string& id)
+{
+    return std::get<Reals>(s.simulation().world().get(s.simulation().world().find(id), "values"));
+}
 
 /// z1' = z2, z2' = -z1 from (1, 0), to t = 2.
 double oscillator_error(int per_second)
@@ -82,4 +85,40 @@ TEST_CASE("quantities need a number")
 {
     Scene s(R"(<component id="z" type="State/Quantities" values=""/>)");
     CHECK(s.error().find("at least one number") != std::string::npos);
+}
+
+TEST_CASE("quantities that leave the numbers stand still from then on, are told once, and go on when they are set")
+{
+    // z grows beyond all numbers where it is positive; the clock beside it, of the same script, goes on. A script has them by id.
+    Scene s(R"(<component id="z" type="State/Quantities" values="1"/><component id="zclock" type="State/Quantities" values="0"/>
+               <component id="law" type="Script/Lua" between="z zclock"><param name="code">
+               function force(t, state)
+                   local z = between[1]
+                   if z:value(1) > 0 then z:add_rate(1, 1e200) else z:add_rate(1, 1) end
+                   between[2]:add_rate(1, 1)
+               end</param></component>)",
+            "dt=\"1/20\" solver=\"Solver/RungeKutta4\"");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.warnings_expected = true, s.keep_events = true;
+    s.run(3);
+    CHECK(s.count("state.not_finite") == 1);
+    REQUIRE(!s.events.empty());
+    CHECK(s.events.front().message.find("z left the numbers") != std::string::npos);
+    CHECK(values(s, "z")[0] == 1);
+    CHECK(values(s, "zclock")[0] == doctest::Approx(3).epsilon(1e-12));
+
+    s.events.clear();
+    REQUIRE(s.ask(simulation::SetOperation{"z", "values", std::string("-5")}).done);
+    s.run(4);
+    CHECK(values(s, "z")[0] == doctest::Approx(-4).epsilon(1e-12));
+    CHECK(values(s, "zclock")[0] == doctest::Approx(4).epsilon(1e-12));
+    CHECK(s.count("state.not_finite") == 0);
+    // Without a trial, which would refuse that.
+    simulation::Request again;
+    again.operations = {simulation::SetOperation{"z", "values", std::string("2")}};
+    again.trial.budget = simulation::TrialChoice::Budget::None;
+    REQUIRE(s.simulation().carry_out_now(again).done);
+    s.run(6);
+    CHECK(s.count("state.not_finite") == 1);
+    CHECK(values(s, "z")[0] == 2);
 }

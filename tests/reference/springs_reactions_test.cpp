@@ -168,7 +168,7 @@ TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are n
         {{"RungeKutta4"}, "lost", 0, 0},
         {{"RotationSplitting", "order=\"2\""}, "lost", 0, 0},
         {{"RotationSplitting"}, "lost", 0, 0},
-        {{"Exact"}, "lost", 0, 0},                       // RotationSplitting
+        {{"Exact"}, "lost", 0, 0},                               // RotationSplitting
         {{"Exponential"}, "solver.fell_back", 2.2e-5, 3.9e-11},  // to Radau5
     };
     for (const Row& row : table)

@@ -54,8 +54,8 @@ TEST_CASE("what slides over inner edges of a flat grid keeps its speed, and roll
     for (const Rung& rung : kRungs)
     {
         CAPTURE(rung.name());
-        Scene s(flat() + sphere("a", 0.1, at({-1.3, 0.3, 0.1}, {1.3, 0.17, 0})) + box("b", {0.15, 0.1, 0.05}, at({-1.1, -1, 0.05}, {1.1, 0.29, 0})) +
-                gravity("a b") + contact("a b ground", rung, 0));
+        Scene s(flat() + sphere("a", 0.1, at({-1.3, 0.3, 0.1}, {1.3, 0.17, 0})) +
+                box("b", {0.15, 0.1, 0.05}, at({-1.1, -1, 0.05}, {1.1, 0.29, 0})) + gravity("a b") + contact("a b ground", rung, 0));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(1.5);
         CHECK(distance(s.vec("a", "linear_velocity"), {1.3, 0.17, 0}) < 1e-12);
@@ -110,8 +110,7 @@ Swing swing(const Rung& rung, bool rolls, int steps, const std::string& wall)
     const double R = 0.6, r = 0.1, start = 0.5;
     const double period = 4 * std::comp_ellint_1(std::sin(start / 2)) * std::sqrt((rolls ? 7. / 5 : 1.) * (R - r) / kG);
     const Vec3 p = (R - r) * Vec3{std::sin(start), 0, -std::cos(start)};
-    Scene s(wall + sphere("a", r, at(p, {})) + gravity("a") + contact("a wall", rung, 0, rolls ? 10 : 0),
-            step_of(period / steps));
+    Scene s(wall + sphere("a", r, at(p, {})) + gravity("a") + contact("a wall", rung, 0, rolls ? 10 : 0), step_of(period / steps));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;
     const double before = energy(s);
@@ -132,8 +131,8 @@ TEST_CASE("a ball swings in a bowl like a pendulum, and rolls in a bore with 7/5
             CAPTURE(rolls);
             const Swing coarse = swing(rung, rolls, 200, rolls ? bore : bowl), fine = swing(rung, rolls, 800, rolls ? bore : bowl);
             MESSAGE(rung.name(), std::string(rolls ? " rolls" : " slides"), ": off by ", coarse.place, " m, ", fine.place, " m; order ",
-                    std::log2(coarse.place / fine.place) / 2, "; energy ", coarse.energy, " ", fine.energy, " J; begins ", coarse.begins, " ",
-                    fine.begins, ", ends ", coarse.ends, " ", fine.ends);
+                    std::log2(coarse.place / fine.place) / 2, "; energy ", coarse.energy, " ", fine.energy, " J; begins ", coarse.begins,
+                    " ", fine.begins, ", ends ", coarse.ends, " ", fine.ends);
             CHECK(coarse.place < 0.02);
             CHECK(fine.place < 0.005);
             CHECK(coarse.begins == 1);
@@ -183,7 +182,8 @@ TEST_CASE("a box lies in a bore on two edges, and carries its weight there")
     {
         CAPTURE(rung.name());
         Scene s(still("wall", "Bore", "radius=\"0.6\" height=\"4\" orientation=\"axis 1 0 0 1.5707963267948966\"") +
-                box("b", {half, 0.5, low}, at({0, 0, low - 0.6 * std::sqrt(0.75)}, {}, 3)) + gravity("b") + contact("b wall", rung, 0, 0.2));
+                box("b", {half, 0.5, low}, at({0, 0, low - 0.6 * std::sqrt(0.75)}, {}, 3)) + gravity("b") +
+                contact("b wall", rung, 0, 0.2));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(2);
         CHECK(distance(s.vec("b", "position"), {0, 0, low - 0.6 * std::sqrt(0.75)}) < 1e-7);
@@ -196,7 +196,8 @@ TEST_CASE("solids of every kind come to rest on waves, on a mesh and in a bowl")
 {
     for (const std::string& ground :
          {still("wall", "HeightField", "columns=\"61\" rows=\"61\" spacing=\"0.1\" wave_height=\"0.15\" wave_length=\"3\""),
-          still("wall", "HeightField", "columns=\"31\" rows=\"31\" spacing=\"0.2\" roughness=\"0.03\" wave_height=\"0.1\" wave_length=\"4\""),
+          still("wall", "HeightField",
+                "columns=\"31\" rows=\"31\" spacing=\"0.2\" roughness=\"0.03\" wave_height=\"0.1\" wave_length=\"4\""),
           still("wall", "Bowl", "radius=\"3\" position=\"0 0 3\"")})
         for (const Rung& rung : {Rung{"Speculative", "Rows"}, {"LocalBisection", "Rows"}, {"LocalRoot", "Impulse"}})
         {
@@ -229,8 +230,10 @@ TEST_CASE("a surface is for what stands still, and has no mass")
     CHECK(error(bowl, "type=\"State/RigidBody\" density=\"100\"").find("a bowl is a surface and has no volume") != std::string::npos);
     CHECK(error(bowl, "type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"").find("that forces do not move") != std::string::npos);
     CHECK(error(bowl, "type=\"State/Static\"").empty());
-    CHECK(error("type=\"Shape/Bowl\" radius=\"1\" opening=\"-1\"", "type=\"State/Static\"").find("opening must be above") != std::string::npos);
+    CHECK(error("type=\"Shape/Bowl\" radius=\"1\" opening=\"-1\"", "type=\"State/Static\"").find("opening must be above") !=
+          std::string::npos);
     CHECK(error("type=\"Shape/HeightField\" columns=\"3\" rows=\"2\" spacing=\"1\" heights=\"0 0 0 0\"", "type=\"State/Static\"")
               .find("heights must be columns x rows = 6 numbers, not 4") != std::string::npos);
-    CHECK(error("type=\"Shape/HeightField\" columns=\"3000\" rows=\"2\" spacing=\"1\"", "type=\"State/Static\"").find("1024") != std::string::npos);
+    CHECK(error("type=\"Shape/HeightField\" columns=\"3000\" rows=\"2\" spacing=\"1\"", "type=\"State/Static\"").find("1024") !=
+          std::string::npos);
 }

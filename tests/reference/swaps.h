@@ -62,11 +62,13 @@ inline std::string heap()
 /// A block on a slope of 30 degrees (gravity leans), held by the stretch of its contacts' springs, at 1/60 s.
 inline Scene block_on_a_slope()
 {
-    return Scene(gravity("4.905 0 -8.495709211125344") + solid("a", "Box' half_extents='0.2 0.2 0.1'", 1, {0, 0, 0.1}) +
-                     ground_and_contact("None", "Penalty",
-                                        "response.stiffness='2e3' response.restitution='1' response.damping_ratio='1' response.tangential_damping_ratio='1' "
-                                        "response.friction='0.6' response.steps_per_contact='20'"),
-                 dt(60));
+    return Scene(
+        gravity("4.905 0 -8.495709211125344") + solid("a", "Box' half_extents='0.2 0.2 0.1'", 1, {0, 0, 0.1}) +
+            ground_and_contact(
+                "None", "Penalty",
+                "response.stiffness='2e3' response.restitution='1' response.damping_ratio='1' response.tangential_damping_ratio='1' "
+                "response.friction='0.6' response.steps_per_contact='20'"),
+        dt(60));
 }
 
 inline simulation::Reply swap(Scene& s, const std::string& id, const std::string& type, std::vector<simulation::NamedValue> values = {})

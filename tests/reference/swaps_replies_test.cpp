@@ -97,8 +97,9 @@ TEST_CASE("resolutions, managers and spaces keep what contacts hold")
 TEST_CASE("a spring that let go of an overlap that a swap had left does not push until the bodies have parted")
 {
     // 1 mm deep on a soft spring, then hard, then on a spring ten thousand times as stiff, then gravity turns round.
-    const std::string scene = gravity() + solid("a", "Sphere' radius='0.1'", 1, {0, 0, 0.1}) +
-                              ground_and_contact("LocalBisection", "Penalty", "response.stiffness='1e4' response.damping_ratio='1' response.restitution='1'");
+    const std::string scene =
+        gravity() + solid("a", "Sphere' radius='0.1'", 1, {0, 0, 0.1}) +
+        ground_and_contact("LocalBisection", "Penalty", "response.stiffness='1e4' response.damping_ratio='1' response.restitution='1'");
     for (const char* over : {"Response/Rows", "Response/Impulse"})
     {
         Scene s(scene, dt(240));
@@ -108,7 +109,8 @@ TEST_CASE("a spring that let go of an overlap that a swap had left does not push
         swapped(s, "contact.response", over);
         s.step();
         CHECK(s.vec("a", "position").z < 0.1 - 9e-4);
-        swapped(s, "contact.response", "Response/Penalty", {{"stiffness", std::string("1e8")}, {"damping_ratio", std::string("0")}, {"restitution", std::string("1")}});
+        swapped(s, "contact.response", "Response/Penalty",
+                {{"stiffness", std::string("1e8")}, {"damping_ratio", std::string("0")}, {"restitution", std::string("1")}});
         REQUIRE(s.ask(SetOperation{"g", "acceleration", std::string("0 0 1")}).done);
         s.run(2.5);
         // What the spring held, f^2 / 2k, and what gravity gives: no more.

@@ -1,5 +1,6 @@
 // Where the time of a step goes: each solver, manager, script and detection has its own account, and together they are the step.
 #include <numeric>
+#include <random>
 
 #include "publish/figures.h"
 #include "support/scene.h"
@@ -33,8 +34,9 @@ double step_of(const Scene& s) { return s.simulation().stepper().cost().mean(); 
 
 std::string script(const std::string& id, const std::string& body, int turns)
 {
-    return "<component id='" + id + "' type='Script/Lua' driven='" + body + "'><param name='code'>function force(t, state) local x = 0 for i = 1, " +
-           std::to_string(turns) + " do x = x + i end driven:add_force(vec(x * 1e-30, 0, 0)) end</param></component>";
+    return "<component id='" + id + "' type='Script/Lua' driven='" + body +
+           "'><param name='code'>function force(t, state) local x = 0 for i = 1, " + std::to_string(turns) +
+           " do x = x + i end driven:add_force(vec(x * 1e-30, 0, 0)) end</param></component>";
 }
 
 std::string pile(const std::string& id, double x, const std::string& manager)
@@ -44,21 +46,23 @@ std::string pile(const std::string& id, double x, const std::string& manager)
     for (int i = 0; i < 6; ++i)
     {
         const std::string box = id + std::to_string(i);
-        out += "<component id='" + box + "' type='State/RigidBody' mass='1' shape='box' position='" + text(x) + " 0 " + text(0.1 + 0.2 * i) + "'/>";
+        out += "<component id='" + box + "' type='State/RigidBody' mass='1' shape='box' position='" + text(x) + " 0 " +
+               text(0.1 + 0.2 * i) + "'/>";
         members += box + " ";
     }
-    return out + "<component id='" + id + "' type='CDetection/ODE' between='" + members + "' against='ground' resolution='Resolution/None' " +
-           "response='Response/Rows' response.manager='Manager/" + manager + "'/><component id='" + id + ".weight' type='Field/Gravity' between='" +
-           members + "'/>";
+    return out + "<component id='" + id + "' type='CDetection/ODE' between='" + members +
+           "' against='ground' resolution='Resolution/None' " + "response='Response/Rows' response.manager='Manager/" + manager +
+           "'/><component id='" + id + ".weight' type='Field/Gravity' between='" + members + "'/>";
 }
 
 }  // namespace
 
 TEST_CASE("400 bodies under Radau5: the solver has its account, and all accounts together are the step")
 {
-    Scene s("<component id='stiff' type='Solver/Radau5'/><repeat id='all' count='400' step='1 0 0'><component id='b' type='State/RigidBody' "
-            "mass='1' inertia='0.1 0.2 0.3' angular_velocity='1 2 3' solver='stiff'/></repeat>"
-            "<component id='g' type='Field/Gravity' between='all'/><component id='air' type='Field/Drag' between='all' linear='0.1'/>");
+    Scene s(
+        "<component id='stiff' type='Solver/Radau5'/><repeat id='all' count='400' step='1 0 0'><component id='b' type='State/RigidBody' "
+        "mass='1' inertia='0.1 0.2 0.3' angular_velocity='1 2 3' solver='stiff'/></repeat>"
+        "<component id='g' type='Field/Gravity' between='all'/><component id='air' type='Field/Drag' between='all' linear='0.1'/>");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(20);
     MESSAGE("step ", step_of(s), " ns, solver ", cost_of(s, "stiff"), " ns, drag ", cost_of(s, "air"), " ns");
@@ -71,8 +75,10 @@ TEST_CASE("400 bodies under Radau5: the solver has its account, and all accounts
 
 TEST_CASE("two scripts of different cost have two figures, in proportion to what they do")
 {
-    Scene s("<component id='a' type='State/RigidBody' mass='1' inertia='1 1 1'/><component id='b' type='State/RigidBody' mass='1' inertia='1 1 1'/>" +
-            script("short", "a", 100) + script("long", "b", 2000));
+    Scene s(
+        "<component id='a' type='State/RigidBody' mass='1' inertia='1 1 1'/><component id='b' type='State/RigidBody' mass='1' inertia='1 1 "
+        "1'/>" +
+        script("short", "a", 100) + script("long", "b", 2000));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(100);
     const publish::Costs costs(s.simulation());
@@ -86,19 +92,23 @@ TEST_CASE("two scripts of different cost have two figures, in proportion to what
 
 TEST_CASE("a SoftStep among Directs has its own figure, and managers carry most of a stack's step")
 {
-    Scene s("<component id='floor' type='Shape/Plane'/><component id='ground' type='State/Static' shape='floor'/>"
-            "<component id='box' type='Shape/Box' half_extents='0.1 0.1 0.1'/>" +
-            pile("one", 0, "Direct") + pile("soft", 5, "SoftStep") + pile("two", 10, "Direct"));
+    Scene s(
+        "<component id='floor' type='Shape/Plane'/><component id='ground' type='State/Static' shape='floor'/>"
+        "<component id='box' type='Shape/Box' half_extents='0.1 0.1 0.1'/>" +
+        pile("one", 0, "Direct") + pile("soft", 5, "SoftStep") + pile("two", 10, "Direct"));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(120);
-    const double soft = cost_of(s, "soft.response.manager"), one = cost_of(s, "one.response.manager"), two = cost_of(s, "two.response.manager");
+    const double soft = cost_of(s, "soft.response.manager"), one = cost_of(s, "one.response.manager"),
+                 two = cost_of(s, "two.response.manager");
     MESSAGE("Direct ", one, " and ", two, " ns, SoftStep ", soft, " ns, step ", step_of(s), " ns");
     CHECK(one > 0);
     CHECK(soft > 0);
     CHECK(two > 0);
     CHECK(soft != one);
     // The same pile by the same manager costs the same, another one something else.
-    CHECK(std::fabs(one - two) < 0.5 * std::max(one, two));
+    const auto median = [&](const char* id) { return publish::Costs(s.simulation()).of(s.simulation().world().find(id)).last.median; };
+    const double first = median("one.response.manager"), second = median("two.response.manager");
+    CHECK(std::fabs(first - second) < 0.5 * std::max(first, second));
     CHECK(sum_of(s) == doctest::Approx(step_of(s)).epsilon(0.02));
 }
 
@@ -116,7 +126,9 @@ TEST_CASE("threads: what each of them does is counted, waiting is not")
 
 TEST_CASE("trial steps of a swap are no steps of the run: neither sums nor medians know them")
 {
-    Scene s("<component id='a' type='State/Shaft' inertia='1' angular_velocity='1'/><component id='air' type='Field/Drag' between='a' rotational='1'/>");
+    Scene s(
+        "<component id='a' type='State/Shaft' inertia='1' angular_velocity='1'/><component id='air' type='Field/Drag' between='a' "
+        "rotational='1'/>");
     s.step(10);
     const std::uint64_t steps = s.simulation().stepper().cost().steps();
     CHECK(steps == 10);
@@ -127,15 +139,40 @@ TEST_CASE("trial steps of a swap are no steps of the run: neither sums nor media
     CHECK(publish::Costs(s.simulation()).of(s.simulation().world().find("air")).last.samples == 10);
 }
 
-TEST_CASE("two medians differ where their quartiles do not overlap, from five samples on")
+TEST_CASE("two medians differ where quartiles of eight samples, or all of four, do not overlap")
 {
     const auto spread = [](std::vector<double> v) { return simulation::spread_of(v); };
     const simulation::Spread low = spread({1, 2, 3, 4, 5}), high = spread({11, 12, 13, 14, 15}), wide = spread({1, 4, 8, 12, 20});
     CHECK(low.median == 3);
     CHECK(low.low == 2);
     CHECK(low.high == 4);
+    CHECK(low.least == 1);
+    CHECK(low.most == 5);
     CHECK(simulation::differ(low, high));
     CHECK_FALSE(simulation::differ(low, wide));
-    CHECK_FALSE(simulation::differ(spread({1}), spread({100})));
+    CHECK_FALSE(simulation::differ(spread({1, 2, 3}), spread({100, 101, 102})));
+    // Quartiles apart, one sample among the others.
+    CHECK_FALSE(simulation::differ(spread({1, 2, 3, 4, 50}), high));
+    CHECK(simulation::differ(spread({1, 2, 3, 4, 5, 6, 7, 50}), spread({11, 12, 13, 14, 15, 16, 17, 18})));
     CHECK(spread({}).samples == 0);
+    CHECK_FALSE(spread({1, 2}).is_told());
+}
+
+TEST_CASE("equal costs differ by chance in less than 6 of 100 cases, whatever the number of samples")
+{
+    std::mt19937 random(7);
+    // Step times: a floor, and now and then something that takes longer.
+    std::exponential_distribution<double> noise(1);
+    const auto samples = [&](int n)
+    {
+        std::vector<double> out;
+        for (int i = 0; i < n; ++i) out.push_back(10 + noise(random));
+        return simulation::spread_of(out);
+    };
+    for (const int n : {4, 5, 7, 8, 9, 11, 16})
+    {
+        int wrong = 0;
+        for (int i = 0; i < 20000; ++i) wrong += simulation::differ(samples(n), samples(n)) ? 1 : 0;
+        CHECK_MESSAGE(wrong < 1200, n, " samples: ", wrong, " of 20000");
+    }
 }

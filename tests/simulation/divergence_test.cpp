@@ -1,4 +1,7 @@
 // Events that tell of lost motion while its numbers are finite, and silence where nothing is wrong.
+#include "plab/island.h"
+#include "plab/registrar.h"
+#include "support/ground.h"
 #include "support/scene.h"
 
 using namespace plab;
@@ -29,6 +32,45 @@ std::string flight(const std::string& resolution, const std::string& at)
            at + "\"/><component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" resolution=\"Resolution/" + resolution +
            "\" response=\"Response/Impulse\" response.restitution=\"1\"/>";
 }
+
+/// A manager that is wrong: it holds nothing, and what it holds not it speeds up by 1 % a step.
+struct WrongRows
+{
+    Column<double> gain;
+    void describe(Schema& s) { s.param(gain, "gain", unit::one, "of speeds in a step").or_else(0.01); }
+};
+void solve_wrongly(const StepContext&, Row row, WrongRows& rows, Bodies& bodies, Shafts&, Island& island)
+{
+    island.motion->kick(island.h);
+    for (const std::uint32_t b : island.bodies)
+    {
+        bodies.velocity[b].z = 0;
+        bodies.velocity[b] *= 1 + rows.gain[row];
+    }
+    island.motion->move_mean(island.h);
+}
+
+/// The types of this build, and the wrong manager.
+class WithWrong final : public model::TypeSource
+{
+public:
+    WithWrong()
+    {
+        Registrar registrar;
+        registrar.component<WrongRows>("Manager/Wrong", "makes energy")
+            .command<solve_wrongly>(Phase::Solve, "Manager/Solve", "makes energy");
+        REQUIRE(own_.add(std::move(registrar), "wrong"));
+    }
+    Result<const model::ComponentType*> require(const std::string& name) override
+    {
+        if (const auto* type = own_.find(name)) return type;
+        return test::library().require(name);
+    }
+    std::vector<std::string> names() const override { return test::library().names(); }
+
+private:
+    model::TypeRegistry own_;
+};
 
 const std::string kEuler = "dt=\"1/60\" solver=\"Solver/SemiImplicitEuler\"";
 
@@ -116,4 +158,42 @@ TEST_CASE("bodies that stay sunk into one another are reported; an overlap that 
     CHECK(sinks.count("contact.deep") >= 1);
     CHECK(sinks.count("contact.deep") <= 2);
     Scene(pair("1e6", "Direct"), "dt=\"1/60\"").run(1);
+}
+
+TEST_CASE("a manager that makes energy is told, and what it makes stays unexplained")
+{
+    WithWrong types;
+    const auto run = [&](const std::string& gain)
+    {
+        const auto blueprint = blueprint::read_blueprint(
+            test::whole_scene(std::string(test::kGround) +
+                                  "<component id=\"box.shape\" type=\"Shape/Box\" half_extents=\"0.1 0.1 0.1\"/>"
+                                  "<component id=\"box\" type=\"State/RigidBody\" shape=\"box.shape\" mass=\"1\" position=\"0 0 0.1\" "
+                                  "linear_velocity=\"1 0 0\"/><component id=\"weight\" type=\"Field/Gravity\" between=\"box\"/>"
+                                  "<component id=\"contact\" type=\"CDetection/ODE\" between=\"box ground\" resolution=\"Resolution/None\" "
+                                  "response=\"Response/Rows\" response.manager=\"Manager/Wrong\" response.manager.gain=\"" +
+                                  gain + "\"/>",
+                              "dt=\"1/240\""),
+            "wrong.xml");
+        REQUIRE(blueprint);
+        const auto spec = model::compile(*blueprint, types);
+        REQUIRE_MESSAGE(spec, test::reasons(spec));
+        simulation::Simulation s(types);
+        REQUIRE(s.load(*spec));
+        int told = 0;
+        for (int i = 0; i < 240; ++i)
+        {
+            REQUIRE(s.step());
+            for (const Event& e : s.events())
+                told += e.kind == "contact.gains_energy" && s.world().id_of(e.component) == "contact.response.manager" ? 1 : 0;
+        }
+        const simulation::Totals t = s.totals();
+        const double made = s.stepper().contact_energy()[s.world().find("contact.response.manager")].made;
+        // Whatever is there more than at the start is nobody's work, and the manager's making.
+        CHECK(made == doctest::Approx(t.kinetic - 0.5));
+        CHECK(t.kinetic - s.kinetic_at_start() - t.work == doctest::Approx(made));
+        return told;
+    };
+    CHECK(run("0.01") == 1);
+    CHECK(run("0") == 0);
 }

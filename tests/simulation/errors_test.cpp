@@ -40,7 +40,8 @@ TEST_CASE("a solver of order 1 is wrong by what one step shows against one of or
 {
     // w' = -2 w from w = 1, x = 0, over one step: semi-implicit Euler against RungeKutta4.
     const std::string spring =
-        "<component id='s' type='State/Shaft' inertia='1' angular_velocity='1'/><component id='air' type='Field/Drag' between='s' rotational='2'/>";
+        "<component id='s' type='State/Shaft' inertia='1' angular_velocity='1'/><component id='air' type='Field/Drag' between='s' "
+        "rotational='2'/>";
     const auto error = [&](const char* solver)
     {
         Scene s(spring + std::string("<component id='x' type='Solver/") + solver + "'/>", std::string("dt='1/100' solver='x'"));
@@ -73,8 +74,9 @@ TEST_CASE("shadow steps leave the run bit for bit as it is")
 
 TEST_CASE("the finest algorithm says that none is finer and gives its own residual; without a residual nothing is made up")
 {
-    Scene s(std::string(kGears) + "<component id='c' type='State/Shaft' inertia='1'/>"
-                                  "<component id='fine' type='Constraint/AngularVelocity/Graph' driver='a' driven='c' velocity_factor='2'/>");
+    Scene s(std::string(kGears) +
+            "<component id='c' type='State/Shaft' inertia='1'/>"
+            "<component id='fine' type='Constraint/AngularVelocity/Graph' driver='a' driven='c' velocity_factor='2'/>");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(5);
     publish::ErrorProbe probe(0.5);

@@ -106,8 +106,9 @@ TEST_CASE("a warm step of a stack that slides allocates nothing, whichever manag
     for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
     {
         CAPTURE(manager);
-        Scene s(body + "<component id=\"contact\" type=\"CDetection/ODE\" between=\"b0 b1 b2 b3 ground\" resolution=\"Resolution/None\" "
-                       "response=\"Response/Rows\" response.friction=\"0.25\" response.manager=\"Manager/" +
+        Scene s(body +
+                "<component id=\"contact\" type=\"CDetection/ODE\" between=\"b0 b1 b2 b3 ground\" resolution=\"Resolution/None\" "
+                "response=\"Response/Rows\" response.friction=\"0.25\" response.manager=\"Manager/" +
                 manager + "\"/>");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.step(500);

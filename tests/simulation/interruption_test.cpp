@@ -91,7 +91,8 @@ TEST_CASE("a step that is given up anywhere leaves no trace: the same bits befor
                 disturbed.step();
             }
             alone.step();
-            REQUIRE_MESSAGE(disturbed.hash() == alone.hash(), differences_of(alone.simulation().capture(), disturbed.simulation().capture()));
+            REQUIRE_MESSAGE(disturbed.hash() == alone.hash(),
+                            differences_of(alone.simulation().capture(), disturbed.simulation().capture()));
         }
         CHECK(given_up > 0);
         const std::string different = differences_of(alone.simulation().capture(), disturbed.simulation().capture());

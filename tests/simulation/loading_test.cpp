@@ -1,4 +1,5 @@
 // Loading a scene, and its first step, take time in proportion to its objects.
+#include <algorithm>
 #include <chrono>
 
 #include "support/scene.h"
@@ -41,7 +42,8 @@ Times times_for(int n, const std::string& rest, const std::string& settings)
 
 TEST_CASE("ten times the objects take about ten times the time to load and to make their first step")
 {
-    for (const char* rest : {"", "<component id='g' type='Field/Gravity' between='*'/>", "<component id='w' type='Field/Gravity' between='all'/>"})
+    for (const char* rest :
+         {"", "<component id='g' type='Field/Gravity' between='*'/>", "<component id='w' type='Field/Gravity' between='all'/>"})
     {
         CAPTURE(rest);
         const Times few = times_for(2000, rest, "dt='1/240'"), many = times_for(20000, rest, "dt='1/240'");
@@ -51,4 +53,24 @@ TEST_CASE("ten times the objects take about ten times the time to load and to ma
         CHECK(many.load < 4 * few.load);
         CHECK(many.first_step < 4 * few.first_step);
     }
+}
+
+TEST_CASE("a mistake that a repeat makes in each cell is told by its first cells and the number of the others")
+{
+    const auto error_of = [](const std::string& cell)
+    {
+        const Scene s("<repeat id='all' count='500' step='1 0 0'>" + cell + "</repeat>");
+        return s.error();
+    };
+    const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+    const std::string mass = error_of("<component id='b' type='State/RigidBody' mass='-1' inertia='1 1 1'/>");
+    CHECK_MESSAGE(lines(mass) == 4, mass);
+    CHECK_MESSAGE(mass.find("and 497 more like it") != std::string::npos, mass);
+    // Of the scene's structure, where no place is known.
+    const std::string loop = error_of(
+        "<component id='a' type='State/Shaft' inertia='1'/><component id='b' type='State/Shaft' inertia='1'/>"
+        "<component id='g' type='Constraint/AngularVelocity/Graph' driver='a' driven='b' velocity_factor='2'/>"
+        "<component id='h' type='Constraint/AngularVelocity/Graph' driver='a' driven='b' velocity_factor='3'/>");
+    CHECK_MESSAGE(lines(loop) == 4, loop);
+    CHECK_MESSAGE(loop.find("and 497 more like it") != std::string::npos, loop);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "simulation/requests/request_words.h"
 #include "support/scene.h"
 
 using namespace plab;
@@ -221,4 +222,65 @@ TEST_CASE("a swap whose first step makes a hundred times the energy is refused, 
     REQUIRE_MESSAGE(spring.loaded(), spring.error());
     const Reply again = ask(spring, {SwapOperation{"s", "Constraint/SpringDamper", {}}});
     CHECK_MESSAGE(again.done, first_error(again.errors));
+}
+
+TEST_CASE("the cost of a swap is a median of repeats, and its difference is told where it is more than chance")
+{
+    const auto script = [](int turns)
+    {
+        return "function force(t, state) local x = 0 for i = 1, " + std::to_string(turns) +
+               " do x = x + i end driven:add_force(vec(x * 1e-30, 0, 0)) end";
+    };
+    Scene s(
+        "<component id='a' type='State/RigidBody' mass='1' inertia='1 1 1'/><component id='s' type='Script/Lua' driven='a'>"
+        "<param name='code'>" +
+        script(200) + "</param></component>" + gears_and_balls(1, 0));
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(5);
+    const Reply dearer = ask(s, {SwapOperation{"s", "Script/Lua", {{"code", script(8000)}}}});
+    REQUIRE_MESSAGE(dearer.done, first_error(dearer.errors));
+    CHECK(dearer.trial.with_old.samples == 11);
+    CHECK(dearer.trial.with_new.samples == 11);
+    CHECK(dearer.swaps[0].with_old.cost_ns == dearer.trial.with_old.median);
+    CHECK(dearer.swaps[0].with_new.cost_ns > 5 * dearer.swaps[0].with_old.cost_ns);
+    const std::string words = text_of(dearer.trial);
+    CHECK_MESSAGE(words.find(" us more") != std::string::npos, words);
+
+    // A type for itself: nothing but noise. The clock is no perfect witness, so not each time.
+    int told = 0;
+    for (int i = 0; i < 40; ++i)
+    {
+        const Reply same = ask(s, {SwapOperation{"gears.0", "Constraint/AngularVelocity/Graph", {}}});
+        REQUIRE(same.done);
+        REQUIRE(same.swaps[0].with_new.cost_ns == same.trial.with_new.median);
+        const bool differs = !std::isnan(same.swaps[0].with_old.cost_ns);
+        CHECK(differs == costs_differ(same.trial.with_old, same.trial.with_new));
+        CHECK((text_of(same.trial).find("no difference that can be told") == std::string::npos) == differs);
+        told += differs ? 1 : 0;
+        if (differs) MESSAGE(text_of(same.trial));
+    }
+    CHECK_MESSAGE(told <= 4, told, " of 40");
+    MESSAGE(told, " of 40 swaps of a type for itself were told to differ");
+    CHECK(text_of(ask(s, {SetOperation{"a", "mass", std::string("2")}}).trial).find("costs") == std::string::npos);
+}
+
+TEST_CASE("a step is not made again for its cost beyond the budget")
+{
+    // The budget has room for some steps, not for enough to tell a difference.
+    const std::string code =
+        "function force(t, state) local x = 0 for i = 1, 20000 do x = x + i end driven:add_force(vec(x * 1e-30, 0, 0)) end";
+    Scene s(
+        "<component id='a' type='State/RigidBody' mass='1' inertia='1 1 1'/><component id='s' type='Script/Lua' driven='a'>"
+        "<param name='code'>" +
+        code + "</param></component>");
+    REQUIRE_MESSAGE(s.loaded(), s.error());
+    s.step(3);
+    const auto begin = std::chrono::steady_clock::now();
+    s.step(10);
+    const double step_ms = 100 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const Reply reply = ask(s, {SwapOperation{"s", "Script/Lua", {{"code", code}}}}, budget(6 * step_ms));
+    REQUIRE_MESSAGE(reply.done, first_error(reply.errors));
+    CHECK(reply.trial.with_new.samples < 8);
+    CHECK(std::isnan(reply.swaps[0].with_old.cost_ns));
+    CHECK(reply.trial.ns < 12 * 1e6 * step_ms);
 }

@@ -134,14 +134,20 @@ Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies)
 namespace
 {
 
-/// Rows come in before they could act: by this much (rad or m), twice as early as the present speed would have it, and by
-/// what this acceleration (rad/s^2 or m/s^2) adds from rest. What is not foreseen is met in the next step.
-constexpr double kReach = 1e-4;
-constexpr double kAcceleration = 20;
+/// Rows come in before they could act: by this share of the way between the limits (or of the limit, where there is but one), and twice
+/// as early as the present speed would have it. What is not foreseen is met in the next step.
+constexpr double kReach = 0x1p-9;
+
+double reach_of(const LimitRows& rows, Row row)
+{
+    const double lower = rows.lower[row], upper = rows.upper[row];
+    if (std::isfinite(lower) && std::isfinite(upper)) return kReach * (upper - lower);
+    return kReach * std::fabs(std::isfinite(lower) ? lower : std::isfinite(upper) ? upper : 0.0);
+}
 
 void add_side(const LimitRows& rows, Row row, const StepContext& step, ConstraintRow side, double gap, double speed, RowSink& sink)
 {
-    if (gap > kReach + step.dt * (2 * std::fmax(0.0, -speed) + 0.5 * kAcceleration * step.dt)) return;
+    if (gap > reach_of(rows, row) + 2 * step.dt * std::fmax(0.0, -speed)) return;
     side.kind = RowKind::OneSided;
     side.error = gap, side.lower = 0, side.restitution = rows.restitution[row];
     sink.add(side);

@@ -165,17 +165,23 @@ void register_gears(Registrar& registrar)
 
 void register_rolling(Registrar& registrar)
 {
-    registrar.component<RollingRows>("Constraint/Rolling", "an ellipsoid rolls on a plane, a ball on a sphere or cylinder, outside or inside, without slipping")
+    registrar
+        .component<RollingRows>("Constraint/Rolling",
+                                "an ellipsoid rolls on a plane, a ball on a sphere or cylinder, outside or inside, without slipping")
         .family("Constraint/Rolling")
         .command<&prepare_rolling>(Phase::Prepare, kPrepare, "takes the plane, sphere or cylinder into the frame of a, where it is new")
-        .command<&constrain_rolling>(Phase::Constrain, kRows, "three rows: no speed where it touches; along the normal the height, too; parallel: two more that keep "
-                                                               "the axes parallel")
+        .command<&constrain_rolling>(
+            Phase::Constrain, kRows,
+            "three rows: no speed where it touches; along the normal the height, too; parallel: two more that keep "
+            "the axes parallel")
         .command<&finish_rolling>(Phase::Finish, kFinish, "contact point, forces and errors of the step")
         .accuracy(kAsSolver)
         .strengths("rolls for as long as one likes without slip, at the order of the solver")
         .cost("3 rows; parallel: 5")
         .limits("holds on whatever happens: it neither slips nor lifts off; see normal_force, and friction = force along the plane")
-        .source("Kane, Levinson, Realistic mathematical modeling of the rattleback, 1982; Neimark, Fufaev, Dynamics of nonholonomic systems, 1972");
+        .source(
+            "Kane, Levinson, Realistic mathematical modeling of the rattleback, 1982; Neimark, Fufaev, Dynamics of nonholonomic systems, "
+            "1972");
 }
 
 }  // namespace

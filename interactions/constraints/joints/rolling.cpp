@@ -94,8 +94,7 @@ void RollingRows::describe(Schema& s)
 {
     s.role(a, "a", {Facet::Body}, "whose plane it is; none: the world").optional().writes();
     s.role(b, "b", {Facet::Body}, "who rolls").writes();
-    s.param(semi_axes, "semi_axes", unit::metre, "half lengths of the ellipsoid; a ball: three times its radius")
-        .at_least(1e-100);
+    s.param(semi_axes, "semi_axes", unit::metre, "half lengths of the ellipsoid; a ball: three times its radius").at_least(1e-100);
     s.param(centre, "centre", unit::metre, "of the ellipsoid, in the frame of b").or_else({});
     s.param(axes, "axes", unit::one, "attitude of the ellipsoid's axes in b").or_else(Quat{});
     s.param(on, "on", unit::one, "what of a it rolls on; on a sphere or a cylinder only a ball does")
@@ -108,12 +107,14 @@ void RollingRows::describe(Schema& s)
             "then such that b touches, with `normal`")
         .or_else(kNotGiven)
         .may_be_infinite();
-    s.param(normal, "normal", unit::one, "from the surface to b where they touch, in the world as it is now; with a sphere's or cylinder's "
+    s.param(normal, "normal", unit::one,
+            "from the surface to b where they touch, in the world as it is now; with a sphere's or cylinder's "
             "point it does not count")
         .or_else({0, 0, 1})
         .unit_length();
     s.param(axis, "axis", unit::one, "of the cylinder, in the world as it is now").or_else({0, 1, 0}).unit_length();
-    s.param(parallel, "parallel", unit::one, "b is a cylinder that touches along a line: it stays parallel to the cylinder's axis as it is now")
+    s.param(parallel, "parallel", unit::one,
+            "b is a cylinder that touches along a line: it stays parallel to the cylinder's axis as it is now")
         .or_else(false);
     s.state(plane_point, "plane_point", unit::metre, "the point in the frame of a, or of the world");
     s.state(plane_normal, "plane_normal", unit::one, "the plane's normal there, or the cylinder's axis");

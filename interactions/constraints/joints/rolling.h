@@ -18,8 +18,8 @@
 /// Of both, with r_a, r_b from the centres of mass to the point of contact:
 ///
 ///   V  = (v_b + w_b x r_b) - (v_a + w_a x r_a) = 0         m/s; J = [ -e, -r_a x e | e, r_b x e ] for e = n, t1, t2
-///   bias = -e . (w_b x r_b' - w_a x r_a') - e' . V         m/s^2; r_b' = w_b x (r_b - s) + s', r_a' = v_b + r_b' - v_a; e' = W x e, W the spin of n, t1, t2
-///   phi' = n . V                                           phi is held along n only
+///   bias = -e . (w_b x r_b' - w_a x r_a') - e' . V         m/s^2; r_b' = w_b x (r_b - s) + s', r_a' = v_b + r_b' - v_a; e' = W x e, W the
+///   spin of n, t1, t2 phi' = n . V                                           phi is held along n only
 ///
 /// (On the plane s turns with b: s' there is w_b x s + R_F s'.) With `parallel`, b is a cylinder that touches along a line: its axis
 /// stays along u, two rows more (sides.h, turn). Then the ball is its cross-section.
@@ -54,13 +54,13 @@ struct RollingRows : ReactionColumns
 /// Where and how the surfaces meet, at one state.
 struct RollingContact
 {
-    Side a, b;           ///< r: to the contact point
-    Vec3 n;              ///< from the surface to b, in W
-    Vec3 t1, t2;         ///< square to it
-    Vec3 turn;           ///< rad/s: how n, t1, t2 turn
-    Vec3 u;              ///< axis of the cylinder, in W
-    double gap = 0;      ///< phi, m, along n
-    Vec3 slip;           ///< V, m/s
+    Side a, b;       ///< r: to the contact point
+    Vec3 n;          ///< from the surface to b, in W
+    Vec3 t1, t2;     ///< square to it
+    Vec3 turn;       ///< rad/s: how n, t1, t2 turn
+    Vec3 u;          ///< axis of the cylinder, in W
+    double gap = 0;  ///< phi, m, along n
+    Vec3 slip;       ///< V, m/s
     Vec3 r_a_rate, r_b_rate;
 };
 RollingContact contact_of(const RollingRows& rows, Row row, const Bodies& bodies);

@@ -22,9 +22,9 @@ public:
     {
         None,
         Instructions,
-        Traffic,  ///< bytes asked for in one call
-        Memory,   ///< bytes held at a time
-        Text,     ///< one text too long
+        Traffic,      ///< bytes asked for in one call
+        Memory,       ///< bytes held at a time
+        Text,         ///< one text too long
         Interrupted,  ///< the step is given up: nobody will see how the call ended
     };
 

@@ -60,9 +60,9 @@ constexpr Reading<Shafts> kShaftReadings[] = {
     {{"angle", "rad", "not wrapped"}, [](lua_State* lua, const Shafts& s, std::uint32_t i) { lua_pushnumber(lua, s.angle[i]); }},
     {{"speed", "rad/s", ""}, [](lua_State* lua, const Shafts& s, std::uint32_t i) { lua_pushnumber(lua, s.speed[i]); }},
     {{"inertia", "kg m2", ""}, [](lua_State* lua, const Shafts& s, std::uint32_t i) { lua_pushnumber(lua, s.inertia[i]); }}};
-constexpr Reading<Quantities> kQuantitiesReadings[] = {
-    {{"count", "", "how many values"}, [](lua_State* lua, const Quantities& q, std::uint32_t i)
-     { lua_pushinteger(lua, static_cast<lua_Integer>(q.value[i].size())); }}};
+constexpr Reading<Quantities> kQuantitiesReadings[] = {{{"count", "", "how many values"},
+                                                        [](lua_State* lua, const Quantities& q, std::uint32_t i)
+                                                        { lua_pushinteger(lua, static_cast<lua_Integer>(q.value[i].size())); }}};
 constexpr Reading<Bodies> kBodyReadings[] = {
     {{"position", "m", "of the centre of mass, in the world"},
      [](lua_State* lua, const Bodies& b, std::uint32_t i) { push_vector(lua, b.position[i]); }},

@@ -212,15 +212,14 @@ int format(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {
-    {"byte", bytes_of, "(text, from, to)", "codes of the bytes"},
-    {"char", text_of_bytes, "(code, ...)", "the text of these bytes"},
-    {"format", format, "(form, ...)", "as printf does; no patterns"},
-    {"len", length_of, "(text)", "bytes"},
-    {"lower", lower, "(text)", "in small letters"},
-    {"rep", repeat, "(text, n, between)", "n times"},
-    {"sub", part, "(text, from, to)", "the part; negative places count from the end"},
-    {"upper", upper, "(text)", "in capitals"}};
+constexpr NativeFunction kFunctions[] = {{"byte", bytes_of, "(text, from, to)", "codes of the bytes"},
+                                         {"char", text_of_bytes, "(code, ...)", "the text of these bytes"},
+                                         {"format", format, "(form, ...)", "as printf does; no patterns"},
+                                         {"len", length_of, "(text)", "bytes"},
+                                         {"lower", lower, "(text)", "in small letters"},
+                                         {"rep", repeat, "(text, n, between)", "n times"},
+                                         {"sub", part, "(text, from, to)", "the part; negative places count from the end"},
+                                         {"upper", upper, "(text)", "in capitals"}};
 
 }  // namespace
 

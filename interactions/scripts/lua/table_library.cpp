@@ -165,12 +165,11 @@ int sort(lua_State* lua)
     return 0;
 }
 
-constexpr NativeFunction kFunctions[] = {
-    {"concat", concatenate, "(list, between, from, to)", "the elements as one text"},
-    {"insert", insert, "(list, place, value)", "at the end without a place"},
-    {"remove", remove, "(list, place)", "the last one without a place"},
-    {"sort", sort, "(list, less)", "stable: what is equal keeps its order"},
-    {"unpack", unpack, "(list, from, to)", "the elements as several values"}};
+constexpr NativeFunction kFunctions[] = {{"concat", concatenate, "(list, between, from, to)", "the elements as one text"},
+                                         {"insert", insert, "(list, place, value)", "at the end without a place"},
+                                         {"remove", remove, "(list, place)", "the last one without a place"},
+                                         {"sort", sort, "(list, less)", "stable: what is equal keeps its order"},
+                                         {"unpack", unpack, "(list, from, to)", "the elements as several values"}};
 
 }  // namespace
 

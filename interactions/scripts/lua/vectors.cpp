@@ -147,7 +147,8 @@ constexpr NativeFunction kVectorOperators[] = {
     {"__unm", vector_negate}, {"__eq", vector_equal},     {"__newindex", refuse_assignment}};
 constexpr NativeFunction kRotationMethods[] = {{"rotate", rotation_forth, "(vector)", "from the body's axes to the world's"},
                                                {"rotate_back", rotation_back, "(vector)", "from the world's axes to the body's"}};
-constexpr NativeValue kRotationValues[] = {{"w", "", "scalar part"}, {"x", "", "component"}, {"y", "", "component"}, {"z", "", "component"}};
+constexpr NativeValue kRotationValues[] = {
+    {"w", "", "scalar part"}, {"x", "", "component"}, {"y", "", "component"}, {"z", "", "component"}};
 constexpr NativeFunction kRotationOperators[] = {{"__newindex", refuse_assignment}};
 
 void make_metatable(lua_State* lua, int slot, const char* name, std::span<const NativeFunction> operators,
@@ -195,7 +196,9 @@ void push_rotation(lua_State* lua, const Quat& q)
 
 std::vector<NativeGroup> vector_groups()
 {
-    return {{"", kMakers}, {"vector", kVectorMethods, {std::begin(kVectorValues), std::end(kVectorValues)}}, {"orientation", kRotationMethods, {std::begin(kRotationValues), std::end(kRotationValues)}}};
+    return {{"", kMakers},
+            {"vector", kVectorMethods, {std::begin(kVectorValues), std::end(kVectorValues)}},
+            {"orientation", kRotationMethods, {std::begin(kRotationValues), std::end(kRotationValues)}}};
 }
 
 void open_vectors(lua_State* lua)

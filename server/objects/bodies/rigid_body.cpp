@@ -109,8 +109,9 @@ Result<void> prepare_rigid_body(const StepContext& context, Row row, const Rigid
     if (auto inertia = check_inertia(solid->inertia); !inertia) return inertia;
 
     if (has_surface(rigid.body.shape[row], shapes))
-        return reason("a shape that collides as a surface (bowl, bore, height field, mesh) is for bodies that forces do not move: State/Static, "
-                      "State/Kinematic");
+        return reason(
+            "a shape that collides as a surface (bowl, bore, height field, mesh) is for bodies that forces do not move: State/Static, "
+            "State/Kinematic");
 
     const std::uint32_t index = context.facet_of_row[row];
     bodies.motion[index] = Motion::Dynamic;

@@ -42,7 +42,8 @@ void BoreRows::describe(Schema& schema)
 {
     shape.describe(schema);
     schema.param(radius, "radius", unit::metre, "of the inside").positive();
-    schema.param(height, "height", unit::metre, "length along z, half of it on either side; open at both ends (planes close them)").positive();
+    schema.param(height, "height", unit::metre, "length along z, half of it on either side; open at both ends (planes close them)")
+        .positive();
 }
 
 void prepare_bore(const StepContext& context, Row row, const BoreRows& bores, Shapes& shapes)

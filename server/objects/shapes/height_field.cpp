@@ -55,7 +55,8 @@ void HeightFieldRows::describe(Schema& schema)
     schema.param(rows, "rows", unit::one, "points along y").at_least(2).at_most(kMostLines);
     schema.param(spacing, "spacing", unit::metre, "between neighbours; the grid's middle is the origin").positive();
     schema.param(heights, "heights", unit::metre, "z of each point, row by row along x; none: level ground").or_else({});
-    schema.param(wave_height, "wave_height", unit::metre, "adds waves: this times sin(2 pi x/wave_length) sin(2 pi y/wave_length)").or_else(0);
+    schema.param(wave_height, "wave_height", unit::metre, "adds waves: this times sin(2 pi x/wave_length) sin(2 pi y/wave_length)")
+        .or_else(0);
     schema.param(wave_length, "wave_length", unit::metre, "of these waves").or_else(1).positive();
     schema.param(roughness, "roughness", unit::metre, "adds to each point a random height, uniform from minus this to this")
         .or_else(0)

@@ -15,8 +15,8 @@ struct HeightFieldRows
 {
     ShapeColumns shape;
     Column<std::int64_t> columns, rows;
-    Column<double> spacing;  ///< m
-    Column<Reals> heights;   ///< m, row by row along x; none: 0
+    Column<double> spacing;                              ///< m
+    Column<Reals> heights;                               ///< m, row by row along x; none: 0
     Column<double> wave_height, wave_length, roughness;  ///< m
     Column<std::int64_t> seed;
 

@@ -42,9 +42,9 @@ PLAB_PLUGIN("shapes", registrar)
     add_shape<prepare_box, measure_box, BoxRows>(registrar, "Shape/Box", "a cuboid", "volume, centre and inertia, in closed form");
     add_shape<prepare_plane, measure_plane, PlaneRows>(registrar, "Shape/Plane", "a half space below z = 0 of its frame",
                                                        "refused: a plane has no volume");
-    add_shape<prepare_mesh, measure_mesh, MeshRows>(registrar, "Shape/Mesh",
-                                                    "triangles; drawn and integrated as given, collides as its convex hull, as a surface, or not at all",
-                                                    "volume, centre and inertia, exact for closed triangle meshes");
+    add_shape<prepare_mesh, measure_mesh, MeshRows>(
+        registrar, "Shape/Mesh", "triangles; drawn and integrated as given, collides as its convex hull, as a surface, or not at all",
+        "volume, centre and inertia, exact for closed triangle meshes");
     add_shape<prepare_cylinder, measure_cylinder, CylinderRows>(registrar, "Shape/Cylinder", "a solid cylinder along z",
                                                                 "volume, centre and inertia, in closed form");
     add_shape<prepare_capsule, measure_capsule, CapsuleRows>(registrar, "Shape/Capsule", "a cylinder along z with half balls as ends",

@@ -11,9 +11,9 @@ namespace plab::solvers
 namespace
 {
 
-constexpr double kShare = 0.1;        ///< of the others' d1, counts as one's own
-constexpr double kNegligible = 1e-9;  ///< of the speeds: a d3 that changes less does not matter
-constexpr double kRounding = 1e-12;   ///< m/s, rad/s: nor does this
+constexpr double kShare = 0.1;         ///< of the others' d1, counts as one's own
+constexpr double kNegligible = 1e-9;   ///< of the speeds: a d3 that changes less does not matter
+constexpr double kRounding = 0x1p-43;  ///< of a body's size a step, or of a rad: nor does this
 constexpr double kStiff = 0.5, kOverSpin = 4;
 
 double spin_of(DynamicSystem& system, std::size_t body, std::span<const double> u)
@@ -23,11 +23,12 @@ double spin_of(DynamicSystem& system, std::size_t body, std::span<const double> 
     return length(member.needle ? s : member.inverse_inertia_B * rotate_back(member.orientation, s));
 }
 
-/// Numbers [begin, end) that are judged together. `unit`: what the speeds of the last three of a body are divided by.
+/// Numbers [begin, end) that are judged together. `unit`: what the speeds of the last three of a body are divided by, so that turning
+/// counts as what moves at the radius of gyration `size` (m; 1 of what turns alone).
 struct Member
 {
     std::size_t begin = 0, end = 0;
-    double unit = 1;
+    double unit = 1, size = 1;
     bool is_body = false, quantities = false;
 };
 
@@ -54,7 +55,7 @@ public:
             {
                 const Norms n = norms(m), &others = each_alone_ ? n : all[m.quantities ? 1 : 0];
                 if (!std::isfinite(n.third)) out.value = std::numeric_limits<double>::infinity(), out.too_much = true;
-                if (!(h_ * n.third > kNegligible * others.speed + (m.quantities ? 0 : kRounding))) return;
+                if (!(h_ * n.third > kNegligible * others.speed + (m.quantities ? 0 : kRounding * m.size / h_))) return;
                 const double found = std::sqrt(2 * n.third / (n.first + (each_alone_ ? 0 : kShare * others.first)));
                 out.value = std::fmax(out.value, found);
                 if (!(found <= kStiff))
@@ -70,14 +71,16 @@ private:
         const std::size_t n = u0_.size(), bodies = system_.body_count(), quantities = system_.quantity_count();
         for (std::size_t b = 0; b < bodies; ++b) visit(body(b));
         for (std::size_t i = 6 * bodies; i < n - quantities; ++i) visit(Member{i, i + 1});
-        if (quantities > 0) visit(Member{n - quantities, n, 1, false, true});
+        if (quantities > 0) visit(Member{n - quantities, n, 1, 1, false, true});
     }
 
     Member body(std::size_t b)
     {
-        Member m{6 * b, 6 * b + 6, 1, true};
+        Member m{6 * b, 6 * b + 6, 1, 1, true};
         const RigidMember rigid = system_.rigid(b);
-        if (!rigid.needle) m.unit = std::max({rigid.inertia_B(0, 0), rigid.inertia_B(1, 1), rigid.inertia_B(2, 2)});
+        const double most = std::max({rigid.inertia_B(0, 0), rigid.inertia_B(1, 1), rigid.inertia_B(2, 2)});
+        m.size = std::sqrt(most / rigid.mass);
+        m.unit = (rigid.needle ? 1 : most) / m.size;
         return m;
     }
 
@@ -91,7 +94,8 @@ private:
             if (m.quantities) unit = std::fabs(u0_[i]) + std::fabs(h_ * k_.du[0][i]);
             if (!(unit > 0)) continue;
             add({of_first(k_.du, i) / unit, of_third(k_.du, i) / unit, (std::fabs(u0_[i]) + h_ * std::fabs(k_.du[0][i])) / unit}, speeds);
-            if (!m.quantities) add({of_first(k_.dx, i) / h_, of_third(k_.dx, i) / h_, 0}, places);
+            const double lever = i >= m.begin + 3 ? m.size : 1;
+            if (!m.quantities) add({of_first(k_.dx, i) * lever / h_, of_third(k_.dx, i) * lever / h_, 0}, places);
         }
         return {speeds.first + places.first, speeds.third + places.third, speeds.speed};
     }

@@ -26,6 +26,7 @@ struct Contact
     double normal_acceleration = 0;  ///< m/s^2 of separation that the forces alone would give; < 0 presses together
     bool resting = false;            ///< persists; not an impact
     double approach = 0;             ///< m/s: closing speed at which it began, in the step in which it begins; else 0
+    double turning = 0;              ///< m/s: normal speed that is square to the normal of the step's end, of who moves along a curve
     // Kept by the host from step to step, for responses that remember; changed in the last evaluation of a step only:
     Vec3 stretch;           ///< m, W: how far a stiction spring is stretched
     double rest_depth = 0;  ///< m: the depth at which a contact spring gives no force beyond its equilibrium

@@ -33,6 +33,7 @@ struct Island
 {
     double h = 0;                            ///< s
     double time = 0;                         ///< s, at the start of the step
+    double size = 0;                         ///< m, the least radius of gyration of its bodies: what is small is small beside it
     std::span<const std::uint32_t> bodies;   ///< dynamic members, host rows, in id order
     std::span<const std::uint32_t> shafts;   ///< dynamic members that carry coordinates (roots of trains), in id order
     std::span<const double> shaft_mobility;  ///< by host row: 1/(kg m^2) of the train that the shaft carries

@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/contacts/contacts.h"
+
 namespace plab::simulation
 {
 namespace
 {
-
-double mobility_of(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n)
-{
-    if (!bodies.dynamic(b)) return 0;
-    const Vec3 lever = cross(p - bodies.position[b], n);
-    return bodies.inverse_mass[b] + dot(lever, bodies.inverse_inertia_W(b) * lever);
-}
 
 void fit(Bodies& out)
 {
@@ -47,18 +42,19 @@ void run_touch(world::World& world, std::uint32_t response, StepContext& context
         if (command.phase == Phase::Touch && command.run) (void)command.run(call, table.rows());
 }
 
-void ForceProbe::take(const Bodies& bodies, const Contact& contact)
+void ForceProbe::take(const Bodies& bodies, const Contact& contact, double size, double h)
 {
     contact_ = contact;
     axes_[0] = any_perpendicular(contact.normal), axes_[1] = cross(contact.normal, axes_[0]), axes_[2] = contact.normal;
     double of_a = 0;
     for (std::size_t i = 0; i < 3; ++i)
     {
-        of_a = mobility_of(bodies, contact.a.index, contact.point, axes_[i]);
-        mobility_[i] = of_a + mobility_of(bodies, contact.b.index, contact.point, axes_[i]);
+        of_a = mobility_at(bodies, contact.a.index, contact.point, axes_[i]);
+        mobility_[i] = of_a + mobility_at(bodies, contact.b.index, contact.point, axes_[i]);
     }
     share_a_ = mobility_[2] > 0 ? of_a / mobility_[2] : 0;
-    size_ = 1 + length(bodies.position[contact.a.index]) + length(bodies.position[contact.b.index]);
+    speed_ = 0x1p-24 * size / h;
+    size_ = 8 * size + length(bodies.position[contact.a.index]) + length(bodies.position[contact.b.index]);
     fit(bodies_);
     copy(bodies, contact.a.index, bodies_, 0), copy(bodies, contact.b.index, bodies_, 1);
     contact_.a = {Facet::Body, 0}, contact_.b = {Facet::Body, 1};
@@ -131,7 +127,7 @@ ContactRates ForceProbe::rates(world::World& world, std::uint32_t response, doub
     const double step = std::max(1e-6 * std::fabs(depth - contact_.rest_depth), 1e-12 * size_);
     const double at_rest = normal_force(world, response, depth, 0);
     out.normal = std::fabs(normal_force(world, response, depth + step, 0) - at_rest) / step * mobility_[2];
-    const double speed = 1e-6;
+    const double speed = speed_;
     out.damping = std::fabs(normal_force(world, response, depth, speed) - at_rest) / speed * mobility_[2];
     for (std::size_t i = 0; i < 2; ++i)
     {

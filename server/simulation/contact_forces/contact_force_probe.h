@@ -19,7 +19,8 @@ class ForceProbe
 {
 public:
     /// The two bodies of `contact` as they stand, at rest.
-    void take(const Bodies& bodies, const Contact& contact);
+    /// `size`: m, the smaller body's radius; `h`: s, the step.
+    void take(const Bodies& bodies, const Contact& contact, double size, double h);
     /// Force on b along the normal, N, at a depth (m) and a closing speed (m/s).
     double normal_force(world::World& world, std::uint32_t response, double depth, double closing);
     /// The depth at which the spring gives no force, near the one of the contact.
@@ -40,7 +41,8 @@ private:
     std::array<Vec3, 3> axes_;  // two along the surface, then the normal
     std::array<double, 3> mobility_{};
     double share_a_ = 0;
-    double size_ = 0;  // m, over which rounding of positions counts
+    double speed_ = 0;  // m/s, small beside the body's size a step
+    double size_ = 0;   // m, over which rounding of positions counts
     Bodies bodies_;
     Shafts shafts_;
     Wrenches wrenches_;

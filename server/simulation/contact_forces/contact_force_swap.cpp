@@ -183,13 +183,13 @@ bool ContactForces::soften_contact(const KnownContact& hard, const FoundContact&
     const std::uint32_t response = s_->detectors_[at.detector].response;
     soft.feature = hard.feature, soft.id = hard.id, soft.begin = s_->frame_.start_time + dt, soft.told = true;
     soft.depth = c.depth;
-    probe_.take(s_->world_.host().bodies, c);
+    probe_.take(s_->world_.host().bodies, c, s_->smaller_radius(c.a, c.b), s_->frame_.step);
     // Where the spring gives that force anyway, nothing need be remembered.
     const double plain = probe_.normal_force(s_->world_, response, c.depth, 0);
     if (c.depth <= 0 || std::fabs(plain - press) > 1e-9 * press) soft.rest_depth = c.depth, soft.preload = std::max(press, 0.0);
     FoundContact asked = at;
     asked.contact.rest_depth = soft.rest_depth, asked.contact.preload = soft.preload;
-    probe_.take(s_->world_.host().bodies, asked.contact);
+    probe_.take(s_->world_.host().bodies, asked.contact, s_->smaller_radius(asked.contact.a, asked.contact.b), s_->frame_.step);
     soft.open_depth = probe_.open_depth(s_->world_, response);
     const double k = probe_.stiction(s_->world_, response, c.depth);
     if (k > 0) soft.stretch = (held - c.normal * press) * (-1 / k);
@@ -236,7 +236,7 @@ double Stepper::share_of_overlap_left(const PairState& pair, std::span<const Eas
     }
     const double a = press * (bodies.inverse_mass[pair.a.index] + bodies.inverse_mass[pair.b.index]);
     const double left = deepest - frame_.step * std::max(0.05 * std::sqrt(a * deepest), 0.5 * deepest);
-    if (left < kOverlapTolerance) return 0;
+    if (left < overlap_tolerance(pair.a, pair.b)) return 0;
     double share = left / deepest;
     for (const Eased& e : eased) share = std::min(share, std::max(0.0, e.found->contact.depth / e.known->rest_depth));
     return share;

@@ -18,7 +18,7 @@ const ContactForces::Seen* ContactForces::find_seen(const std::vector<Seen>& lis
 }
 
 /// m: what positions cannot tell apart.
-double ContactForces::rounding(const Contact& c) const { return 1e-15 * (1 + positions_of(c.a, c.b)); }
+double ContactForces::rounding(const Contact& c) const { return 0x1p-50 * (8 * s_->smaller_radius(c.a, c.b) + positions_of(c.a, c.b)); }
 
 /// Whether a contact has begun or ceased to push since `before`.
 bool ContactForces::switches(const Seen& seen, const std::vector<Seen>& before)
@@ -91,7 +91,7 @@ void ContactForces::expect(ForceContact& known, const FoundContact& at, double c
     FoundContact asked = at;
     asked.contact.rest_depth = known.rest_depth, asked.contact.preload = known.preload, asked.contact.approach = known.approach;
     const double depth = at.contact.depth;
-    probe_.take(s_->world_.host().bodies, asked.contact);
+    probe_.take(s_->world_.host().bodies, asked.contact, s_->smaller_radius(asked.contact.a, asked.contact.b), s_->frame_.step);
     known.peak = std::max(depth, probe_.peak_depth(s_->world_, response, std::max(known.open_depth, depth), closing));
     known.rates = probe_.rates(s_->world_, response, known.peak);
     const double swing = std::sqrt(std::max(known.rates.normal, known.rates.tangential));

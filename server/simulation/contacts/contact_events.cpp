@@ -1,6 +1,7 @@
 // The ends of the contact pipeline in a step: locate, and what begins, persists
 // and ends.
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 #include "simulation/contacts/island_step.h"
@@ -8,12 +9,26 @@
 
 namespace plab::simulation
 {
-
 Event Stepper::contact_event(const char* kind, const PairState& pair, double time) const
 {
     Event e;
     e.time = time, e.kind = kind, e.component = pair.detector, e.a = pair.a, e.b = pair.b;
     return e;
+}
+
+/// A contact that `pressed` (N s) in the last step and not in this one: its force went through zero between the middles of both, where
+/// a pull would have had to take `parting` (m/s, beyond what closes the gap) away in this one. Linear in between: of order 2, and it may
+/// lie in the last step.
+void Stepper::tell_release(const PairState& pair, const Contact& c, double pressed, double parting, double from, double h)
+{
+    const Bodies& bodies = world_.host().bodies;
+    const std::array<std::uint32_t, 2> both{c.a.index, c.b.index};
+    if (!(parting * h > kParts * least_gyration(bodies, both))) return;
+    const double mobility = mobility_at(bodies, c.a.index, c.point, c.normal) + mobility_at(bodies, c.b.index, c.point, c.normal);
+    const double share = pressed * mobility / (pressed * mobility + parting);
+    Event e = contact_event("contact.release", pair, frame_.start_time + from + h * (share - 0.5));
+    e.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z};
+    emit(std::move(e));
 }
 
 void Stepper::locate_events()
@@ -82,10 +97,13 @@ void Stepper::finish_contacts()
         bool touches = false;
         for (at = begin; at < found_.size() && is_of_pair(found_[at], pair); ++at)
             touches = touches || found_[at].contact.depth > (pair.resting ? -standing_margin(pair) : 0.0);
+        const bool was_held = pressed(pair);
         update_pair(pair, begin, at);
         const bool ahead = held_->keeps_ahead(pair, touches, std::span(found_).subspan(begin, at - begin), time);
         if (!touches && !ahead)
         {
+            // What pressed in its last step, and is gone at its end, was released in between.
+            if (was_held) emit(contact_event("contact.release", pair, time));
             if (!pair.ahead) emit(contact_event("contact.end", pair, time));
             continue;
         }

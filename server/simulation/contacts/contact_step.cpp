@@ -1,13 +1,11 @@
-// Contacts inside a step: looking for them, standing contacts as time stepping, impulses.
+// Contacts inside a step: looking for them, impulses, who stands with whom.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
-#include "plab/number_text.h"
 #include "plab/rotation.h"
+#include "plab/surface.h"
 #include "simulation/contacts/island_step.h"
-#include "simulation/contacts/paradox.h"
-#include "simulation/contacts/settled.h"
 #include "simulation/events/speculation.h"
 #include "simulation/step/stepper.h"
 
@@ -16,19 +14,20 @@ namespace plab::simulation
 namespace
 {
 
-/// Slower than this nothing meets, m/s.
-constexpr double kNoApproach = 1e-9;
 /// Of the smaller body's radius: a standing pair is never looked at as if it were closer than this.
 constexpr double kMostShare = 0.1;
 
-/// m: radius of the most curved round shape of a body; infinite where it has none, and for what is concave.
+/// m: radius of the most curved round shape of a body, negative of what is touched from inside; infinite where it has none.
 double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
 {
     double least = HUGE_VAL;
     const auto add = [&](const Geometry& g)
     {
         const bool round = g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder;
-        if (round) least = std::min(least, g.size.x);
+        if (round && g.size.x < std::fabs(least)) least = g.size.x;
+        const Surface surface = surface_of(g);
+        const bool inside = surface == Surface::Bore || surface == Surface::Bowl;
+        if (inside && surface_radius(g) < std::fabs(least)) least = -surface_radius(g);
     };
     for (const Ref shape : bodies.shapes[b])
     {
@@ -49,10 +48,7 @@ const PairState* known_pair(const ContactCache& cache, const world::World& world
 
 /// m: by how much two round bodies part while they slide along one another straight on for h: (v h)^2 / (2 (r_a + r_b)) in one step.
 /// That leaves them parting at twice this per step, and forces, which take it back, act a step later: up to 8 times as much.
-double opening_by_curves(double speed, double h, double radii)
-{
-    return 4 * speed * speed * h * h / radii;
-}
+double opening_by_curves(double speed, double h, double radii) { return 4 * speed * speed * h * h / radii; }
 
 /// m, beyond `base`: what slides along a curve is off it by a little more than others at the end of a step, and still held: without, it
 /// would hop. Not what parts faster than the curve makes it: that bounces.
@@ -60,8 +56,8 @@ double sliding_margin(const world::HostTables& host, Ref a, Ref b, const Vec3& n
 {
     const Vec3 v = host.bodies.velocity[b.index] - host.bodies.velocity[a.index];
     const double parting = dot(v, normal), along = length(v - parting * normal);
-    const double curves = curve_radius(host.bodies, host.shapes, a.index) + curve_radius(host.bodies, host.shapes, b.index);
-    if (parting > 2 * along * along * h / curves) return base;
+    const double curves = std::fabs(curve_radius(host.bodies, host.shapes, a.index) + curve_radius(host.bodies, host.shapes, b.index));
+    if (!(curves > 0) || parting > 2 * along * along * h / curves) return base;
     return base + std::min(opening_by_curves(along, h, curves), kMostShare * radius);
 }
 
@@ -121,7 +117,7 @@ void Stepper::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& o
 {
     const Detector& detector = detectors_[index];
     const Bodies& bodies = world_.host().bodies;
-    double margin = kOverlapTolerance, fastest = 0;
+    double margin = 0, fastest = 0;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) fastest = std::max(fastest, length(bodies.velocity[b]));
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
@@ -140,7 +136,7 @@ void Stepper::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& o
     {
         const PairState* pair = known_pair(cache_, world_, detector.component, c);
         const double base = standing_margin(c.a, c.b), radius = std::min(radius_of_body_[c.a.index], radius_of_body_[c.b.index]);
-        if (!pair || frame_.tick - pair->since < kSettled || !std::isfinite(radius)) return base;
+        if (!pair || !pressed(*pair) || !std::isfinite(radius)) return base;
         return sliding_margin(world_.host(), c.a, c.b, c.normal, base, radius, frame_.step);
     };
     const auto far = [&](const FoundContact& f)
@@ -238,18 +234,17 @@ SurfaceLaw Stepper::response_law(std::uint32_t detector) const
     return {number_of(response, "friction"), number_of(response, "restitution")};
 }
 
-/// Not what touches since a few steps only: that bounces.
 double Stepper::standing_margin(const PairState& pair) const
 {
     const double base = standing_margin(pair.a, pair.b), radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
-    if (frame_.tick - pair.since < kSettled || !std::isfinite(radius)) return base;
+    if (!pressed(pair) || !std::isfinite(radius)) return base;
     return sliding_margin(world_.host(), pair.a, pair.b, pair.normal, base, radius, frame_.step);
 }
 
 double Stepper::standing_margin(Ref a, Ref b) const
 {
     const double radius = std::min(radius_of_body_[a.index], radius_of_body_[b.index]);
-    return std::max(kOverlapTolerance, std::isfinite(radius) ? kStandingShare * radius : 0.0);
+    return std::isfinite(radius) ? kStandingShare * radius : 0.0;
 }
 
 double Stepper::normal_velocity(const Contact& c) const
@@ -298,13 +293,26 @@ void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, doub
         for (const CommandInfo& command : table.type().info.commands)
             if (command.phase == Phase::Respond && command.run) (void)command.run(call, table.rows());
         meter_.leave();
-        if (book.work) (*book.work)[response] += book.sign * (kinetic_energy(contacts) - before);
+        if (book.work) book_impact(response, contacts, mode, kinetic_energy(contacts) - before, book);
         report_.worst_residual = std::max(report_.worst_residual, impact.residual);
         report_.swept_rows += 3 * impact_contacts_.size() * static_cast<std::size_t>(1 + impact.iterations);
         std::size_t next = 0;
         for (FoundContact& f : contacts)
             if (f.detector == d) f.contact = impact_contacts_[next++];
     }
+}
+
+/// An impact takes energy, or keeps it, where nobody is moved as told.
+void Stepper::book_impact(std::uint32_t response, const std::vector<FoundContact>& contacts, ImpactMode mode, double work, WorkBook book)
+{
+    constexpr double kRounding = 1e-9;
+    (*book.work)[response] += book.sign * work;
+    if (mode != ImpactMode::Impact || !(work > kRounding * kinetic_energy(contacts))) return;
+    const Bodies& bodies = world_.host().bodies;
+    for (const FoundContact& f : contacts)
+        if (bodies.motion[f.contact.a.index] == Motion::Kinematic || bodies.motion[f.contact.b.index] == Motion::Kinematic) return;
+    (*book.work)[response] -= book.sign * work;
+    contact_energy_[response].made += book.sign * work;
 }
 
 void Stepper::advance_contacts(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
@@ -329,86 +337,6 @@ void Stepper::advance_contacts(std::span<const std::uint32_t> groups, std::span<
         std::sort(island_.begin(), island_.end());
         advance_island(island_, shadows, from, to, book, trial);
     }
-}
-
-/// Corners of a standing pair that reach the other body within the step, faster than forces alone would take them there,
-/// meet it without bounce, ahead of the step: a mean of the speeds before and after would carry them through. Says whether
-/// there were any.
-bool Stepper::arrest(const GroupSystem& system, double h, WorkBook book)
-{
-    double given = 0;
-    for (std::size_t i = 0; i < system.bodies().size(); ++i) given = std::max(given, length(system.acceleration(i)) * h);
-    const auto meets = [&](const FoundContact& f)
-    {
-        const double closing = -normal_velocity(f.contact);
-        return closing > std::max(kNoApproach, 2 * given) && closing * h > -f.contact.depth;
-    };
-    if (std::none_of(touching_.begin(), touching_.end(), meets)) return false;
-    for (FoundContact& f : touching_) f.contact.impulse = {};
-    respond(touching_, ImpactMode::Rest, h, book);
-    // What a blow took does not tell how hard the contact will press; the last step's impulse does.
-    for (FoundContact& f : touching_) f.contact.impulse = known_contact(f).impulse;
-    return true;
-}
-
-/// Whether two bodies that touch slide so that pressing harder would close them faster.
-bool Stepper::is_paradox(const Contact& contact) const
-{
-    return contact.depth >= -kOverlapTolerance && pressing_share(world_.host().bodies, contact) <= 0;
-}
-
-/// Told where it begins: what follows is one of several answers, an impulse that ends the slip.
-void Stepper::tell_paradox(const Contact& contact, PairState& pair, double time)
-{
-    const bool goes_on = pair.paradox_tick >= frame_.tick - 1;
-    pair.paradox_tick = frame_.tick;
-    if (goes_on) return;
-    Event e = contact_event("contact.paradox", pair, time);
-    e.severity = Severity::Warning;
-    e.message = "Painleve's paradox: friction of " + number_text(contact.friction) +
-                " on this lever leaves sliding without an answer; an impulse ends the slip. Less friction, or a less slender body, has one";
-    e.values = {contact.point.x, contact.point.y, contact.point.z, contact.normal.x, contact.normal.y, contact.normal.z};
-    emit(std::move(e));
-}
-
-/// Time stepping with one-sided contacts: speeds first, impulses that keep contacts from closing, then positions with
-/// the mean of old and new speeds, so that a body that slides at constant deceleration is exact.
-void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
-                             WorkBook book, bool trial)
-{
-    const double h = to - from;
-    Shafts& shafts = world_.host().shafts;
-    GroupSystem& system = system_for(island, shadows);
-    touching_.clear();
-    touching_pairs_of(island, touching_, h);
-    system.begin(from, to, book, trial ? nullptr : this);
-    system.evaluate_here();
-    if (!trial)
-        for (const FoundContact& f : touching_)
-            if (is_paradox(f.contact))
-                tell_paradox(f.contact, *cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_),
-                             frame_.start_time + from);
-    if (arrest(system, h, book)) system.join();
-
-    KickedBodies& moved = held_->kick_all(system, h);
-    respond(touching_, ImpactMode::Rest, h, book);
-    if (!trial) keep_impulses(touching_);
-    system.join();  // an impulse knows nothing of joints
-    (void)moved.move_mean(h);
-    system.move_shafts(h, shafts);
-    system.move_prescribed();
-    system.project();
-    finish_advance(system, system.all_finite(), to, trial);
-}
-
-void Stepper::keep_impulses(const std::vector<FoundContact>& contacts)
-{
-    for (const FoundContact& f : contacts)
-        if (PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_))
-        {
-            cache_.contact_of(*pair, f.contact.feature).impulse = f.contact.impulse;
-            pair->normal = f.contact.normal;
-        }
 }
 
 }  // namespace plab::simulation

@@ -1,6 +1,8 @@
 #include "simulation/contacts/contacts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "world/state_hash.h"
@@ -233,6 +235,32 @@ std::vector<Detector> find_detectors(const world::World& world, const Schedule& 
     std::sort(out.begin(), out.end(),
               [&](const Detector& x, const Detector& y) { return world.rank(x.component) < world.rank(y.component); });
     return out;
+}
+
+bool pressed(const PairState& pair)
+{
+    double sum = 0;
+    for (std::uint32_t k = 0; k < pair.count; ++k) sum += dot(pair.contacts[k].impulse, pair.normal);
+    return pair.resting && sum > 0;
+}
+
+double mobility_at(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n)
+{
+    if (!bodies.dynamic(b)) return 0;
+    const Vec3 lever = cross(p - bodies.position[b], n);
+    return bodies.inverse_mass[b] + dot(lever, bodies.inverse_inertia_W(b) * lever);
+}
+
+double least_gyration(const Bodies& bodies, std::span<const std::uint32_t> some)
+{
+    double least = std::numeric_limits<double>::infinity();  // of 2 i^2
+    for (const std::uint32_t b : some)
+    {
+        if (!bodies.dynamic(b)) continue;
+        const Mat3& inertia = bodies.inertia_B[b];
+        least = std::min(least, (inertia(0, 0) + inertia(1, 1) + inertia(2, 2)) * bodies.inverse_mass[b]);
+    }
+    return std::isfinite(least) ? std::sqrt(0.5 * least) : 0.0;
 }
 
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world)

@@ -188,8 +188,22 @@ private:
 /// state.
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world);
 
-/// Overlap that is left alone, m.
-inline constexpr double kOverlapTolerance = 1e-9;
+/// Whether a standing pair held something in the last step; what did not bounces, or passes by.
+bool pressed(const PairState& pair);
+
+/// 1/kg: how fast an impulse of 1 N s at p (W, m) along n makes a body there, along n.
+double mobility_at(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n);
+
+/// m: the least radius of gyration, sqrt(tr I / 2m), of the dynamic ones among some bodies; 0 if there are none. What is small there is
+/// small beside it.
+double least_gyration(const Bodies& bodies, std::span<const std::uint32_t> some);
+
+/// Overlap that is left alone: share of the smaller body's radius.
+inline constexpr double kOverlapShare = 1e-8;
+/// Slower than this share of a body's radius of gyration a step nothing meets.
+inline constexpr double kNoApproach = 0x1p-34;
+/// Faster than this share a step what pressed parts, and does not tremble.
+inline constexpr double kParts = 0x1p-24;
 /// A standing pair is looked at as if it were this share of its smaller body's
 /// radius closer: corners that are about to touch are contacts too, with their
 /// gap, and a gap below this does not end the contact.

@@ -15,6 +15,8 @@ void HeldMotion::begin(GroupSystem& system, Bodies& bodies, Shafts& shafts, std:
     worked_ = since_start_ = 0;
     shaft_before_.resize(roots.size());
     means_.assign(members.size() + roots.size(), Mean{});
+    started_.clear();
+    for (const std::uint32_t i : members) started_.push_back(bodies.position[system.bodies()[i]]);
     arms_.clear();
     for (const Contact& c : contacts)
     {
@@ -28,6 +30,22 @@ double HeldMotion::kinetic_energy() const
     double sum = 0;
     for (const std::uint32_t i : members_) sum += bodies_->kinetic_energy(system_->bodies()[i]);
     return sum;
+}
+
+double HeldMotion::count_corrections()
+{
+    double lifted = 0;
+    for (std::size_t k = 0; k < members_.size(); ++k)
+    {
+        const std::uint32_t b = system_->bodies()[members_[k]];
+        const Vec3 shift = bodies_->position[b] - started_[k] - means_[k].velocity;
+        // Less than a rounding error of the place is none.
+        if (length(shift) <= 0x1p-48 * (length(started_[k]) + length(means_[k].velocity))) continue;
+        means_[k].velocity += shift;
+        lifted -= bodies_->mass[b] * dot(system_->acceleration(members_[k]), shift);
+    }
+    worked_ -= lifted;
+    return lifted;
 }
 
 void HeldMotion::kick(double h)
@@ -108,6 +126,14 @@ Vec3 HeldMotion::moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point)
     if (bodies_->motion[body] == Motion::Static) return {};
     // Whoever moves as told is still where the step began.
     return bodies_->velocity_at(body, point) * since_start_;
+}
+
+double HeldMotion::parting(std::size_t contact) const
+{
+    const Contact& c = contacts_[contact];
+    const auto speed = [&](std::uint32_t b, const Vec3& arm_B)
+    { return bodies_->velocity[b] + cross(bodies_->angular_velocity[b], rotate(bodies_->orientation[b], arm_B)); };
+    return dot(speed(c.b.index, arms_[contact].b) - speed(c.a.index, arms_[contact].a), c.normal);
 }
 
 void HeldMotion::refresh_depths()

@@ -3,20 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/contacts/settled.h"
 #include "simulation/contacts/island_step.h"
 #include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
-namespace
-{
-
-/// Slower than this nothing meets, m/s.
-constexpr double kNoApproach = 1e-9;
-
-}  // namespace
-
 // Who knows what
 // ------------------------------------------------------------------------------------------------------
 
@@ -32,10 +23,8 @@ bool HeldIslands::is_current() const
 {
     const Bodies& bodies = s_->world_.host().bodies;
     if (!known_ || known_positions_ != bodies.position || known_orientations_ != bodies.orientation) return false;
-    // How far gaps are looked for depends on speeds, and on whether a pair is one that slides: from this step on, for some.
-    if (known_velocities_ != bodies.velocity || known_spins_ != bodies.angular_velocity) return false;
-    const auto settles = [&](const PairState& p) { return s_->frame_.tick - p.since == kSettled; };
-    return std::none_of(s_->cache_.pairs().begin(), s_->cache_.pairs().end(), settles);
+    // How far gaps are looked for depends on speeds.
+    return known_velocities_ == bodies.velocity && known_spins_ == bodies.angular_velocity;
 }
 
 void HeldIslands::begin_step()
@@ -162,7 +151,7 @@ void HeldIslands::add_known_contacts()
     }
 }
 
-void HeldIslands::share_contacts()
+void HeldIslands::share_contacts(double h)
 {
     const Bodies& bodies = s_->world_.host().bodies;
     for (std::uint32_t i = 0; i < touching_.size(); ++i)
@@ -172,8 +161,10 @@ void HeldIslands::share_contacts()
         for (const Ref r : {c.a, c.b})
             if (bodies.dynamic(r.index) && s_->groups_.of(r) != kNoIndex && number == kNoIndex) number = isle_of_group_[s_->groups_.of(r)];
         if (number == kNoIndex) continue;
-        isles_[number]->contacts.push_back(c);
-        isles_[number]->places.push_back(i);
+        Isle& isle = *isles_[number];
+        isle.turns = isle.turns || (!isle.has_rows && midway_.turns(c, h));
+        isle.contacts.push_back(c);
+        isle.places.push_back(i);
     }
 }
 
@@ -183,11 +174,12 @@ void HeldIslands::share_contacts()
 void HeldIslands::set_approach(Isle& isle, const GroupSystem& system, double h)
 {
     for (std::size_t k = 0; k < isle.members.size(); ++k) given_speed_[isle.bodies[k]] = length(system.acceleration(isle.members[k])) * h;
+    const double least = kNoApproach * least_gyration(s_->world_.host().bodies, isle.bodies) / h;
     for (Contact& c : isle.contacts)
     {
         const double speed = s_->normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
         const double share = c.impulse == Vec3{} ? 0.5 : 2;
-        c.approach = speed < -std::max(kNoApproach, share * given) ? -speed : 0.0;
+        c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
     }
     for (const std::uint32_t b : isle.bodies) given_speed_[b] = 0;
 }
@@ -201,6 +193,30 @@ void HeldIslands::keep(const Isle& isle)
         // What an impact took does not tell how hard the contact will press.
         s_->cache_.contact_of(pair, c.feature).impulse = c.approach > 0 ? Vec3{} : c.impulse;
         pair.normal = c.normal;
+    }
+}
+
+/// Pairs that pressed in the last step, and whose points all part.
+void HeldIslands::tell_releases(Isle& isle, double from, double h) const
+{
+    constexpr double kNothing = 0x1p-40;  // of the last step's impulse: what an iteration leaves
+
+    for (std::size_t i = 0, end = 0; i < isle.contacts.size(); i = end)
+    {
+        PairState& pair = *pair_of_contact_[isle.places[i]];
+        double pressed = 0, presses = 0, parting = HUGE_VAL;
+        bool impact = false;
+        for (end = i; end < isle.contacts.size() && pair_of_contact_[isle.places[end]] == &pair; ++end)
+        {
+            const Contact& c = isle.contacts[end];
+            pressed += dot(s_->cache_.contact_of(pair, c.feature).impulse, c.normal);
+            const double gap = std::max(0.0, -touching_[isle.places[end]].contact.depth);
+            parting = std::min(parting, isle.motion.parting(end) - c.turning + gap / h);
+            presses += dot(c.impulse, c.normal), impact = impact || c.approach > 0;
+        }
+        if (impact || !(pressed > 0) || presses > kNothing * pressed) continue;
+        for (std::size_t k = i; k < end; ++k) isle.contacts[k].impulse = {};
+        s_->tell_release(pair, isle.contacts[i], pressed, parting, from, h);
     }
 }
 

@@ -1,7 +1,6 @@
 #include "simulation/contacts/island_step.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "simulation/step/stepper.h"
 
@@ -110,7 +109,7 @@ void HeldIslands::make_isles(DisjointSets& islands)
             number = static_cast<std::uint32_t>(isle_count_++);
             if (isles_.size() < isle_count_) isles_.push_back(std::make_unique<Isle>());
             Isle& fresh = *isles_[number];
-            fresh.manager = manager_of_island_[root], fresh.has_rows = false;
+            fresh.manager = manager_of_island_[root], fresh.has_rows = fresh.turns = false;
             fresh.groups.clear(), fresh.contacts.clear(), fresh.places.clear();
         }
         isle_of_group_[g] = number;
@@ -128,7 +127,7 @@ void HeldIslands::advance(std::span<const std::uint32_t> shadows, DisjointSets& 
     if (!(to > from)) return;
     make_isles(islands);
     collect_contacts(from, to - from);
-    share_contacts();
+    share_contacts(to - from);
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
     for (std::size_t i = 0; i < isle_count_; ++i)
     {
@@ -148,7 +147,6 @@ void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> gro
     GroupSystem& system = s_->system_for(groups, shadows);
     system.hold_rows(true);
     system.begin(from, to, book, trial ? nullptr : s_);
-    system.evaluate(0, 0);
     for (Isle* isle : isles) isle->members.clear(), isle->roots.clear(), isle->bodies.clear(), isle->shafts.clear();
     for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
     {
@@ -162,15 +160,41 @@ void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> gro
         if (number == kNoIndex) continue;
         isles_[number]->roots.push_back(i), isles_[number]->shafts.push_back(shaft);
     }
+    system.evaluate(0, 0);
+    given_speed_.resize(s_->world_.host().bodies.size(), 0.0);
+    for (Isle* isle : isles) set_approach(*isle, system, to - from);
+    lead(isles, system, to - from);
     for (Isle* isle : isles)
         if (!s_->frame_.give_up()) solve(*isle, system, from, to, book, trial);
     const bool given_up = s_->frame_.give_up();  // then isles may not have been solved, and nobody reads what is booked
     if (book.work && !given_up) book_forces(system, isles, to - from);
+    midway_.take_back();
     system.finish_held();
     if (!given_up)
         for (const Isle* isle : isles) report_rows(*isle, system, to - from, book);
     system.hold_rows(false);
     s_->finish_advance(system, system.all_finite(), to, trial);
+}
+
+/// Islands in which somebody goes along a curve are led half a step ahead, with their forces. Not where somebody meets: impacts are at the
+/// start of the step, and along the normals of then.
+void HeldIslands::lead(std::span<Isle*> isles, GroupSystem& system, double h)
+{
+    const auto meets = [](const Contact& c) { return c.approach > 0; };
+    led_places_.clear();
+    for (Isle* isle : isles)
+    {
+        isle->turns = isle->turns && std::none_of(isle->contacts.begin(), isle->contacts.end(), meets);
+        if (!isle->turns) continue;
+        midway_.lead(system, isle->members, h);
+        led_places_.insert(led_places_.end(), isle->places.begin(), isle->places.end());
+    }
+    if (led_places_.empty()) return;
+    system.evaluate(0, 0);
+    std::sort(led_places_.begin(), led_places_.end());
+    midway_.bend(led_places_, touching_, h);
+    for (Isle* isle : isles)
+        for (std::size_t i = 0; isle->turns && i < isle->places.size(); ++i) isle->contacts[i] = touching_[isle->places[i]].contact;
 }
 
 void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial)
@@ -183,8 +207,6 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
         system.rows()->begin_hold(system.context());
         isle.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
     }
-    given_speed_.resize(host.bodies.size(), 0.0);
-    set_approach(isle, system, to - from);
     if (!trial)
         for (std::size_t i = 0; i < isle.contacts.size(); ++i)
             if (s_->is_paradox(isle.contacts[i]))
@@ -194,6 +216,7 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     island.interruption = s_->frame_.interruption;
     island.h = to - from, island.time = s_->frame_.start_time + from;
     island.bodies = isle.bodies, island.shafts = isle.shafts;
+    island.size = least_gyration(host.bodies, isle.bodies);
     shaft_mobility_.resize(host.shafts.size());
     for (const std::uint32_t root : isle.shafts) shaft_mobility_[root] = mobility_of(root);
     island.shaft_mobility = shaft_mobility_;
@@ -214,20 +237,31 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     for (const CommandInfo& command : table.type().info.commands)
         if (command.phase == Phase::Solve && command.run) (void)command.run(call, table.rows());
     s_->meter_.leave();
-    if (book.work) (*book.work)[isle.manager] += book.sign * (isle.motion.kinetic_energy() - before - isle.motion.work_of_forces());
+    if (book.work) book_contacts(isle, isle.motion.kinetic_energy() - before, book);
     s_->report_.swept_rows += (3 * isle.contacts.size() + isle.rows.size()) * static_cast<std::size_t>(1 + island.iterations);
     if (trial) return;
     s_->report_.worst_residual = std::max(s_->report_.worst_residual, island.residual);
+    tell_releases(isle, from, to - from);
     keep(isle);
     tell_impacts(isle, island.time);
 }
 
-KickedBodies& HeldIslands::kick_all(GroupSystem& system, double h)
+/// Contacts give back no more than they took, so what they do to bodies that nothing else drives is no more than nothing, but for
+/// what parting their overlap lifts. What a method makes beyond that is nobody's work: it stays unexplained.
+void HeldIslands::book_contacts(Isle& isle, double gained, WorkBook book)
 {
-    everybody_.resize(system.bodies().size());
-    std::iota(everybody_.begin(), everybody_.end(), 0u);
-    kicked_.kick(system, s_->world_.host().bodies, everybody_, h);
-    return kicked_;
+    const Bodies& bodies = s_->world_.host().bodies;
+    const double lifted = isle.motion.count_corrections();
+    const double work = gained - isle.motion.work_of_forces();
+    const bool driven = !isle.rows.empty() || std::any_of(isle.contacts.begin(), isle.contacts.end(),
+                                                          [&](const Contact& c) {
+                                                              return bodies.motion[c.a.index] == Motion::Kinematic ||
+                                                                     bodies.motion[c.b.index] == Motion::Kinematic;
+                                                          });
+    const double made = driven ? 0.0 : std::max(0.0, work - lifted);
+    (*book.work)[isle.manager] += book.sign * (work - made);
+    ContactEnergy& own = s_->contact_energy_[isle.manager];
+    own.made += book.sign * made, own.lifted += book.sign * lifted;
 }
 
 /// What joints say of themselves, and their share in what the manager did.

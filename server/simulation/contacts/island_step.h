@@ -16,6 +16,7 @@
 #include "plab/island.h"
 #include "simulation/contacts/contacts.h"
 #include "simulation/contacts/kicked_bodies.h"
+#include "simulation/contacts/midway_contacts.h"
 
 namespace plab::simulation
 {
@@ -33,12 +34,16 @@ public:
     void kick(double h) override;
     void move(double h) override;
     void move_mean(double h) override;
+    /// m/s: of separation, of a contact's two points where they have come to.
+    double parting(std::size_t contact) const;
     void refresh_rows() override;
     void refresh_depths() override;
 
     /// J: what the forces did on the way that the bodies went.
     double work_of_forces() const { return worked_; }
     double kinetic_energy() const;
+    /// J, against the forces: what bodies have moved beside the moves, where overlap was parted. Counted as their way from then on.
+    double count_corrections();
     /// Mean speeds of the kicks times the time they took, by member, and of
     /// roots.
     struct Mean
@@ -66,6 +71,7 @@ private:
     KickedBodies kicked_;
     std::vector<double> shaft_before_;
     std::vector<Mean> means_;
+    std::vector<Vec3> started_;  ///< m, positions at the start
     struct Arms
     {
         Vec3 a, b;         ///< m, in the bodies' frames
@@ -78,7 +84,7 @@ private:
 class HeldIslands
 {
 public:
-    explicit HeldIslands(Stepper& stepper) : s_(&stepper) {}
+    explicit HeldIslands(Stepper& stepper) : s_(&stepper), midway_(stepper) {}
 
     /// After any structural change.
     void rebuild();
@@ -105,8 +111,6 @@ public:
     /// Takes the groups that managers advance out of `groups` into held(); both
     /// ascending.
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
-    /// Kicks all bodies of a system that nobody holds but resting contacts with impulses.
-    KickedBodies& kick_all(GroupSystem& system, double h);
     bool holds_any() const { return !held_.empty(); }
     void advance(std::span<const std::uint32_t> shadows, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
 
@@ -115,6 +119,7 @@ private:
     {
         std::uint32_t manager = kNoIndex;  ///< component
         bool has_rows = false;
+        bool turns = false;  ///< somebody moves along a curve
         std::vector<std::uint32_t> groups;
         std::vector<std::uint32_t> members,
             roots;                                  ///< indices into the system's lists
@@ -130,14 +135,17 @@ private:
     void add_known_contacts();
     void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law);
     void make_isles(DisjointSets& islands);
-    void share_contacts();
+    void share_contacts(double h);
     void set_approach(Isle& isle, const GroupSystem& system, double h);
     void run(std::span<Isle*> isles, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
              WorkBook book, bool trial);
     void solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void lead(std::span<Isle*> isles, GroupSystem& system, double h);
+    void book_contacts(Isle& isle, double gained, WorkBook book);
     void keep(const Isle& isle);
     void tell_begin(const PairState& pair, const Contact& contact, double time) const;
     void tell_impacts(const Isle& isle, double time);
+    void tell_releases(Isle& isle, double from, double h) const;
     void look_for_yielding_rows();
     static void report_rows(const Isle& isle, GroupSystem& system, double h, WorkBook book);
     double mobility_of(std::uint32_t root) const;
@@ -153,10 +161,10 @@ private:
     std::vector<std::uint32_t> isle_of_group_;
     std::vector<std::unique_ptr<Isle>> isles_;
     std::size_t isle_count_ = 0;
+    MidwayContacts midway_;
     std::vector<Isle*> plain_, jointed_;
+    std::vector<std::uint32_t> led_places_;
     std::vector<std::uint32_t> plain_groups_;
-    KickedBodies kicked_;  ///< of kick_all
-    std::vector<std::uint32_t> everybody_;
     std::vector<FoundContact> touching_;
     std::vector<PairState*> pair_of_contact_;
     std::vector<PairState> fresh_;

@@ -1,12 +1,16 @@
 #include "simulation/contacts/paradox.h"
 
+#include <array>
+
+#include "simulation/contacts/contacts.h"
+
 namespace plab::simulation
 {
 namespace
 {
 
-/// Slower than this nothing slides, m/s.
-constexpr double kNoSlip = 1e-6;
+/// Slower than this share of the radius of gyration a step nothing slides.
+constexpr double kNoSlip = 0x1p-24;
 
 /// What an impulse j at p changes in the speed there, seen along n and -- by symmetry of K -- an impulse along n along j.
 double coupling(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n, const Vec3& j)
@@ -18,13 +22,14 @@ double coupling(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3
 
 }  // namespace
 
-double pressing_share(const Bodies& bodies, const Contact& c)
+double pressing_share(const Bodies& bodies, const Contact& c, double h)
 {
     if (!(c.friction > 0)) return 1;
     const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
     const Vec3 slip = u - c.normal * dot(u, c.normal);
     const double speed = length(slip);
-    if (!(speed > kNoSlip)) return 1;
+    const std::array<std::uint32_t, 2> both{c.a.index, c.b.index};
+    if (!(speed * h > kNoSlip * least_gyration(bodies, both))) return 1;
     const Vec3 force = c.normal - slip * (c.friction / speed);
     const auto sum = [&](const Vec3& j)
     { return coupling(bodies, c.a.index, c.point, c.normal, j) + coupling(bodies, c.b.index, c.point, c.normal, j); };

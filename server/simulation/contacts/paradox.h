@@ -13,7 +13,7 @@
 namespace plab::simulation
 {
 
-/// (K_nn - mu K_nt . s) / K_nn of a contact at the present speeds; 1 where it does not slip, or nothing moves there.
-double pressing_share(const Bodies& bodies, const Contact& contact);
+/// (K_nn - mu K_nt . s) / K_nn of a contact at the present speeds; 1 where it does not slip in a step of h (s), or nothing moves there.
+double pressing_share(const Bodies& bodies, const Contact& contact, double h);
 
 }  // namespace plab::simulation

@@ -31,6 +31,9 @@ void Stepper::part(std::size_t begin, std::size_t end)
             b.push(c.point, push), a.push(c.point, -push);
         }
     a.apply(bodies, ia), b.apply(bodies, ib);
+    const std::uint32_t response = detectors_[found_[begin].detector].response;
+    if (response == kNoIndex || resting_force_.size() != bodies.size()) return;
+    contact_energy_[response].lifted -= dot(resting_force_[ia], a.shift) + dot(resting_force_[ib], b.shift);
 }
 
 void Stepper::correct_positions()
@@ -43,7 +46,7 @@ void Stepper::correct_positions()
             deepest = std::max(deepest, found_[end].contact.depth - found_[end].contact.rest_depth);
         const Contact& c = found_[i].contact;
         const PairState* pair = cache_.find(detectors_[found_[i].detector].component, c.a, c.b, world_);
-        if (pair && pair->resting && !detectors_[found_[i].detector].by_rows && deepest > kOverlapTolerance) part(i, end);
+        if (pair && pair->resting && !detectors_[found_[i].detector].by_rows && deepest > overlap_tolerance(c.a, c.b)) part(i, end);
         i = end;
     }
 }

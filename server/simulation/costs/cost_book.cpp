@@ -53,7 +53,8 @@ void CostBook::book(CostAccounts& accounts)
     total_ += sum, host_total_ += static_cast<double>(accounts.host);
     step_.push(sum), host_.push(static_cast<double>(accounts.host));
     ++steps_;
-    const auto add = [](Account& account, std::int64_t ns) { account.total += static_cast<double>(ns), account.window.push(static_cast<double>(ns)); };
+    const auto add = [](Account& account, std::int64_t ns)
+    { account.total += static_cast<double>(ns), account.window.push(static_cast<double>(ns)); };
     for (const std::uint32_t i : owners_)
         if (i < accounts.by_component.size()) add(own_[i], accounts.by_component[i]);
     for (std::size_t t = 0; t < tables_.size() && t < accounts.by_table.size(); ++t) add(tables_[t], accounts.by_table[t]);

@@ -19,7 +19,7 @@ struct CostAccounts
     std::vector<std::int64_t> by_component;
     std::vector<std::int64_t> by_table;
     std::vector<std::uint32_t> phases;  ///< by table: which phases ran, as bits; never cleared
-    std::int64_t host = 0;  ///< whatever is no component's: contacts over time, mementos, the loop
+    std::int64_t host = 0;              ///< whatever is no component's: contacts over time, mementos, the loop
 
     void fit(std::size_t components, std::size_t tables)
     {

@@ -11,7 +11,6 @@ namespace
 /// Events this share of the step apart happen at one time where a body takes part in both.
 constexpr double kSameTime = 1e-13;
 /// Share of the smaller body's radius.
-constexpr double kOverlapShare = 1e-8;
 
 }  // namespace
 
@@ -157,7 +156,7 @@ void EventLocator::close_over_resting_pairs()
 }
 
 /// m: an overlap where a piece begins that is no more than this is closed or opened like a gap of 0.
-double EventLocator::overlap_tolerance(Ref a, Ref b) const { return kOverlapShare * smaller_radius(a, b); }
+double EventLocator::overlap_tolerance(Ref a, Ref b) const { return s_->overlap_tolerance(a, b); }
 
 void EventLocator::scope_of(const Candidate& candidate, bool local)
 {

@@ -33,8 +33,7 @@ double EventLocator::speeds_at(Ref a, const Vec3& point_a, Ref b, const Vec3& po
 
 double EventLocator::smaller_radius(Ref a, Ref b) const
 {
-    const double radius = std::min(s_->radius_of_body_[a.index], s_->radius_of_body_[b.index]);
-    return std::isfinite(radius) ? radius : 0.0;
+    return s_->smaller_radius(a, b);
 }
 
 /// m: overlaps up to this, and sinking so far in a step, are rounding of where the two are and how they move.

@@ -10,8 +10,8 @@
 
 #include "plab/interruption.h"
 #include "simulation/groups/groups.h"
-#include "simulation/groups/stage_scratch.h"
 #include "simulation/groups/progress.h"
+#include "simulation/groups/stage_scratch.h"
 #include "simulation/rows/row_system.h"
 #include "simulation/shafts/shaft_system.h"
 
@@ -104,7 +104,8 @@ public:
     /// Of a member body after evaluate: dv/dt (m/s^2) and the torque about C (N m).
     Vec3 acceleration(std::size_t member) const { return get(speed_rates_, 6 * member); }
     Vec3 torque(std::size_t member) const { return scratch_->wrenches.torque[bodies_[member]]; }
-    /// Changes a member body's velocity and spin by what the forces of evaluate_here do in h.
+    /// Changes a member body's velocity and spin by what the forces of evaluate_here do in h. Free rotation is no part
+    /// of it: whoever moves the bodies turns them freely.
     void kick(std::size_t member, double h);
     /// The joints of the members; null where there are none.
     RowSystem* rows() { return rows_.get(); }

@@ -50,17 +50,15 @@ Participation participation(const world::World& world, std::uint32_t component)
     return p;
 }
 
-bool is_dynamic(const world::HostTables& host, Ref ref)
+/// Quantities that left the numbers stand still until somebody sets them, as bodies and shafts do.
+Motion motion_of(const world::World& world, Ref ref)
 {
-    if (ref.facet == Facet::Quantities) return true;
-    return ref.facet == Facet::Body ? host.bodies.dynamic(ref.index) : host.shafts.dynamic(ref.index);
-}
-
-Motion motion_of(const world::HostTables& host, Ref ref)
-{
-    if (ref.facet == Facet::Quantities) return Motion::Dynamic;
+    const world::HostTables& host = world.host();
+    if (ref.facet == Facet::Quantities) return world.component(host.component_of(ref)).quarantined ? Motion::Static : Motion::Dynamic;
     return ref.facet == Facet::Body ? host.bodies.motion[ref.index] : host.shafts.motion[ref.index];
 }
+
+bool is_dynamic(const world::World& world, Ref ref) { return motion_of(world, ref) == Motion::Dynamic; }
 
 class Builder
 {
@@ -101,7 +99,7 @@ private:
         std::uint32_t first = kNoIndex;
         for (const Ref ref : p.acts_on)
         {
-            if (!is_dynamic(world_.host(), ref)) continue;
+            if (!is_dynamic(world_, ref)) continue;
             if (first == kNoIndex) first = world_.rank(ref);
             sets_.join(first, world_.rank(ref));
         }
@@ -118,7 +116,7 @@ private:
             const world::Component& c = world_.component(i);
             if (c.facet != Facet::Body && c.facet != Facet::Shaft && c.facet != Facet::Quantities) continue;
             const Ref ref = c.ref(i);
-            const Motion motion = motion_of(world_.host(), ref);
+            const Motion motion = motion_of(world_, ref);
             if (motion == Motion::Static) continue;
             std::uint32_t& g = group_of_rank[sets_.find(world_.rank(i))];
             if (g == kNoIndex)
@@ -151,11 +149,11 @@ private:
                              const Participation p = participation(world_, component);
                              // Rows belong to who can follow them; if nobody can, somebody has to tell that they do not hold.
                              const bool somebody_moves =
-                                 std::any_of(p.acts_on.begin(), p.acts_on.end(), [&](Ref r) { return is_dynamic(world_.host(), r); });
+                                 std::any_of(p.acts_on.begin(), p.acts_on.end(), [&](Ref r) { return is_dynamic(world_, r); });
                              for (const Ref ref : p.acts_on)
                              {
                                  if (groups_.of(ref) == kNoIndex) continue;
-                                 if (phase == Phase::Constrain && somebody_moves && !is_dynamic(world_.host(), ref)) continue;
+                                 if (phase == Phase::Constrain && somebody_moves && !is_dynamic(world_, ref)) continue;
                                  Group& group = groups_.all[groups_.of(ref)];
                                  auto& rows = phase == Phase::Force ? group.forces : phase == Phase::Couple ? group.couplings : group.rows;
                                  rows.push_back({block, world_.rank(component), row});

@@ -22,11 +22,11 @@ public:
     struct Look
     {
         Activity activity = Activity::Nothing;
-        std::uint8_t node = 0;         ///< of the step tree: what the step is at
-        std::int64_t step = 0;         ///< that follows on this many
-        std::uint64_t since_ns = 0;    ///< monotonic, when the activity began
-        std::uint64_t node_ns = 0;     ///< monotonic, when the node began
-        std::uint64_t work = 0;        ///< evaluations of forces, looks at contacts and events so far
+        std::uint8_t node = 0;       ///< of the step tree: what the step is at
+        std::int64_t step = 0;       ///< that follows on this many
+        std::uint64_t since_ns = 0;  ///< monotonic, when the activity began
+        std::uint64_t node_ns = 0;   ///< monotonic, when the node began
+        std::uint64_t work = 0;      ///< evaluations of forces, looks at contacts and events so far
     };
 
     // Step thread ------------------------------------------------------------------------------------------------------
@@ -55,8 +55,8 @@ public:
         for (;;)
         {
             const std::uint32_t before = version_.load(std::memory_order_acquire);
-            Look out{activity_.load(relaxed),   node_.load(relaxed),       step_.load(relaxed),
-                     since_.load(relaxed),      node_since_.load(relaxed), work_.load(relaxed)};
+            Look out{activity_.load(relaxed), node_.load(relaxed),       step_.load(relaxed),
+                     since_.load(relaxed),    node_since_.load(relaxed), work_.load(relaxed)};
             std::atomic_thread_fence(std::memory_order_acquire);
             if (before % 2 == 0 && version_.load(relaxed) == before) return out;
         }

@@ -13,6 +13,7 @@
 #include "model/blueprint.h"
 #include "model/scene.h"
 #include "plab/context.h"
+#include "simulation/costs/spread.h"
 
 namespace plab::simulation
 {
@@ -170,10 +171,12 @@ struct FieldFate
 /// touch. NaN: not tried.
 struct StepOutcome
 {
-    double energy = 0;   ///< J, kinetic and stored, at the end of the step
-    Vec3 momentum;       ///< N s
-    double error = 0;    ///< largest reported error of the component
-    double cost_ns = 0;  ///< of their step
+    double energy = 0;  ///< J, kinetic and stored, at the end of the step
+    Vec3 momentum;      ///< N s
+    double error = 0;   ///< largest reported error of the component
+    /// Median of their step, made again and again; NaN: not told. The old one's is told only where it differs from the new one's by more
+    /// than chance (TrialReport has what was measured of both).
+    double cost_ns = 0;
 };
 
 struct SwapReport
@@ -189,7 +192,7 @@ struct TrialReport
 {
     enum class Fate : std::uint8_t
     {
-        None,        ///< not wanted, or the request changes nothing that could be tried
+        None,  ///< not wanted, or the request changes nothing that could be tried
         Made,
         WithoutOld,  ///< the old component's step took too long: only the new one was tried
         GivenUp,     ///< it took longer than its budget
@@ -198,6 +201,7 @@ struct TrialReport
     double ns = 0, budget_ns = 0;  ///< the budget is infinite where there is none
     std::size_t objects = 0;       ///< bodies, shafts and quantities that it stepped
     bool everything = false;       ///< and they are all that there are
+    Spread with_old, with_new;     ///< ns, of its step in a swap: of repeats, caches warm; no samples: not measured
 };
 
 /// What requests did to the structure and to parameters, for those who keep a copy of the catalogue.

@@ -26,6 +26,7 @@ private:
         world::Backup world;
         ContactCache contacts;
         std::vector<double> work;
+        std::vector<ContactEnergy> contact_energy;
         double departed_work, requests_work;
         Told told;
     };
@@ -62,6 +63,8 @@ private:
     void mark_touched(TrialScope& scope) const;
     TrialStep next_step() const;
     double budget_ns() const;
+    /// Until when steps may be made for their cost alone.
+    std::uint64_t measure_until(double share) const;
     std::vector<std::uint32_t> swapped() const;
     /// One step with the old components: what a swap is measured against.
     void try_old(TrialScope& scope);
@@ -79,12 +82,12 @@ private:
     Simulation* s_;
     const Request* request_;
     Reply reply_;
-    std::set<std::uint32_t> prepared_;  ///< components whose opaque parts were rebuilt: again after a rollback
+    std::set<std::uint32_t> prepared_;   ///< components whose opaque parts were rebuilt: again after a rollback
     std::vector<Operation> operations_;  ///< of the request, patterns resolved
     std::uint64_t trial_begin_ = 0;      ///< ns
     bool old_tried_ = false;
     TrialResult old_;
-    std::vector<std::size_t> held_before_;  ///< contact points, by swap
+    std::vector<std::size_t> held_before_;           ///< contact points, by swap
     double energy_before_ = 0, energy_applied_ = 0;  ///< J, of the whole scene at the boundary
     bool structural_ = false;
     std::vector<std::string> touched_;  ///< ids that came, went or changed

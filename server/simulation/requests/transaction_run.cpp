@@ -1,6 +1,7 @@
 // A transaction's course: backup, operations, commit or rollback; its trials are in transaction_trial.cpp.
 #include <algorithm>
 
+#include "model/alike.h"
 #include "simulation/clock.h"
 #include "simulation/requests/transaction.h"
 
@@ -113,7 +114,7 @@ void Transaction::run_on_clock()
 
 Result<void> Transaction::build_and_try(TrialScope& scope, bool swaps)
 {
-    if (auto built = s_->stepper_->rebuild(); !built) return built;
+    if (auto built = s_->stepper_->rebuild(); !built) return model::first_of_alike(built.errors());
     tell_contacts();
     const Totals now = s_->totals();
     energy_applied_ = now.kinetic + now.stored;

@@ -5,6 +5,7 @@
 
 #include "model/values.h"
 #include "simulation/clock.h"
+#include "simulation/requests/request_words.h"
 #include "simulation/requests/transaction.h"
 
 namespace plab::simulation
@@ -18,6 +19,9 @@ const StepOutcome kNotTried{kNaN, {kNaN, kNaN, kNaN}, kNaN, kNaN};
 constexpr double kLeastBudget = 5e6;    // ns
 constexpr double kUnknownBudget = 1e8;  // ns: while no step has told what one costs
 constexpr double kStepsOfBudget = 10;
+/// Shares of the budget that may have passed when no step is made any more for the sake of its cost. Where there is no budget: ns.
+constexpr double kMeasureOld = 0.45, kMeasureNew = 0.95;
+constexpr double kMeasureUnlimited = 2e7;
 
 /// With * for any text and ? for any character.
 bool is_pattern(const std::string& id) { return id.find_first_of("*?") != std::string::npos; }
@@ -147,6 +151,12 @@ std::vector<std::uint32_t> Transaction::swapped() const
     return out;
 }
 
+std::uint64_t Transaction::measure_until(double share) const
+{
+    if (request_->trial.budget == TrialChoice::Budget::Unlimited) return now_ns() + static_cast<std::uint64_t>(kMeasureUnlimited);
+    return trial_begin_ + static_cast<std::uint64_t>(std::clamp(share * budget_ns(), 0.0, 1e18));
+}
+
 void Transaction::try_old(TrialScope& scope)
 {
     const double budget = budget_ns();
@@ -154,7 +164,7 @@ void Transaction::try_old(TrialScope& scope)
     // Half of it is for the new one, which has more to prove.
     if (std::isfinite(budget)) deadline.ask(as_duration(0.5 * budget));
     s_->progress_.begin(Activity::TrialOfOld, s_->tick_, now_ns());
-    old_ = Trial(*s_->world_, *s_->stepper_, next_step()).run(scope, swapped(), deadline, s_->progress_, true);
+    old_ = Trial(*s_->world_, *s_->stepper_, next_step()).run(scope, swapped(), deadline, s_->progress_, measure_until(kMeasureOld));
     s_->progress_.end();
     old_tried_ = !old_.given_up;
 }
@@ -170,7 +180,8 @@ Result<void> Transaction::try_new(TrialScope& scope)
     std::vector<std::uint32_t> components;
     for (const SwapReport& report : reply_.swaps) components.push_back(s_->world_->find(report.id));
     const TrialResult with_new =
-        Trial(*s_->world_, *s_->stepper_, next_step()).run(scope, components, deadline, s_->progress_, !reply_.swaps.empty());
+        Trial(*s_->world_, *s_->stepper_, next_step())
+            .run(scope, components, deadline, s_->progress_, reply_.swaps.empty() ? 0 : measure_until(kMeasureNew));
     s_->progress_.end();
     told.ns = static_cast<double>(now_ns() - trial_begin_), told.objects = scope.objects(), told.everything = scope.has_everything();
     told.fate = with_new.given_up                      ? TrialReport::Fate::GivenUp
@@ -192,12 +203,16 @@ Result<void> Transaction::try_new(TrialScope& scope)
 void Transaction::write_reports(const TrialResult& with_new)
 {
     const bool is_new = reply_.trial.fate != TrialReport::Fate::None && reply_.trial.fate != TrialReport::Fate::GivenUp;
+    TrialReport& told = reply_.trial;
+    told.with_old = old_.cost, told.with_new = is_new ? with_new.cost : Spread{};
     for (std::size_t k = 0; k < reply_.swaps.size(); ++k)
     {
         SwapReport& report = reply_.swaps[k];
         report.energy_before = old_tried_ ? old_.before : is_new ? with_new.before : energy_before_;
         report.with_old = old_tried_ ? old_.outcome : kNotTried;
         report.with_new = is_new ? with_new.outcome : kNotTried;
+        report.with_new.cost_ns = told.with_new.is_told() ? told.with_new.median : kNaN;
+        report.with_old.cost_ns = costs_differ(told.with_old, told.with_new) ? told.with_old.median : kNaN;
         if (old_tried_ && k < old_.errors.size()) report.with_old.error = old_.errors[k];
         if (is_new && k < with_new.errors.size()) report.with_new.error = with_new.errors[k];
     }

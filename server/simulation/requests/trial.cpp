@@ -139,9 +139,7 @@ TrialResult Trial::once(Stepper& part, const std::vector<std::uint32_t>& compone
     out.before = first.kinetic + first.stored;
     out.moving = first.kinetic + kinetic_of_prescribed(world_.host());
     out.least = least_energy(world_.host(), part.radius_of_body(), step_.h);
-    const std::uint64_t begin = now_ns();
     part.step(step_.tick, step_.start, step_.h);
-    out.outcome.cost_ns = static_cast<double>(now_ns() - begin);
     out.given_up = deadline.heeded();
     out.failure = failure_in(part.events());
     const Totals then = totals_of(world_, part, step_.start + step_.h, step_.tick + 1);
@@ -151,21 +149,31 @@ TrialResult Trial::once(Stepper& part, const std::vector<std::uint32_t>& compone
     return out;
 }
 
-/// The first step of a new stepper finds cold caches and allocates: not what it will cost. A long step hardly shows that, and is not worth
-/// holding the loop up twice.
-void Trial::measure_again(Stepper& part, const TrialScope& scope, const Interruption& deadline, StepOutcome& outcome)
+/// The first step of a new stepper finds cold caches and allocates: not what it will cost, and one step says nothing of chance. No step is
+/// begun that would hardly be over in time.
+Spread Trial::measure(Stepper& part, const TrialScope& scope, const Interruption& deadline, std::uint64_t until_ns)
 {
-    constexpr double kShort = 1e6;  // ns
-    if (outcome.cost_ns >= kShort || deadline.due()) return;
-    fix_everybody_else(scope);
-    set_up(part, scope);
-    const std::uint64_t begin = now_ns();
-    part.step(step_.tick, step_.start, step_.h);
-    if (!deadline.heeded()) outcome.cost_ns = std::min(outcome.cost_ns, static_cast<double>(now_ns() - begin));
+    constexpr std::size_t kRepeats = 11;
+    std::vector<double> ns;
+    std::uint64_t longest = 0;
+    for (std::uint64_t begin = now_ns(); ns.size() < kRepeats && begin + longest < until_ns && !deadline.due();)
+    {
+        fix_everybody_else(scope);
+        set_up(part, scope);
+        const std::uint64_t before = now_ns();
+        part.step(step_.tick, step_.start, step_.h);
+        const std::uint64_t after = now_ns();
+        put_back();
+        if (deadline.heeded()) break;
+        ns.push_back(static_cast<double>(after - before));
+        const std::uint64_t end = now_ns();
+        longest = std::max(longest, end - begin), begin = end;
+    }
+    return spread_of(ns);
 }
 
 TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& components, const Interruption& deadline, Progress& progress,
-                       bool measured)
+                       std::uint64_t until_ns)
 {
     TrialResult out;
     for (int round = 0; round < kMostRounds; ++round)
@@ -193,11 +201,7 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         }
         put_back();  // before others come in: nobody is fixed then
         if (tried) grown = grow(scope, part);
-        if (tried && !grown && measured && out.failure.empty())
-        {
-            measure_again(part, scope, deadline, out.outcome);
-            put_back();
-        }
+        if (tried && !grown && out.failure.empty()) out.cost = measure(part, scope, deadline, until_ns);
         part_ = nullptr;
         if (!grown) break;
     }

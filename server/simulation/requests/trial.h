@@ -20,12 +20,13 @@ struct TrialStep
 struct TrialResult
 {
     bool given_up = false;
-    std::string failure;   ///< "" or the first event of severity Failure
-    double before = 0;     ///< J, kinetic and stored energy of those in the scope, where the step begins
-    double moving = 0;         ///< J, kinetic energy there, of those that move as told too
-    double kinetic_after = 0;  ///< J, where it ends
-    double least = 0;      ///< J: what moves slower than shows in a step has no more
-    StepOutcome outcome;   ///< of those in the scope; without the error
+    std::string failure;         ///< "" or the first event of severity Failure
+    double before = 0;           ///< J, kinetic and stored energy of those in the scope, where the step begins
+    double moving = 0;           ///< J, kinetic energy there, of those that move as told too
+    double kinetic_after = 0;    ///< J, where it ends
+    double least = 0;            ///< J: what moves slower than shows in a step has no more
+    StepOutcome outcome;         ///< of those in the scope; without error and cost
+    Spread cost;                 ///< ns, of the step made again; no samples: not measured
     std::vector<double> errors;  ///< of the components that were asked for
 };
 
@@ -35,10 +36,11 @@ class Trial
 {
 public:
     Trial(world::World& world, const Stepper& stepper, const TrialStep& step);
-    /// The scope grows by whoever is met in that step and was not in it; then the step is made again. `components`: whose errors are wanted.
-    /// `measured`: a short step is made twice, so that its cost is that of a warm one. Whatever comes of it, the world is as it was before.
+    /// The scope grows by whoever is met in that step and was not in it; then the step is made again. `components`: whose errors are
+    /// wanted. `until_ns`: the step is made again for its cost until then, but not often (0: it is not). Whatever comes of it, the world is
+    /// as it was before.
     TrialResult run(TrialScope& scope, const std::vector<std::uint32_t>& components, const Interruption& deadline, Progress& progress,
-                    bool measured);
+                    std::uint64_t until_ns);
 
 private:
     void fix_everybody_else(const TrialScope& scope);
@@ -47,7 +49,7 @@ private:
     void put_back();
     bool grow(TrialScope& scope, const Stepper& part) const;
     TrialResult once(Stepper& part, const std::vector<std::uint32_t>& components, const Interruption& deadline);
-    void measure_again(Stepper& part, const TrialScope& scope, const Interruption& deadline, StepOutcome& outcome);
+    Spread measure(Stepper& part, const TrialScope& scope, const Interruption& deadline, std::uint64_t until_ns);
     static void apply_changes(void* self, std::vector<ParameterChange>& changes);
 
     world::World& world_;

@@ -13,7 +13,6 @@ namespace
 
 // rho^2 J must stay in the range of double precision.
 constexpr int kLargestExponent = 400;
-constexpr std::size_t kMostErrors = 100;
 
 class Grower
 {
@@ -46,10 +45,7 @@ private:
         std::uint32_t other;  // shaft
     };
 
-    void refuse(std::uint32_t component, std::string why)
-    {
-        if (errors_.size() < kMostErrors) errors_.push_back({{}, directory_.component_id(component), std::move(why)});
-    }
+    void refuse(std::uint32_t component, std::string why) { errors_.push_back({{}, directory_.component_id(component), std::move(why)}); }
 
     void sort_edges()
     {

@@ -228,6 +228,9 @@ Portrait rest_of(const SnapshotContent& s)
         {
             Facts& facts = out["ledger of " + c.id];
             if (i < s.ledger.work.size()) facts.push_back({"work", Weight::Ledger, s.ledger.work[i]});
+            if (i < s.ledger.contact_energy.size())
+                facts.push_back({"made by contacts", Weight::Ledger, s.ledger.contact_energy[i].made}),
+                    facts.push_back({"lifted", Weight::Ledger, s.ledger.contact_energy[i].lifted});
             if (i < s.watch.start_work.size()) facts.push_back({"work when counting began", Weight::Ledger, s.watch.start_work[i]});
             if (c.facet == Facet::Body && c.host_index < s.watch.way.size())
                 facts.push_back({"speed that growth is told from", Weight::Ledger, s.watch.way[c.host_index].reference});

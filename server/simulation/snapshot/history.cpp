@@ -226,7 +226,8 @@ Result<void> History::go_forward(Simulation& simulation, const std::vector<Asked
             if (const Reply reply = simulation.carry_out_now(asked[next].request); !reply.done)
                 return reason("a request of step " + std::to_string(asked[next].step) +
                               " cannot be carried out again: " + (reply.errors.empty() ? std::string() : reply.errors.front().text()));
-        if (!simulation.step_once()) return reason("the server is to end: the way back was given up at step " + std::to_string(simulation.tick()));
+        if (!simulation.step_once())
+            return reason("the server is to end: the way back was given up at step " + std::to_string(simulation.tick()));
     }
     // Whoever waited for a step that was made again was among those that were asked again.
     simulation.forget_late_requests();

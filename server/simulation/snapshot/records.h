@@ -108,12 +108,14 @@ struct Life
 {
     bool quarantined = false, contradictory = false, passive = false;
     double work = 0, start_work = 0;
+    double made = 0, start_made = 0, lifted = 0;
 };
 template <class V>
 void columns(Life& l, V visit)
 {
     visit("quarantined", l.quarantined), visit("contradictory", l.contradictory), visit("passive", l.passive);
     visit("work", l.work), visit("start_work", l.start_work);
+    visit("made", l.made), visit("start_made", l.start_made), visit("lifted", l.lifted);
 }
 
 struct Body

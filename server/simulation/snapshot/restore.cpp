@@ -108,6 +108,8 @@ Result<Simulation::Live> Simulation::revive(const SnapshotContent& from) const
     restore_contacts(from.contacts, now, *live.world, stepper.contacts());
     stepper.work() = rearranged(from.ledger.work, components, component);
     stepper.work().resize(components, 0.0);
+    stepper.contact_energy() = rearranged(from.ledger.contact_energy, components, component);
+    stepper.contact_energy().resize(components);
     stepper.departed_work() = from.ledger.departed, stepper.requests_work() = from.ledger.requests;
     stepper.told() = {from.told.stiff, rearranged(from.told.contradictory, components, component)};
     stepper.told().contradictory.resize(components, 0);

@@ -52,7 +52,8 @@ struct ClockImage
 
 struct LedgerImage
 {
-    std::vector<double> work;  ///< J, by component
+    std::vector<double> work;                   ///< J, by component
+    std::vector<ContactEnergy> contact_energy;  ///< by component
     double departed = 0, requests = 0;
     double kinetic_at_start = 0;
 };

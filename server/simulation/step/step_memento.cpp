@@ -15,7 +15,7 @@ void StepMemento::save(const world::World& world, const Stepper& stepper)
     cells_.clear();
     world.save_fields(kChanging, cells_);
     contacts_.copy(stepper.contacts());
-    work_ = stepper.work();
+    work_ = stepper.work(), contact_energy_ = stepper.contact_energy();
     departed_work_ = stepper.departed_work(), requests_work_ = stepper.requests_work();
     told_ = stepper.told();
     split_ = stepper.split();
@@ -30,7 +30,7 @@ void StepMemento::restore(world::World& world, Stepper& stepper) const
     (void)stepper.rebuild();  // what fitted together at the start of the step does so still
     motion_.restore(world.host());
     stepper.contacts() = contacts_;
-    stepper.work() = work_;
+    stepper.work() = work_, stepper.contact_energy() = contact_energy_;
     stepper.departed_work() = departed_work_, stepper.requests_work() = requests_work_;
     stepper.told() = told_;
     stepper.continue_split(split_);

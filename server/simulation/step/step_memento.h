@@ -22,6 +22,7 @@ private:
     ByteWriter cells_;  ///< states and outputs
     ContactCache contacts_;
     std::vector<double> work_;
+    std::vector<ContactEnergy> contact_energy_;
     double departed_work_ = 0, requests_work_ = 0;
     Told told_;
     CostBook cost_;

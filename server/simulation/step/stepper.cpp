@@ -41,7 +41,8 @@ void Stepper::step(Tick tick, double start_time, double dt)
     report_ = {};
     reactions_.clear();
     if (!schedule_.of(Phase::Constrain).empty()) row_reports_.clear(world_.components().size());
-    frame_ = {&world_, &schedule_, &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed, interruption_, progress_, &told_.contradictory};
+    frame_ = {&world_,   &schedule_,          &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed, interruption_,
+              progress_, &told_.contradictory};
     if (interruption_) interruption_->forget_heeded();
     for (std::size_t i = 0; i < std::size(kStepTree) && !frame_.give_up(); ++i)
     {
@@ -80,8 +81,7 @@ void Stepper::drive()
     call.context = &context;
     call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
     call.quantities = &world_.host().quantities;
-    for (const Block& block : schedule_.of(Phase::Drive))
-        run_block(block, context, call);
+    for (const Block& block : schedule_.of(Phase::Drive)) run_block(block, context, call);
     if (!changes_.empty() && apply_changes_ && !frame_.give_up()) apply_changes_(changes_owner_, changes_);
 }
 
@@ -105,8 +105,7 @@ void Stepper::draw()
     PhaseCall call;
     call.context = &context;
     call.sight = &sight, call.images = images_;
-    for (const Block& block : schedule_.of(Phase::Draw))
-        run_block(block, context, call);
+    for (const Block& block : schedule_.of(Phase::Draw)) run_block(block, context, call);
 }
 
 void Stepper::finish()
@@ -119,8 +118,7 @@ void Stepper::finish()
     call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
     call.quantities = &world_.host().quantities;
     call.reactions = &reactions_, call.row_reports = &row_reports_;
-    for (const Block& block : schedule_.of(Phase::Finish))
-        run_block(block, context, call);
+    for (const Block& block : schedule_.of(Phase::Finish)) run_block(block, context, call);
 }
 
 std::uint64_t Stepper::state_hash() const { return cache_.state_hash(world_, world_.state_hash(0xcbf29ce484222325ull)); }

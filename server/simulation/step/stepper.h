@@ -5,8 +5,10 @@
 #include <memory>
 
 #include "simulation/contact_forces/contact_forces.h"
-#include "simulation/costs/cost_book.h"
 #include "simulation/contacts/contacts.h"
+#include "simulation/contacts/kicked_bodies.h"
+#include "simulation/contacts/midway_contacts.h"
+#include "simulation/costs/cost_book.h"
 #include "simulation/groups/system_pool.h"
 #include "simulation/shafts/coupling_watch.h"
 #include "simulation/shafts/shaft_reactions.h"
@@ -28,6 +30,13 @@ struct StepReport
     double worst_residual = 0;      ///< m/s, left over by contact responses
     double deepest = 0;             ///< m, overlap left at the end of the step
     std::vector<Ref> frozen;        ///< objects whose state was not finite any more
+};
+
+/// Energy that contacts put in on their own account, by component (manager or response), J, since the run began.
+struct ContactEnergy
+{
+    double made = 0;    ///< work of contacts that have none to do: no part of the ledger's work, so it stays unexplained there
+    double lifted = 0;  ///< against the forces of the step, where overlap was parted
 };
 
 /// What events told of already and would tell again only when it ends and comes back.
@@ -97,10 +106,20 @@ public:
     const std::vector<Detector>& detectors() const { return detectors_; }
     /// m, about the centre of mass, by body: whatever collides is within; infinite for planes.
     std::span<const double> radius_of_body() const { return radius_of_body_; }
+    /// m: of two bodies that may touch; 0 where neither ends.
+    double smaller_radius(Ref a, Ref b) const
+    {
+        const double radius = std::min(radius_of_body_[a.index], radius_of_body_[b.index]);
+        return radius < std::numeric_limits<double>::infinity() ? radius : 0.0;
+    }
+    /// m: overlap that is left alone.
+    double overlap_tolerance(Ref a, Ref b) const { return kOverlapShare * smaller_radius(a, b); }
     ContactCache& contacts() { return cache_; }
     const ContactForces& forces() const { return forces_; }
     const ContactCache& contacts() const { return cache_; }
     const std::vector<FoundContact>& touching() const { return found_; }
+    std::vector<ContactEnergy>& contact_energy() { return contact_energy_; }
+    const std::vector<ContactEnergy>& contact_energy() const { return contact_energy_; }
     std::vector<double>& work() { return work_; }  ///< J by component, since the run began
     const std::vector<double>& work() const { return work_; }
     /// A component is about to be removed: its work stays in the ledger, whoever gets its place starts with none.
@@ -110,6 +129,7 @@ public:
         departed_work_ += work_[component];
         work_[component] = 0;
         cost_.forget(component);
+        contact_energy_[component] = {};
         told_.contradictory[component] = 0;
     }
     /// J, by components that were removed since.
@@ -166,6 +186,7 @@ private:
     friend class EventLocator;
     friend class ContactForces;
     friend class HeldIslands;
+    friend class MidwayContacts;
 
     // stepper_build.cpp
     void connect_materials(Errors& errors);
@@ -215,7 +236,9 @@ private:
     KnownContact& known_contact(const FoundContact& found);
     double gap_margin(const PairState& pair, double h) const;
     void drop_far(std::vector<FoundContact>& out, double h) const;
-    bool arrest(const GroupSystem& system, double h, WorkBook book);
+    bool meets_any(const GroupSystem& system, double h) const;
+    void arrest(double h, WorkBook book);
+    bool lead_touching(GroupSystem& system, double h);
     bool is_paradox(const Contact& contact) const;
     void tell_paradox(const Contact& contact, PairState& pair, double time);
     void fill_material(FoundContact& found) const;
@@ -224,7 +247,11 @@ private:
     void respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book);
     void advance_island(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
                         WorkBook book, bool trial);
-    void keep_impulses(const std::vector<FoundContact>& contacts);
+    void bend_touching(double h);
+    void book_rest(double work, WorkBook book);
+    void book_impact(std::uint32_t response, const std::vector<FoundContact>& contacts, ImpactMode mode, double work, WorkBook book);
+    void tell_release(const PairState& pair, const Contact& contact, double pressed, double parting, double from, double h);
+    void keep_impulses(const std::vector<FoundContact>& contacts, double from, double h);
     static bool same_pair(const FoundContact& x, const FoundContact& y)
     {
         return x.detector == y.detector && x.contact.a == y.contact.a && x.contact.b == y.contact.b;
@@ -298,13 +325,17 @@ private:
     std::vector<FoundContact> found_, touching_;
     std::vector<Eased> eased_;
     std::vector<Contact> impact_contacts_;
-    std::vector<Vec3> old_velocity_, old_spin_;
+    std::vector<std::uint32_t> members_, places_;
+    MidwayContacts midway_{*this};
+    KickedBodies moved_;
+    std::vector<Vec3> resting_force_;  ///< N, by body: of the step, where Response/Impulse advances it
 
     std::vector<Event> events_;
     std::vector<ParameterChange> changes_;
     ApplyChanges apply_changes_ = nullptr;
     void* changes_owner_ = nullptr;
     std::vector<double> work_;
+    std::vector<ContactEnergy> contact_energy_;
     double departed_work_ = 0, requests_work_ = 0;
     Told told_;
     CostMeter meter_;

@@ -106,6 +106,7 @@ Result<void> Stepper::rebuild()
     speed_system_.configure(world_, schedule_, groups_, island_all_, graph_);
     rewinds_possible_ = std::any_of(detectors_.begin(), detectors_.end(), [](const Detector& d) { return d.locates; });
     work_.resize(world_.components().size(), 0.0);
+    contact_energy_.resize(world_.components().size());
     told_.contradictory.resize(world_.components().size(), 0);
     rebuild_costs();
     segment_begin_.assign(groups_.all.size(), 0.0);

@@ -13,7 +13,7 @@ namespace plab::simulation
 namespace
 {
 
-constexpr double kMostGain = 100, kLook = 4, kSmallTurn = 1e-3;
+constexpr double kMostGain = 100, kMostMade = 0.05, kLook = 4, kSmallTurn = 1e-3;
 constexpr int kMostDoublings = 24, kQuickSteps = 8, kPatience = 8;
 constexpr double kRounding = 0x1p-40;  // of places, with room for what a step makes of it
 
@@ -127,6 +127,8 @@ void DivergenceWatch::before_step(const Simulation& s)
     m_.counting = true, m_.told = false, m_.sealed = sealed(host), m_.gaining_since = -1, m_.gaining_steps = 0;
     size_for(s);
     m_.start_work = stepper.work();
+    m_.start_made.clear();
+    for (const ContactEnergy& e : stepper.contact_energy()) m_.start_made.push_back(e.made);
     m_.start_other_work = stepper.departed_work() + stepper.requests_work();
     m_.passive.assign(m_.start_work.size(), 0);
     if (m_.sealed)
@@ -160,7 +162,30 @@ void DivergenceWatch::after_step(const Simulation& s, std::vector<Event>& events
     if (m_.way.empty() && m_.turn.empty()) return;
     tunnels_.after_step(s, events);
     look_at_growth(s, events);
+    look_at_contacts(s, events);
     if (!m_.told) look_at_energy(s, events);
+}
+
+void DivergenceWatch::look_at_contacts(const Simulation& s, std::vector<Event>& events)
+{
+    const auto& energy = s.stepper().contact_energy();
+    double scale = -1;
+    for (const std::uint32_t c : s.world().in_id_order())
+    {
+        if (c >= std::min(energy.size(), m_.start_made.size()) || !(energy[c].made > m_.start_made[c])) continue;
+        if (scale < 0) scale = std::fabs(m_.start_energy) + sources(s).gross + least_energy(s.world().host(), s.dt());
+        const double made = energy[c].made - m_.start_made[c];
+        if (!(made > kMostMade * scale)) continue;
+        m_.start_made[c] = HUGE_VAL;
+        Event e;
+        e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "contact.gains_energy", e.severity = Severity::Warning, e.component = c;
+        char text[160];
+        std::snprintf(text, sizeof text, "its contacts have made %.3g J, while %.3g J were there or put in; shorter steps may hold it",
+                      made, scale);
+        e.message = text;
+        e.values = {made, scale};
+        events.push_back(std::move(e));
+    }
 }
 
 void DivergenceWatch::look_at_growth(const Simulation& s, std::vector<Event>& events)

@@ -8,6 +8,8 @@
 ///            bodies or shafts are moved from outside (kinematic, prescribed), W is that of all components, and E kinetic.
 ///   growth   the speed of a body or shaft has doubled kMostDoublings times in a row, each time within kQuickSteps steps: a
 ///            resolved motion does not do that.
+///   contacts contact.gains_energy, once per manager or response: what its contacts have made since counting began, which is no work
+///            of theirs (contacts can only take), exceeds kMostMade S.
 /// A kinetic energy beyond all numbers counts too. Below E_f = sum 1/2 I (kSmallTurn/h)^2 nothing counts: no body turns by a thousandth, or
 /// moves by a thousandth of its radius of gyration, in a step h. Motion that is not finite any more is another event, state.not_finite.
 ///
@@ -42,6 +44,7 @@ struct DivergenceMemory
     Tick gaining_since = -1;
     std::int64_t gaining_steps = 0;
     std::vector<double> start_work;       ///< J, by component
+    std::vector<double> start_made;       ///< J, by component; infinite once it was told of
     std::vector<std::uint8_t> passive;    ///< by component: gives no energy of its own
     std::vector<Growth> way, spin, turn;  ///< by body, body, shaft
     std::vector<std::uint8_t> bodies_told, shafts_told;
@@ -70,6 +73,7 @@ private:
     void size_for(const Simulation& s);
     void look_at_growth(const Simulation& s, std::vector<Event>& events);
     void look_at_energy(const Simulation& s, std::vector<Event>& events);
+    void look_at_contacts(const Simulation& s, std::vector<Event>& events);
     Sources sources(const Simulation& s) const;
     double energy(const Simulation& s, double kinetic) const;
 

@@ -33,8 +33,7 @@ std::vector<BadInput> read_table(const std::string& path)
     {
         ++line_number;
         BadInput& now = out.back();
-        if (now.text.empty() && now.errors.empty())
-            now.line = line_number;
+        if (now.text.empty() && now.errors.empty()) now.line = line_number;
         if (line.empty() && !now.errors.empty())
             out.emplace_back();
         else if (line.starts_with("-> "))
@@ -42,16 +41,14 @@ std::vector<BadInput> read_table(const std::string& path)
         else if (!line.empty() && !line.starts_with("# "))
             now.text += line + "\n";
     }
-    if (out.back().text.empty())
-        out.pop_back();
+    if (out.back().text.empty()) out.pop_back();
     return out;
 }
 
 std::string document(const BadInput& bad)
 {
     const std::string mark = "whole document:\n";
-    if (bad.text.starts_with(mark))
-        return bad.text.substr(mark.size());
+    if (bad.text.starts_with(mark)) return bad.text.substr(mark.size());
     return "<plab version=\"1\">\n" + bad.text + "</plab>\n";
 }
 
@@ -112,8 +109,7 @@ TEST_CASE("a fragment may not redefine what is there, nor change the scene's set
         return result.ok() ? "accepted" : result.error().text();
     };
     CHECK(added("<component id='b' type='Field/Gravity' between='a'/>") == "accepted");
-    CHECK(added("<component id='a' type='State/Static'/>") ==
-          "request 17:1:1: a (State/Static): id 'a' is already in the scene");
+    CHECK(added("<component id='a' type='State/Static'/>") == "request 17:1:1: a (State/Static): id 'a' is already in the scene");
     CHECK(added("<plab version='1'>\n<scene dt='1'/></plab>") ==
           "request 17:2:1: scene: dt belongs to the scene, not to a part that is added");
 }

@@ -48,10 +48,9 @@ TEST_CASE("what looks like a number and is none is not taken for a text")
 
 TEST_CASE("what is written reads back the same")
 {
-    for (const EntryValue& v :
-         {EntryValue(true), EntryValue(false), EntryValue(0.1), EntryValue(-0.0), EntryValue(5e-324),
-          EntryValue(1.7976931348623157e308), EntryValue(std::string()), EntryValue(std::string("true")),
-          EntryValue(std::string(" \"quoted\" ")), EntryValue(std::string("12"))})
+    for (const EntryValue& v : {EntryValue(true), EntryValue(false), EntryValue(0.1), EntryValue(-0.0), EntryValue(5e-324),
+                                EntryValue(1.7976931348623157e308), EntryValue(std::string()), EntryValue(std::string("true")),
+                                EntryValue(std::string(" \"quoted\" ")), EntryValue(std::string("12"))})
     {
         CAPTURE(format_entry(v));
         const auto back = parse_entry(format_entry(v));

@@ -109,8 +109,7 @@ TEST_CASE("sizes of text, of values, of the whole, and the number of elements")
     const std::string tail = "</param></component></plab>";
     const std::size_t most = std::size_t{16} << 20;
     CHECK(refusal(head + std::string(most, 'x') + tail) == "accepted");
-    CHECK(refusal(head + std::string(most + 1, 'x') + tail) ==
-          "h.xml:1:53: <param>: the text is longer than 16777216 bytes");
+    CHECK(refusal(head + std::string(most + 1, 'x') + tail) == "h.xml:1:53: <param>: the text is longer than 16777216 bytes");
     CHECK(refusal("<plab version='1'><component x='" + std::string(most + 1, 'x') + "'/></plab>") ==
           "h.xml:1:19: <component>: the value of attribute 'x' is longer than 16777216 bytes");
     CHECK(refusal(std::string((std::size_t{64} << 20) + 1, ' ')) == "h.xml: the text is larger than 67108864 bytes");
@@ -134,8 +133,7 @@ TEST_CASE("encodings other than UTF-8 are refused where they show")
 
 TEST_CASE("bytes that are no UTF-8")
 {
-    const auto with = [](std::string_view bytes)
-    { return refusal("<plab version='1'>\n<!--a" + std::string(bytes) + "--></plab>"); };
+    const auto with = [](std::string_view bytes) { return refusal("<plab version='1'>\n<!--a" + std::string(bytes) + "--></plab>"); };
     const std::string at = "h.xml:2:6: the text is not valid UTF-8";
     CHECK(with("\x80") == at);                  // a continuation alone
     CHECK(with("\xC0\xAF") == at);              // overlong '/'
@@ -152,21 +150,17 @@ TEST_CASE("bytes that are no UTF-8")
 TEST_CASE("NUL and other characters that XML does not have")
 {
     CHECK(refusal("<plab version='1'>\n a\0b</plab>"sv) == "h.xml:2:3: a NUL character cannot stand in XML");
-    CHECK(refusal("<plab version='1'>\x01</plab>") ==
-          "h.xml:1:19: not well-formed XML: not well-formed (invalid token)");
-    CHECK(refusal("<plab version='1'>&#0;</plab>") ==
-          "h.xml:1:19: not well-formed XML: reference to invalid character number");
+    CHECK(refusal("<plab version='1'>\x01</plab>") == "h.xml:1:19: not well-formed XML: not well-formed (invalid token)");
+    CHECK(refusal("<plab version='1'>&#0;</plab>") == "h.xml:1:19: not well-formed XML: reference to invalid character number");
 }
 
 TEST_CASE("torn XML")
 {
     CHECK(refusal("") == "h.xml:1:1: not well-formed XML: the document has no element");
-    CHECK(refusal("<plab version='1'>\n<component>\n") ==
-          "h.xml:3:1: not well-formed XML: <component> of line 2 is never closed");
+    CHECK(refusal("<plab version='1'>\n<component>\n") == "h.xml:3:1: not well-formed XML: <component> of line 2 is never closed");
     CHECK(refusal("<plab version='1'>\n<component>\n</plab>") ==
           "h.xml:3:3: not well-formed XML: a closing tag that does not match the open <component> of line 2");
-    CHECK(refusal("<plab version='1'/><plab/>") ==
-          "h.xml:1:20: not well-formed XML: something stands after the root element");
+    CHECK(refusal("<plab version='1'/><plab/>") == "h.xml:1:20: not well-formed XML: something stands after the root element");
     CHECK(refusal("<plab version='1' version='1'/>") == "h.xml:1:19: not well-formed XML: duplicate attribute");
     CHECK(refusal("<plab version=1/>") == "h.xml:1:15: not well-formed XML: not well-formed (invalid token)");
     CHECK(refusal("<plab version='1'><![CDATA[") == "h.xml:1:28: not well-formed XML: unclosed CDATA section");
@@ -198,7 +192,6 @@ TEST_CASE("large and strange input is answered quickly")
     CHECK(seconds_for("<plab version='1'>" + repeated("<x/>", 100'000) + "</plab>") < kQuickly);
     CHECK(seconds_for(repeated("<?x?>", 1'000'000)) < kQuickly);
     CHECK(seconds_for("<plab version='1'>" + repeated("&amp;", 1'000'000) + "</plab>") < kQuickly);
-    CHECK(seconds_for("<plab version='1'><component>" + repeated("<state name='s'>1</state>", 100'000) +
-                      "</component></plab>") < kQuickly);
+    CHECK(seconds_for("<plab version='1'><component>" + repeated("<state name='s'>1</state>", 100'000) + "</component></plab>") < kQuickly);
     CHECK(refusal(repeated("<?x?>", 1'000)) == "h.xml:1:1: <?x?>: processing instructions are refused");
 }

@@ -19,8 +19,7 @@ struct Listing
 
     explicit Listing(int figure)
     {
-        const auto blueprint =
-            blueprint::read_blueprint_file(PLAB_SOURCE_DIR "/scenes/paper/listing-" + std::to_string(figure) + ".xml");
+        const auto blueprint = blueprint::read_blueprint_file(PLAB_SOURCE_DIR "/scenes/paper/listing-" + std::to_string(figure) + ".xml");
         REQUIRE_MESSAGE(blueprint.ok(), (blueprint.ok() ? "" : blueprint.error().text()));
         auto compiled = model::compile(*blueprint, types);
         REQUIRE_MESSAGE(compiled.ok(), (compiled.ok() ? "" : compiled.error().text()));
@@ -35,15 +34,13 @@ struct Listing
     Names members(const std::string& id, const std::string& role) const
     {
         for (const model::RoleSpec& r : component(id).roles)
-            if (r.name == role)
-                return r.members;
+            if (r.name == role) return r.members;
         return {};
     }
     Value field(const std::string& id, const std::string& name) const
     {
         for (const model::FieldSpec& f : component(id).fields)
-            if (f.name == name)
-                return f.value;
+            if (f.name == name) return f.value;
         return {};
     }
 };

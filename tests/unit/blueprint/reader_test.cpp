@@ -21,10 +21,7 @@ model::Blueprint read(const std::string& text)
     return result.take();
 }
 
-std::string place(const SourceLocation& w)
-{
-    return w.file + ":" + std::to_string(w.line) + ":" + std::to_string(w.column);
-}
+std::string place(const SourceLocation& w) { return w.file + ":" + std::to_string(w.line) + ":" + std::to_string(w.column); }
 
 std::string first_error(const std::string& text)
 {
@@ -108,8 +105,7 @@ TEST_CASE("states are gathered into one parameter with entries")
     const auto& p = b.components.at(0).parameters;
     REQUIRE(p.size() == 2);
     CHECK(p[0].name == "state");
-    CHECK(p[0].entries ==
-          Entries{{"count", 0.0}, {"on", true}, {"word", std::string("hello")}, {"digits", std::string("12")}});
+    CHECK(p[0].entries == Entries{{"count", 0.0}, {"on", true}, {"word", std::string("hello")}, {"digits", std::string("12")}});
     CHECK(place(p[0].where) == "s.xml:2:1");
     CHECK(p[1].entries == Entries{{"x", -1500.0}});
 }
@@ -187,8 +183,7 @@ TEST_CASE("foreign elements go to their handlers and imply a type")
     handlers.add({"BLOB", "Shape/Blob",
                   [](const blueprint::XmlElement& e) -> Result<std::vector<model::ValueNode>>
                   {
-                      if (e.text.empty())
-                          return Error{{{}, e.where.line, e.where.column}, "<BLOB>", "is empty"};
+                      if (e.text.empty()) return Error{{{}, e.where.line, e.where.column}, "<BLOB>", "is empty"};
                       return std::vector<model::ValueNode>{{"text", Value(e.text), {{}, e.where.line, e.where.column}}};
                   }});
     const auto good = read_blueprint(
@@ -199,8 +194,7 @@ TEST_CASE("foreign elements go to their handlers and imply a type")
     CHECK(good->components[0].type == "Shape/Blob");
     CHECK(good->components[1].type == "Shape/Other");
     CHECK(place(good->components[1].values.at(0).where) == "s.xml:2:38");
-    const auto bad = read_blueprint("<plab version='1'>\n<component id='a'><BLOB/></component><BLOB>x</BLOB></plab>",
-                                    "s.xml", handlers);
+    const auto bad = read_blueprint("<plab version='1'>\n<component id='a'><BLOB/></component><BLOB>x</BLOB></plab>", "s.xml", handlers);
     REQUIRE(!bad.ok());
     REQUIRE(bad.errors().size() == 2);
     CHECK(bad.errors()[0].text() == "s.xml:2:19: <BLOB>: is empty");
@@ -209,8 +203,7 @@ TEST_CASE("foreign elements go to their handlers and imply a type")
 
 TEST_CASE("errors are collected as long as the XML is well-formed")
 {
-    const auto result =
-        read_blueprint("<plab version='2'>\n<sceen/>\n<component id=''>\n text</component>\n<?php x?></plab>", "s.xml");
+    const auto result = read_blueprint("<plab version='2'>\n<sceen/>\n<component id=''>\n text</component>\n<?php x?></plab>", "s.xml");
     REQUIRE(!result.ok());
     std::vector<std::string> texts;
     for (const Error& e : result.errors()) texts.push_back(e.text());

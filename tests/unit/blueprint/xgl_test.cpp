@@ -23,12 +23,10 @@ const std::string kPoints = "<P ID='1'>0, 0, 0</P><P ID='2'>1, 0, 0</P><P ID='3'
 
 std::string face(const std::string& a, const std::string& b, const std::string& c)
 {
-    return "<F><FV1><PREF>" + a + "</PREF></FV1><FV2><PREF>" + b + "</PREF></FV2><FV3><PREF>" + c +
-           "</PREF></FV3></F>\n";
+    return "<F><FV1><PREF>" + a + "</PREF></FV1><FV2><PREF>" + b + "</PREF></FV2><FV3><PREF>" + c + "</PREF></FV3></F>\n";
 }
 
-const std::string kTetrahedron =
-    kPoints + face("1", "3", "2") + face("1", "2", "4") + face("2", "3", "4") + face("1", "4", "3");
+const std::string kTetrahedron = kPoints + face("1", "3", "2") + face("1", "2", "4") + face("2", "3", "4") + face("1", "4", "3");
 
 }  // namespace
 
@@ -87,8 +85,7 @@ TEST_CASE("bad coordinates")
 
 TEST_CASE("a bad point is blamed once, not at each face")
 {
-    const auto result =
-        mesh("<P ID='1'>0 0 0</P><P ID='2'>1,0,0</P><P ID='3'>0,1,0</P>" + face("1", "2", "3") + face("3", "2", "1"));
+    const auto result = mesh("<P ID='1'>0 0 0</P><P ID='2'>1,0,0</P><P ID='3'>0,1,0</P>" + face("1", "2", "3") + face("3", "2", "1"));
     REQUIRE(!result.ok());
     CHECK(result.errors().size() == 1);
 }
@@ -96,8 +93,7 @@ TEST_CASE("a bad point is blamed once, not at each face")
 TEST_CASE("a second mesh in a component is refused")
 {
     const auto result = blueprint::read_blueprint(
-        "<component id='m'>\n<MESH>" + kTetrahedron + "</MESH>\n<MESH>" + kTetrahedron + "</MESH></component>",
-        "m.xml");
+        "<component id='m'>\n<MESH>" + kTetrahedron + "</MESH>\n<MESH>" + kTetrahedron + "</MESH></component>", "m.xml");
     REQUIRE(!result.ok());
     CHECK(result.error().text() == "m.xml:8:1: <MESH>: the component has its vertices already");
 }
@@ -107,8 +103,8 @@ TEST_CASE("what is written reads back to the same bits")
     const Reals vertices{0.1, -0.0, 1e-300, 1.0 / 3, 12345678.901234567, -2e17, 5, 6, 7, 8, 9, 10};
     const Integers triangles{0, 1, 2, 3, 2, 1};
     REQUIRE(blueprint::is_xgl_mesh(vertices, triangles));
-    const auto back = blueprint::read_blueprint(
-        "<component id='m'>" + blueprint::write_xgl_mesh(vertices, triangles, 2) + "</component>", "m.xml");
+    const auto back =
+        blueprint::read_blueprint("<component id='m'>" + blueprint::write_xgl_mesh(vertices, triangles, 2) + "</component>", "m.xml");
     REQUIRE(back.ok());
     CHECK(back->components[0].values[0].value == Value(vertices));
     CHECK(std::signbit(std::get<Reals>(back->components[0].values[0].value)[1]));

@@ -1,5 +1,6 @@
 // Requests before and after the step loop: form, exactly once, replies that do not go out at once. No DDS here.
-#include "bus/outbox.h"
+#include "bus/process/outbox.h"
+#include "bus/process/request_read.h"
 #include "bus/request_book.h"
 #include "bus/request_check.h"
 #include "doctest/doctest.h"

@@ -1,4 +1,5 @@
 // One server for each name.
+#include "idl/identity.h"
 #include "support.h"
 #include "wire/wire_view.h"
 

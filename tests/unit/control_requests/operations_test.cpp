@@ -179,7 +179,8 @@ TEST_CASE("trial and energy say how a request is proved, cancel names a request;
     CHECK(cancel->cancel->client[10] == 0x0a);
     CHECK(cancel->cancel->client[15] == 0xff);
     CHECK(cancel->cancel->number == 17);
-    for (const std::string& wrong : std::vector<std::string>{client, client + ":0", client + ":x", client.substr(1) + ":1", "g" + client.substr(1) + ":1"})
+    for (const std::string& wrong :
+         std::vector<std::string>{client, client + ":0", client + ":x", client.substr(1) + ":1", "g" + client.substr(1) + ":1"})
         CHECK_MESSAGE(refusal({"cancel", "", wrong, "", {}}).find("names no request") != std::string::npos, wrong);
     CHECK(!wanted({swap, {"cancel", "", client + ":17", "", {}}}).ok());
 }

@@ -15,19 +15,12 @@ namespace plab::test
 {
 
 /// Equal to a relative error; doctest's own scale of 1 would let small numbers pass.
-inline doctest::Approx near(double want, double relative)
-{
-    return doctest::Approx(want).epsilon(relative).scale(0);
-}
+inline doctest::Approx near(double want, double relative) { return doctest::Approx(want).epsilon(relative).scale(0); }
 
-inline Ref body(std::uint32_t i)
-{
-    return {Facet::Body, i};
-}
+inline Ref body(std::uint32_t i) { return {Facet::Body, i}; }
 
 /// Adds a body with its centre of mass at `p`; mass 0 makes it static.
-inline std::uint32_t add_body(Bodies& b, double mass, const Vec3& inertia, const Vec3& p, const Vec3& v = {},
-                              const Quat& q = {})
+inline std::uint32_t add_body(Bodies& b, double mass, const Vec3& inertia, const Vec3& p, const Vec3& v = {}, const Quat& q = {})
 {
     const bool moves = mass > 0;
     b.motion.push_back(moves ? Motion::Dynamic : Motion::Static);
@@ -79,10 +72,7 @@ struct Sink final : ContactSink
 
     std::span<const StandingPair> standing() const override { return pairs; }
     void add(const Contact& contact) override { contacts.push_back(contact); }
-    bool precedes(Ref a, Ref b) const override
-    {
-        return rank.empty() ? a.index < b.index : rank[a.index] < rank[b.index];
-    }
+    bool precedes(Ref a, Ref b) const override { return rank.empty() ? a.index < b.index : rank[a.index] < rank[b.index]; }
 };
 
 /// One row of a type, filled with its declared defaults.
@@ -97,8 +87,7 @@ struct OneRow
         rows.describe(schema);
         for (ColumnBase* c : schema.columns()) c->resize(1);
         for (const Field& f : schema.fields())
-            if (type_of(f.fallback) == f.type)
-                f.column->set(0, f.fallback);
+            if (type_of(f.fallback) == f.type) f.column->set(0, f.fallback);
     }
 };
 
@@ -120,16 +109,14 @@ struct Detection : OneRow<detection::OdeRows>
     }
 };
 
-inline Contact touch(std::uint32_t a, std::uint32_t b, const Vec3& point, const Vec3& normal, double friction = 0,
-                     double restitution = 0)
+inline Contact touch(std::uint32_t a, std::uint32_t b, const Vec3& point, const Vec3& normal, double friction = 0, double restitution = 0)
 {
     Contact c;
     c.a = body(a), c.b = body(b), c.point = point, c.normal = normal;
     c.friction = friction, c.restitution = restitution;
     return c;
 }
-inline Impact respond(Bodies& bodies, std::vector<Contact>& contacts, ImpactMode mode = ImpactMode::Impact,
-                      double dt = 0)
+inline Impact respond(Bodies& bodies, std::vector<Contact>& contacts, ImpactMode mode = ImpactMode::Impact, double dt = 0)
 {
     OneRow<response::ImpulseRows> row;
     Impact impact;
@@ -138,10 +125,7 @@ inline Impact respond(Bodies& bodies, std::vector<Contact>& contacts, ImpactMode
     return impact;
 }
 
-inline double uniform(std::uint64_t& s, double lo, double hi)
-{
-    return lo + (hi - lo) * next_uniform(s);
-}
+inline double uniform(std::uint64_t& s, double lo, double hi) { return lo + (hi - lo) * next_uniform(s); }
 inline Vec3 random_vector(std::uint64_t& s, double size)
 {
     const double x = uniform(s, -size, size), y = uniform(s, -size, size), z = uniform(s, -size, size);

@@ -23,14 +23,12 @@ struct Cloud
         const std::uint32_t ball = add_shape(shapes, GeometryKind::Sphere, {0.4, 0, 0});
         const std::uint32_t box = add_shape(shapes, GeometryKind::Box, {0.3, 0.4, 0.35});
         const std::uint32_t plane = add_shape(shapes, GeometryKind::Plane);
-        shapes.geometry.push_back(
-            mesh_of({{-0.4, -0.4, -0.3}, {0.5, 0, -0.3}, {-0.4, 0.5, -0.2}, {0, 0, 0.6}, {0.1, 0.1, -0.5}}));
+        shapes.geometry.push_back(mesh_of({{-0.4, -0.4, -0.3}, {0.5, 0, -0.3}, {-0.4, 0.5, -0.2}, {0, 0, 0.6}, {0.1, 0.1, -0.5}}));
         for (const std::uint32_t id : order)
         {
             std::uint64_t seed = 100 + id;
-            const std::uint32_t i =
-                add_body(bodies, id == 0 ? 0 : 1, {1, 1, 1}, id == 0 ? Vec3{} : random_vector(seed, 1.2), {},
-                         id == 0 ? Quat{} : random_rotation(seed));
+            const std::uint32_t i = add_body(bodies, id == 0 ? 0 : 1, {1, 1, 1}, id == 0 ? Vec3{} : random_vector(seed, 1.2), {},
+                                             id == 0 ? Quat{} : random_rotation(seed));
             bodies.shapes[i] = {{Facet::Shape, id == 0 ? plane : std::array{ball, box, 3u}[id % 3]}};
             rank.push_back(id);
         }
@@ -50,26 +48,22 @@ struct Cloud
                 for (std::uint32_t i = static_cast<std::uint32_t>(moved.size()); i-- > 1;)
                 {
                     moved.position[i].x += (i + k) % 3 ? 0.7 : -0.9;
-                    if ((i + k) % 4 == 0)
-                        d.look(moved, shapes);
+                    if ((i + k) % 4 == 0) d.look(moved, shapes);
                 }
         }
         std::vector<Contact> out = d.look(bodies, shapes);
         for (Contact& c : out) c.a.index = rank[c.a.index], c.b.index = rank[c.b.index];
         std::sort(out.begin(), out.end(),
-                  [](const Contact& x, const Contact& y)
-                  { return std::tie(x.a, x.b, x.feature) < std::tie(y.a, y.b, y.feature); });
+                  [](const Contact& x, const Contact& y) { return std::tie(x.a, x.b, x.feature) < std::tie(y.a, y.b, y.feature); });
         return out;
     }
 };
 bool same(const std::vector<Contact>& x, const std::vector<Contact>& y)
 {
-    return std::equal(x.begin(), x.end(), y.begin(), y.end(),
-                      [](const Contact& a, const Contact& b)
-                      {
-                          return a.a == b.a && a.b == b.b && a.feature == b.feature && a.point == b.point &&
-                                 a.normal == b.normal && a.depth == b.depth;
-                      });
+    return std::equal(
+        x.begin(), x.end(), y.begin(), y.end(),
+        [](const Contact& a, const Contact& b)
+        { return a.a == b.a && a.b == b.b && a.feature == b.feature && a.point == b.point && a.normal == b.normal && a.depth == b.depth; });
 }
 
 /// A ball of radius 0.1 above a level plane.
@@ -192,8 +186,7 @@ TEST_CASE("a standing box keeps its four corners, with the same features, throug
         bodies.orientation[1] = normalized(Quat{1, tilt(), tilt(), tilt()});
         const std::vector<Contact> now = d.look(bodies, shapes);
         REQUIRE(now.size() == 4);
-        if (first.empty())
-            first = now;
+        if (first.empty()) first = now;
         for (std::size_t k = 0; k < 4; ++k)
         {
             CHECK(now[k].feature == first[k].feature);
@@ -271,8 +264,7 @@ TEST_CASE("a plane tilts with its body, and a centre of mass beside the origin i
     const double angle = 0.3;
     ball.bodies.orientation[0] = {std::cos(angle / 2), std::sin(angle / 2), 0, 0};
     ball.bodies.center_B[1] = {0, 0, 0.05};
-    ball.bodies.position[1] = {0, -0.1 * std::sin(angle),
-                               0.1 * std::cos(angle) + 0.05};  // the ball's centre 0.05 below
+    ball.bodies.position[1] = {0, -0.1 * std::sin(angle), 0.1 * std::cos(angle) + 0.05};  // the ball's centre 0.05 below
     ball.bodies.position[1] += rotate(ball.bodies.orientation[0], {0, 0, -1e-3});
     REQUIRE(ball.look().size() == 1);
     CHECK(ball.look()[0].depth == near(1e-3, 1e-12));

@@ -27,13 +27,10 @@ Vec3 reference(const Mat3& K, Vec3 u, double mu, double e, double dj)
         const Vec3 f = rate(u + K * rate(u) * (0.5 * dj));
         const Vec3 next = u + K * f * dj;
         const double w = work + 0.5 * (u.z + next.z) * dj;
-        if (goal >= 0 && w >= goal)
-            return impulse + f * (dj * (goal - work) / (w - work));
+        if (goal >= 0 && w >= goal) return impulse + f * (dj * (goal - work) / (w - work));
         impulse += f * dj, work = w, u = next;
-        if (goal < 0 && u.z >= 0)
-            goal = -e * e * work, work = 0;
-        if (goal == 0)
-            return impulse;
+        if (goal < 0 && u.z >= 0) goal = -e * e * work, work = 0;
+        if (goal == 0) return impulse;
     }
     return {NAN, NAN, NAN};
 }
@@ -44,8 +41,7 @@ Mat3 rod(double angle)
     Bodies b;
     add_body(b, 0, {}, {});
     const double I = 1.0 / 3;
-    add_body(b, 1, {I, I, 1e-4}, {std::sin(angle), 0, std::cos(angle)}, {},
-             {std::cos(angle / 2), 0, std::sin(angle / 2), 0});
+    add_body(b, 1, {I, I, 1e-4}, {std::sin(angle), 0, std::cos(angle)}, {}, {std::cos(angle / 2), 0, std::sin(angle / 2), 0});
     return response::ContactPoint(touch(0, 1, {}, {0, 0, 1}), b).K();
 }
 

@@ -9,10 +9,7 @@ using namespace plab::test;
 
 namespace
 {
-double relative(double got, double want, double scale)
-{
-    return std::fabs(got - want) / std::max(std::fabs(want), scale);
-}
+double relative(double got, double want, double scale) { return std::fabs(got - want) / std::max(std::fabs(want), scale); }
 
 struct Spun
 {
@@ -111,8 +108,7 @@ TEST_CASE("random impacts never gain energy, keep momentum and part at the right
             const Vec3 s{uniform(seed, 0.1, 1), uniform(seed, 0.1, 1), uniform(seed, 0.1, 1)};
             const double m = std::pow(10, uniform(seed, -3, 3));
             const Vec3 I = Vec3{s.y * s.y + s.z * s.z, s.x * s.x + s.z * s.z, s.x * s.x + s.y * s.y} * (m / 3);
-            const std::uint32_t n =
-                add_body(b, m, I, random_vector(seed, 1), random_vector(seed, 5), random_rotation(seed));
+            const std::uint32_t n = add_body(b, m, I, random_vector(seed, 1), random_vector(seed, 5), random_rotation(seed));
             set_spin(b, n, random_vector(seed, 5));
         }
         const Vec3 n = normalized(random_vector(seed, 1));
@@ -121,8 +117,7 @@ TEST_CASE("random impacts never gain energy, keep momentum and part at the right
         const auto spin = [&]
         {
             Vec3 sum;
-            for (std::uint32_t k = 0; k < 2; ++k)
-                sum += cross(b.position[k], b.velocity[k] * b.mass[k]) + b.angular_momentum[k];
+            for (std::uint32_t k = 0; k < 2; ++k) sum += cross(b.position[k], b.velocity[k] * b.mass[k]) + b.angular_momentum[k];
             return sum;
         };
         const double before = total_energy(b);
@@ -133,8 +128,7 @@ TEST_CASE("random impacts never gain energy, keep momentum and part at the right
         REQUIRE(impact.converged);
         const double parting = dot(n, b.velocity_at(1, c[0].point) - b.velocity_at(0, c[0].point));
         CHECK(parting >= -1e-12 * 20);
-        if (closing >= 0)
-            CHECK(c[0].impulse == Vec3{});
+        if (closing >= 0) CHECK(c[0].impulse == Vec3{});
         worst_gain = std::max(worst_gain, (total_energy(b) - before) / before);
         worst_momentum = std::max(worst_momentum, length(momentum() - p) / p_size);
         worst_spin = std::max(worst_spin, length(spin() - L) / (p_size + length(L)));
@@ -178,8 +172,7 @@ TEST_CASE("Newton's cradle: with e = 1 one ball in, one ball out")
     Bodies b;
     std::vector<Contact> c;
     for (std::uint32_t i = 0; i < 5; ++i) add_sphere(b, 1, 0.5, {i * 1.0, 0, 0}, {i == 0 ? 1.0 : 0.0, 0, 0});
-    for (std::uint32_t i = 0; i < 4; ++i)
-        c.push_back(touch(i, i + 1, {i + 0.5, 0, 0}, {1, 0, 0}, 0, 1)), c.back().id = 9 - i;
+    for (std::uint32_t i = 0; i < 4; ++i) c.push_back(touch(i, i + 1, {i + 0.5, 0, 0}, {1, 0, 0}, 0, 1)), c.back().id = 9 - i;
     respond(b, c);
     for (std::uint32_t i = 0; i < 4; ++i) CHECK(b.velocity[i].x == 0);
     CHECK(b.velocity[4].x == 1);
@@ -195,8 +188,7 @@ TEST_CASE("of several impacts at one time the fastest comes first, whatever the 
         add_sphere(b, 1, 1, {2, 0, 0}, {-1, 0, 0});
         std::vector<Contact> c{touch(0, 1, {-1, 0, 0}, {1, 0, 0}, 0, 0.5), touch(1, 2, {1, 0, 0}, {1, 0, 0}, 0, 0.5)};
         c[0].id = 5, c[1].id = swapped ? 3 : 7;
-        if (swapped)
-            std::swap(c[0], c[1]);
+        if (swapped) std::swap(c[0], c[1]);
         CHECK(respond(b, c).iterations == 3);  // left, right, left again
         CHECK(b.velocity[0].x == near(0.046875, 1e-14));
         CHECK(b.velocity[1].x == near(0.515625, 1e-14));
@@ -211,8 +203,7 @@ TEST_CASE("a box that lands flat bounces flat, at Newton's speed and with less e
     add_body(b, 2, {0.3, 0.4, 0.5}, {0, 0, 0.5}, {1, 0, -2});
     std::vector<Contact> c;
     for (const Vec3& p : box_corners({0.5, 0.5, 0.5}))
-        if (p.z < 0)
-            c.push_back(touch(0, 1, {p.x, p.y, 0}, {0, 0, 1}, 0.1, 0.5)), c.back().id = c.size();
+        if (p.z < 0) c.push_back(touch(0, 1, {p.x, p.y, 0}, {0, 0, 1}, 0.1, 0.5)), c.back().id = c.size();
     const double before = total_energy(b);
     const Impact impact = respond(b, c);
     CHECK(impact.converged);

@@ -18,8 +18,7 @@ Trial locate(const resolution::BisectionRows& rows, double step, Gap gap)
     for (;; ++t.iteration)
     {
         resolution::bisect({}, 0, rows, t);
-        if (t.decision != Trial::Decision::Try)
-            return t;
+        if (t.decision != Trial::Decision::Try) return t;
         REQUIRE(t.next > t.begin);
         REQUIRE(t.next < t.end);
         (gap(t.next) > 0 ? t.begin : t.end) = t.next;

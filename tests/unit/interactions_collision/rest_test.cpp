@@ -25,8 +25,7 @@ struct BoxOnPlane
         add_body(b, 1, {1.0 / 6, 1.0 / 6, 1.0 / 6}, {0, 0, 0.5}, v + g * kStep);
         for (const Vec3& p : box_corners({0.5, 0.5, 0.5}))
         {
-            if (p.z > 0)
-                continue;
+            if (p.z > 0) continue;
             c.push_back(touch(0, 1, {p.x, p.y, 0}, {0, 0, 1}, friction));
             c.back().id = c.size(), c.back().resting = true;
         }
@@ -147,14 +146,12 @@ TEST_CASE("random heaps: inside the cone, not closing, friction takes energy")
         std::vector<Contact> c;
         for (int k = 0; k < 3; ++k)
         {
-            c.push_back(touch(0, 1, random_vector(seed, 0.5), normalized(random_vector(seed, 0.4) + Vec3{0, 0, 1}),
-                              uniform(seed, 0, 1)));
+            c.push_back(touch(0, 1, random_vector(seed, 0.5), normalized(random_vector(seed, 0.4) + Vec3{0, 0, 1}), uniform(seed, 0, 1)));
             c.back().id = static_cast<std::uint64_t>(k) + 1;
         }
         const double before = total_energy(b);
         const Impact impact = respond(b, c, ImpactMode::Rest, kStep);
-        if (!impact.converged)
-            continue;  // a wedge that friction locks has no unique answer
+        if (!impact.converged) continue;  // a wedge that friction locks has no unique answer
         CHECK(impact.residual < 1e-10);
         CHECK(total_energy(b) <= before * (1 + 1e-10));
         for (const Contact& k : c)
@@ -162,8 +159,7 @@ TEST_CASE("random heaps: inside the cone, not closing, friction takes energy")
             const double normal = dot(k.impulse, k.normal);
             CHECK(normal >= 0);
             CHECK(length(k.impulse - k.normal * normal) <= k.friction * normal * (1 + 1e-9) + 1e-15);
-            if (k.slip > 1e-8)
-                CHECK(length(k.impulse - k.normal * normal) >= k.friction * normal * (1 - 1e-6));
+            if (k.slip > 1e-8) CHECK(length(k.impulse - k.normal * normal) >= k.friction * normal * (1 - 1e-6));
         }
     }
 }

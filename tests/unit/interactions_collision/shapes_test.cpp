@@ -16,10 +16,7 @@ Collider collider(GeometryKind kind, const Vec3& size = {})
     start_ode();
     return Collider(g);
 }
-Collider hull_of(std::vector<Vec3> vertices)
-{
-    return Collider(mesh_of(std::move(vertices)));
-}
+Collider hull_of(std::vector<Vec3> vertices) { return Collider(mesh_of(std::move(vertices))); }
 
 std::vector<Touch> touches(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
 {
@@ -52,18 +49,15 @@ double brute_depth(const Hull& a, const Pose& X_a, const Hull& b, const Pose& X_
     double least = HUGE_VAL;
     const auto try_axis = [&](const Vec3& n)
     {
-        if (length(n) > 0.5)
-            least = std::min(least, spread(a, X_a, n, 1) + spread(b, X_b, n, -1));
+        if (length(n) > 0.5) least = std::min(least, spread(a, X_a, n, 1) + spread(b, X_b, n, -1));
     };
     for (const Vec3& n : a.normals) try_axis(rotate(X_a.q, n));
     for (const Vec3& n : b.normals) try_axis(-rotate(X_b.q, n));
     for (const auto& e : a.edges)
         for (const auto& f : b.edges)
         {
-            const Vec3 c = cross(rotate(X_a.q, a.vertices[e[1]] - a.vertices[e[0]]),
-                                 rotate(X_b.q, b.vertices[f[1]] - b.vertices[f[0]]));
-            if (length(c) < 1e-9)
-                continue;
+            const Vec3 c = cross(rotate(X_a.q, a.vertices[e[1]] - a.vertices[e[0]]), rotate(X_b.q, b.vertices[f[1]] - b.vertices[f[0]]));
+            if (length(c) < 1e-9) continue;
             try_axis(normalized(c)), try_axis(-normalized(c));
         }
     return least;
@@ -80,8 +74,7 @@ TEST_CASE("sphere and sphere")
         const double depth = uniform(seed, -0.1, 0.3);
         const auto t = touches(a, {{1, 2, 3}, {}}, b, {Vec3{1, 2, 3} + n * (0.8 - depth), random_rotation(seed)});
         REQUIRE(t.size() == (depth > 0 ? 1 : 0));
-        if (t.empty())
-            continue;
+        if (t.empty()) continue;
         CHECK(std::fabs(t[0].depth - depth) < 1e-15);
         CHECK(length(t[0].normal - n) < 1e-14);
         CHECK(length(t[0].point - (Vec3{1, 2, 3} + n * (0.3 - depth / 2))) < 1e-14);
@@ -101,8 +94,7 @@ TEST_CASE("sphere and plane, in either order")
         const auto t = touches(a, S, b, X), back = touches(b, X, a, S);
         REQUIRE(t.size() == (height < 0.25 ? 1 : 0));
         REQUIRE(back.size() == t.size());
-        if (t.empty())
-            continue;
+        if (t.empty()) continue;
         CHECK(std::fabs(t[0].depth - (0.25 - height)) < 2e-15);
         CHECK(length(t[0].normal + rotate(X.q, {0, 0, 1})) < 1e-15);
         CHECK(back[0].depth == t[0].depth);
@@ -113,8 +105,7 @@ TEST_CASE("sphere and plane, in either order")
 TEST_CASE("sphere against box and against the same box as a hull")
 {
     const Vec3 h{0.4, 0.3, 0.2};
-    const Collider s = collider(GeometryKind::Sphere, {0.25, 0, 0}), box = collider(GeometryKind::Box, h),
-                   hull = hull_of(box_corners(h));
+    const Collider s = collider(GeometryKind::Sphere, {0.25, 0, 0}), box = collider(GeometryKind::Box, h), hull = hull_of(box_corners(h));
     std::uint64_t seed = 3;
     int met = 0;
     for (int i = 0; i < 3000; ++i)
@@ -129,12 +120,10 @@ TEST_CASE("sphere against box and against the same box as a hull")
             outside += std::pow(std::max(0.0, d), 2), inside = std::max(inside, d);
         }
         const double depth = 0.25 - (inside > 0 ? std::sqrt(outside) : inside);
-        if (std::fabs(depth) < 1e-12)
-            continue;
+        if (std::fabs(depth) < 1e-12) continue;
         REQUIRE(t.size() == (depth > 0 ? 1 : 0));
         REQUIRE(u.size() == t.size());
-        if (t.empty())
-            continue;
+        if (t.empty()) continue;
         ++met;
         CHECK(std::fabs(t[0].depth - depth) < 2e-15);
         CHECK(std::fabs(u[0].depth - depth) < 5e-15);
@@ -147,8 +136,7 @@ TEST_CASE("sphere against box and against the same box as a hull")
 TEST_CASE("box and hull on a plane: every corner that is below")
 {
     const Vec3 h{0.4, 0.3, 0.2};
-    const Collider plane = collider(GeometryKind::Plane), box = collider(GeometryKind::Box, h),
-                   hull = hull_of(box_corners(h));
+    const Collider plane = collider(GeometryKind::Plane), box = collider(GeometryKind::Box, h), hull = hull_of(box_corners(h));
     std::uint64_t seed = 4;
     for (int i = 0; i < 500; ++i)
     {
@@ -156,14 +144,12 @@ TEST_CASE("box and hull on a plane: every corner that is below")
         const Pose X{P * Vec3{0.2, 0.1, uniform(seed, -0.1, 0.5)}, random_rotation(seed)};
         std::vector<double> below;
         for (const Vec3& c : box_corners(h))
-            if (const double z = (inverse(P) * (X * c)).z; z < 0)
-                below.push_back(-z);
+            if (const double z = (inverse(P) * (X * c)).z; z < 0) below.push_back(-z);
         const auto t = touches(box, X, plane, P), u = touches(plane, P, hull, X);
         REQUIRE(t.size() == below.size());
         for (std::size_t k = 0; k < t.size(); ++k) CHECK(std::fabs(t[k].depth - below[k]) < 2e-15);
         CHECK(std::fabs(deepest(u) - deepest(t)) < 2e-15);
-        if (t.size() > 4)
-            continue;  // of more, a hull keeps those that hold it upright
+        if (t.size() > 4) continue;  // of more, a hull keeps those that hold it upright
         REQUIRE(t.size() == u.size());
         for (std::size_t k = 0; k < t.size(); ++k)
         {
@@ -179,8 +165,7 @@ TEST_CASE("a round mesh on a plane stands on few points that surround it")
 {
     std::vector<Vec3> prism;
     for (int i = 0; i < 100; ++i)
-        for (const double z : {-0.5, 0.5})
-            prism.push_back({std::cos(i * 0.0628318530717958), std::sin(i * 0.0628318530717958), z});
+        for (const double z : {-0.5, 0.5}) prism.push_back({std::cos(i * 0.0628318530717958), std::sin(i * 0.0628318530717958), z});
     const auto t = touches(hull_of(prism), {{0, 0, 0.5 - 1e-6}, {}}, collider(GeometryKind::Plane), {});
     CHECK(t.size() >= 8);
     CHECK(t.size() <= 9);
@@ -205,11 +190,9 @@ TEST_CASE("box and box: depth as by all separating axes")
         const Pose X{{}, random_rotation(seed)}, Y{random_vector(seed, 0.8), random_rotation(seed)};
         const double want = brute_depth(hull_a, X, hull_b, Y);
         const auto t = touches(a, X, b, Y);
-        if (std::fabs(want) < 1e-12)
-            continue;
+        if (std::fabs(want) < 1e-12) continue;
         CHECK(t.empty() == (want < 0));
-        if (want < 0)
-            continue;
+        if (want < 0) continue;
         ++met;
         worst = std::max(worst, std::fabs(deepest(t) - want));
     }
@@ -217,8 +200,7 @@ TEST_CASE("box and box: depth as by all separating axes")
     CHECK(worst < 2e-15);
 }
 
-TEST_CASE(
-    "hulls: touching exactly when some axis says so; the depth is the least one")
+TEST_CASE("hulls: touching exactly when some axis says so; the depth is the least one")
 {
     std::uint64_t seed = 6;
     double worst = 0;
@@ -233,11 +215,9 @@ TEST_CASE(
         const Pose X{{}, random_rotation(seed)}, Y{n * uniform(seed, 0.5, 1.1), random_rotation(seed)};
         const double want = brute_depth(a.hull(), X, *make_hull(points_b), Y);
         const auto t = touches(a, X, b, Y);
-        if (std::fabs(want) < 1e-13)
-            continue;
+        if (std::fabs(want) < 1e-13) continue;
         CHECK(t.empty() == (want < 0));
-        if (want < 0)
-            continue;
+        if (want < 0) continue;
         ++met;
         worst = std::max(worst, std::fabs(deepest(t) - want));
     }
@@ -286,8 +266,7 @@ TEST_CASE("the hull of random points holds them all and is closed")
         REQUIRE(hull.ok());
         double above = 0;
         for (const Vec3& p : points)
-            for (std::size_t f = 0; f < hull->faces.size(); ++f)
-                above = std::max(above, dot(hull->normals[f], p) - hull->offsets[f]);
+            for (std::size_t f = 0; f < hull->faces.size(); ++f) above = std::max(above, dot(hull->normals[f], p) - hull->offsets[f]);
         CHECK(above <= 1e-11);
         CHECK(hull->vertices.size() + hull->faces.size() - 3 * hull->faces.size() / 2 == 2);  // Euler
         CHECK(hull->edges.size() == 3 * hull->faces.size() / 2);

@@ -155,16 +155,15 @@ TEST_CASE("a falling body with quadratic drag reaches its terminal velocity")
     gravity.rows.between[0] = drag.rows.between[0] = {{Facet::Body, 0}};
     gravity.rows.acceleration[0] = {0, 0, 9.81};
     drag.rows.quadratic[0] = 0.01;
-    const auto [v, z] =
-        fall(5, 500,
-             [&](double speed)
-             {
-                 scene.clear();
-                 scene.bodies.velocity[0] = {0, 0, speed};
-                 apply_gravity(gravity.context(), kFirst, gravity.rows, scene.bodies, scene.wrenches);
-                 apply_drag(drag.context(), kFirst, drag.rows, scene.bodies, scene.shafts, scene.wrenches);
-                 return scene.wrenches.force[0].z;
-             });
+    const auto [v, z] = fall(5, 500,
+                             [&](double speed)
+                             {
+                                 scene.clear();
+                                 scene.bodies.velocity[0] = {0, 0, speed};
+                                 apply_gravity(gravity.context(), kFirst, gravity.rows, scene.bodies, scene.wrenches);
+                                 apply_drag(drag.context(), kFirst, drag.rows, scene.bodies, scene.shafts, scene.wrenches);
+                                 return scene.wrenches.force[0].z;
+                             });
     CHECK(std::fabs(v - 28.7023194557054083) < 1e-9);
     CHECK(std::fabs(z - 91.5600402510837169) < 1e-9);
 }

@@ -34,7 +34,8 @@ const Case kCases[] = {
     {"Rolling", "a='a' b='b' semi_axes='0.2 0.2 0.2' on='sphere' radius='0.7' centre='0.02 0.01 -0.03' normal='0 0.6 0.8'"},
     {"Rolling", "a='a' b='b' semi_axes='0.2 0.2 0.2' on='sphere' radius='0.7' inside='true' point='0.9 0.3 0.1'"},
     {"Rolling", "a='a' b='b' semi_axes='0.2 0.2 0.2' on='cylinder' radius='0.7' axis='0 0.6 0.8' point='0.3 0.5 0.1'"},
-    {"Rolling", "b='b' semi_axes='0.2 0.2 0.2' on='cylinder' radius='0.7' inside='true' axis='0 0.6 0.8' normal='1 0 0' parallel='true'", false},
+    {"Rolling", "b='b' semi_axes='0.2 0.2 0.2' on='cylinder' radius='0.7' inside='true' axis='0 0.6 0.8' normal='1 0 0' parallel='true'",
+     false},
 };
 
 }  // namespace

@@ -31,16 +31,14 @@ struct Lab
     std::vector<double> power = std::vector<double>(8, 0.0);
     StepContext context;
 
-    static constexpr Ref kBody0{Facet::Body, 0}, kBody1{Facet::Body, 1}, kShaft0{Facet::Shaft, 0},
-        kShaft1{Facet::Shaft, 1};
+    static constexpr Ref kBody0{Facet::Body, 0}, kBody1{Facet::Body, 1}, kShaft0{Facet::Shaft, 0}, kShaft1{Facet::Shaft, 1};
 
     Lab()
     {
         rows.describe(schema);
         for (ColumnBase* column : schema.columns()) column->resize(1);
         for (const Field& f : schema.fields())
-            if (f.type != FieldType::Opaque && !f.required)
-                f.column->set(0, f.fallback);
+            if (f.type != FieldType::Opaque && !f.required) f.column->set(0, f.fallback);
         for (int i = 0; i < 2; ++i) add_body(), add_shaft();
         wrenches = Wrenches(bodies, shafts);
         wrenches.power = &power;
@@ -87,15 +85,13 @@ struct Lab
     /// The kind and message of the only event, or what is wrong with that.
     std::string only_event() const
     {
-        if (events.all.size() != 1)
-            return std::to_string(events.all.size()) + " events";
+        if (events.all.size() != 1) return std::to_string(events.all.size()) + " events";
         return events.all[0].kind + ": " + events.all[0].message;
     }
     double state(const std::string& name) const
     {
         for (const plab::Entry& e : rows.state[0])
-            if (e.name == name)
-                return std::get<double>(e.value);
+            if (e.name == name) return std::get<double>(e.value);
         return -1e300;
     }
 

@@ -13,8 +13,7 @@ std::string complaint(const std::string& body)
 {
     scripts_lab lab("function drive() " + body + " end");
     const std::string refused = lab.prepare();
-    if (!refused.empty())
-        return refused;
+    if (!refused.empty()) return refused;
     lab.drive();
     return lab.events.all.empty() ? "" : lab.events.all.back().message;
 }
@@ -55,8 +54,7 @@ TEST_CASE("string")
         assert(#string.format("%.99f", 1e308) == 409)
         assert(tostring({}) == "table" and tostring(print) == "function" and tostring(state) == "state")
         assert(tostring(1) == "1" and tostring(1.0) == "1.0" and tostring(nil) == "nil" and "a" .. 1 == "a1")
-        assert(tonumber("0x10") == 16 and tonumber(" 1e2 ") == 100 and tonumber("1x") == nil and tonumber({}) == nil))lua") ==
-          "");
+        assert(tonumber("0x10") == 16 and tonumber(" 1e2 ") == 100 and tonumber("1x") == nil and tonumber({}) == nil))lua") == "");
     CHECK(complaint("string.char(256)") == "code:1: bad argument #1 to 'char' (must be a byte, 0 to 255)");
     CHECK(complaint("return '10' + 1") == "code:1: attempt to perform arithmetic on a string value (constant '10')");
 }
@@ -69,8 +67,7 @@ TEST_CASE("table")
         assert(table.concat(t, ",") == "0,1,2,3,4" and table.concat(t, "", 2, 3) == "12" and table.concat({}) == "")
         assert(table.remove(t) == 4 and table.remove(t, 1) == 0 and #t == 3 and table.remove({}) == nil)
         local a, b, c = table.unpack(t) assert(a == 1 and b == 2 and c == 3)
-        assert(select("#", table.unpack({}, 1, 3)) == 3 and select(-1, 1, 2, 3) == 3 and select(2, 1, 2) == 2))lua") ==
-          "");
+        assert(select("#", table.unpack({}, 1, 3)) == 3 and select(-1, 1, 2, 3) == 3 and select(2, 1, 2) == 2))lua") == "");
     CHECK(complaint("table.insert({}, 3, 1)") == "code:1: bad argument #2 to 'insert' (position out of the list)");
     CHECK(complaint("table.concat({{}})") == "code:1: table.concat joins texts and numbers; element 1 is a table");
 }
@@ -87,8 +84,7 @@ TEST_CASE("errors")
         ok, e = xpcall(twice, error, 5) assert(ok and e == 5)
         ok, e = pcall(assert, false, "m") assert(e == "m")
         ok, e = pcall(assert, nil) assert(e == "assertion failed")
-        assert(type(1) == "number" and type("") == "string" and type(vec(0, 0, 0)) == "vec" and type(nil) == "nil"))lua") ==
-          "");
+        assert(type(1) == "number" and type("") == "string" and type(vec(0, 0, 0)) == "vec" and type(nil) == "nil"))lua") == "");
     CHECK(complaint("error('a', 0)") == "a");
     CHECK(complaint("local x = nil; x.y = 1") == "code:1: attempt to index a nil value (local 'x')");
 }

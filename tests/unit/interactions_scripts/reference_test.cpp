@@ -41,18 +41,11 @@ void advance(Lab& lab, double h, const Vec3& gravity)
 void* operator new(std::size_t n)
 {
     ++allocations;
-    if (void* p = std::malloc(n ? n : 1))
-        return p;
+    if (void* p = std::malloc(n ? n : 1)) return p;
     throw std::bad_alloc();
 }
-void operator delete(void* p) noexcept
-{
-    std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept
-{
-    std::free(p);
-}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 TEST_CASE("B3: quadratic drag by a script")
 {

@@ -31,12 +31,10 @@ const Attack kAttacks[] = {
     {"pcall of endless errors", "while true do pcall(error) end", kBudget},
     {"in xpcall's handler", "xpcall(error, function() while true do end end)", kBudget},
     {"xpcall whose handler fails", "xpcall(error, function() error('again') end)", "script.error: code:1: again"},
-    {"over budget with a handler", "xpcall(function() while true do end end, function() while true do end end)",
-     kBudget},
+    {"over budget with a handler", "xpcall(function() while true do end end, function() while true do end end)", kBudget},
     {"tail calls", "local function f() return f() end f()", kBudget},
     {"mutual tail calls", "local g local function f() return g() end g = function() return f() end f()", kBudget},
-    {"growing arguments", "local function f(...) return f(1, ...) end f()",
-     "script.error: code:1: more than 250 variable arguments"},
+    {"growing arguments", "local function f(...) return f(1, ...) end f()", "script.error: code:1: more than 250 variable arguments"},
     {"deep recursion", "local function f() return 1 + f() end f()", "script."},
     {"deep recursion caught", "local function f() return 1 + f() end while true do pcall(f) end", "script."},
     {"deep pcall", "local function f() pcall(f) end while true do f() end", "script.over_budget"},
@@ -45,8 +43,7 @@ const Attack kAttacks[] = {
     {"rep bombs caught", "while true do pcall(string.rep, 'x', 1e9) end", "script.over_budget"},
     {"doubling", "local s = 'x' while true do s = s .. s end", kText},
     {"doubling caught", "while true do pcall(function() local s = 'x' while true do s = s .. s end end) end", kText},
-    {"concat bomb", "local t = {} for i = 1, 1000 do t[i] = ('x'):rep(1000) end table.concat(t)",
-     "script.error: code:1: a text of"},
+    {"concat bomb", "local t = {} for i = 1, 1000 do t[i] = ('x'):rep(1000) end table.concat(t)", "script.error: code:1: a text of"},
     {"format width", "string.format('%99999d', 1)", "script.error: code:1: string.format knows"},
     {"format precision", "string.format('%.99999f', 1)", "script.error: code:1: string.format knows"},
     {"format width of text", "string.format('%99999s', 'x')", "script.error: code:1: string.format knows"},
@@ -68,8 +65,7 @@ const Attack kAttacks[] = {
      "while true do i = i + 1 t['k' .. i] = nil t['n' .. i] = 1 end",
      "script."},
     {"colliding keys", "local t = {} for i = 1, 20000 do t[i * 65535.5] = i end while true do t[1] = 1 end", "script."},
-    {"slow comparison", "local a = ('x'):rep(4096) local b = ('x'):rep(4096) while true do local c = a < b end",
-     kBudget},
+    {"slow comparison", "local a = ('x'):rep(4096) local b = ('x'):rep(4096) while true do local c = a < b end", kBudget},
     {"slow conversion", "local a = ('0'):rep(4096) while true do local c = tonumber(a) end", kBudget},
     {"sort with an endless order", "table.sort({1, 2}, function() while true do end end)", kBudget},
     {"sort without order",
@@ -81,16 +77,14 @@ const Attack kAttacks[] = {
     {"insert in front", "local t = {} while true do table.insert(t, 1, 0) end", kBudget},
     {"unpack bomb", "table.unpack({}, 1, 1e8)", "script.error: code:1: bad argument #3 to 'unpack' (at most 200"},
     {"unpack overflow", "table.unpack({}, math.tointeger(-2^63), 2^63 - 1 | 0)", "script.error: code:1:"},
-    {"pairs of many", "local t = {} for i = 1, 5000 do t[i] = i end while true do for k in pairs(t) do end end",
-     "script.over_budget"},
+    {"pairs of many", "local t = {} for i = 1, 5000 do t[i] = i end while true do for k in pairs(t) do end end", "script.over_budget"},
     {"event flood", "while true do emit('flood', ('x'):rep(4000)) end", "flood"},
     {"change flood", "while true do set('a', 'b', ('x'):rep(4000)) end", "script.over_budget"},
     {"table as error", "error({})", "script.error: the error is a table, not a text"},
     {"nil as error", "error()", "script.error: the error is a nil, not a text"},
     {"error that is no UTF-8", "error('\\xff', 0)", "script.error: the error's text is not UTF-8"},
     {"emit that is no UTF-8", "emit('a', '\\xff')", "script.error: code:1: bad argument #2 to 'emit' (must be UTF-8"},
-    {"closing a value without __close", "local x <close> = {}",
-     "script.error: code:1: variable 'x' got a non-closable"},
+    {"closing a value without __close", "local x <close> = {}", "script.error: code:1: variable 'x' got a non-closable"},
     {"a method on a foreign object", "driven.add_torque(vec(1, 2, 3), 1)",
      "script.error: code:1: bad argument #1 to 'add_torque' (participant expected, got vec)"},
     {"a method on a text", "local f = vec(1, 2, 3).dot f('x', 'y')",
@@ -113,8 +107,7 @@ TEST_CASE("every attack ends soon, in its event")
         lab.drive();
         const double seconds = seconds_since(start);
         CHECK(seconds < 1.0);  // without a sanitizer and on a quiet machine: far less, see README.md
-        if (seconds > 0.02)
-            MESSAGE(attack.name << ": " << seconds * 1e3 << " ms");
+        if (seconds > 0.02) MESSAGE(attack.name << ": " << seconds * 1e3 << " ms");
         CHECK(lab.rows.quarantined[0]);
         CHECK(lab.changes.empty());
         REQUIRE(!lab.events.all.empty());
@@ -168,8 +161,8 @@ TEST_CASE("what could reach the outside, the clock or an address is not there")
 
 TEST_CASE("the string metatable and the libraries are out of reach")
 {
-    for (const char* code : {"string.rep = nil", "math.pi = 3", "table.x = 1", "between[1] = 2",
-                             "table.insert(math, 1)", "table.sort(string)", "table.remove(between)"})
+    for (const char* code : {"string.rep = nil", "math.pi = 3", "table.x = 1", "between[1] = 2", "table.insert(math, 1)",
+                             "table.sort(string)", "table.remove(between)"})
     {
         CAPTURE(std::string(code));
         Lab lab(std::string(code) + " function drive() end");
@@ -191,8 +184,7 @@ TEST_CASE("deeply nested source ends the parser, not the process")
         for (int i = 0; i < 100000; ++i) code += close;
         return code;
     };
-    for (const auto& [open, close] :
-         {std::pair{"(", ")"}, {"{", "}"}, {"- ", ""}, {"f(", ")"}, {"function() return ", " end"}})
+    for (const auto& [open, close] : {std::pair{"(", ")"}, {"{", "}"}, {"- ", ""}, {"f(", ")"}, {"function() return ", " end"}})
     {
         CAPTURE(std::string(open));
         Lab lab(nested(open, "1", close));
@@ -200,8 +192,8 @@ TEST_CASE("deeply nested source ends the parser, not the process")
         const std::string error = lab.prepare();
         CHECK(seconds_since(start) < 1.0);
         CAPTURE(error);
-        const bool limited = error.find("C stack overflow") != std::string::npos ||
-                             error.find("too many") != std::string::npos || error.find("overflow") != std::string::npos;
+        const bool limited = error.find("C stack overflow") != std::string::npos || error.find("too many") != std::string::npos ||
+                             error.find("overflow") != std::string::npos;
         CHECK(limited);
     }
 }

@@ -17,8 +17,7 @@ std::string drive_twice(const std::string& code)
     Lab lab(code);
     lab.rows.state[0] = {{"n", 0.0}};
     const std::string refused = lab.prepare();
-    if (!refused.empty())
-        return refused;
+    if (!refused.empty()) return refused;
     lab.step();
     lab.step();
     return lab.events.all.empty() ? std::to_string(static_cast<int>(lab.state("n"))) : lab.events.all[0].message;
@@ -30,8 +29,7 @@ TEST_CASE("values live across steps in declared state only")
 {
     CHECK(drive_twice("function drive() state.n = state.n + 1 end") == "2");
     const std::string kFrozen = "values that live across steps belong in `state`";
-    CHECK(drive_twice("local n = 0 function drive() n = n + 1 end") ==
-          "code: local 'n' was changed by drive: " + kFrozen);
+    CHECK(drive_twice("local n = 0 function drive() n = n + 1 end") == "code: local 'n' was changed by drive: " + kFrozen);
     CHECK(drive_twice("function drive() m = 1 end") == "code:1: global 'm' cannot be assigned: " + kFrozen);
     CHECK(drive_twice("m = 0 function drive() m = m + 1 end") == "code:1: global 'm' cannot be assigned: " + kFrozen);
     CHECK(drive_twice("function drive() drive = nil end") == "code:1: global 'drive' cannot be assigned: " + kFrozen);
@@ -40,32 +38,25 @@ TEST_CASE("values live across steps in declared state only")
     CHECK(drive_twice("t = {{}} function drive() table.insert(t[1], 1) end") == kTable);
     CHECK(drive_twice("local t = {} t[t] = t local f = {[t] = t} function drive() f[t][1] = 1 end") == kTable);
     CHECK(drive_twice("local function counter() local k = 0 return function() k = k + 1 end end "
-                      "local tick = counter() function drive() tick() end") ==
-          "code: local 'k' was changed by drive: " + kFrozen);
+                      "local tick = counter() function drive() tick() end") == "code: local 'k' was changed by drive: " + kFrozen);
     CHECK(drive_twice("local n = 0 local t = {f = function() n = n + 1 end} function drive() t.f() end") ==
           "code: local 'n' was changed by drive: " + kFrozen);
-    CHECK(drive_twice("local s = 'a' function drive() s = s .. 'a' end") ==
-          "code: local 's' was changed by drive: " + kFrozen);
+    CHECK(drive_twice("local s = 'a' function drive() s = s .. 'a' end") == "code: local 's' was changed by drive: " + kFrozen);
     CHECK(drive_twice("local t function drive() t = {} end") == "code: local 't' was changed by drive: " + kFrozen);
-    CHECK(drive_twice("local t = {} function drive() t = {} end") ==
-          "code: local 't' was changed by drive: " + kFrozen);
+    CHECK(drive_twice("local t = {} function drive() t = {} end") == "code: local 't' was changed by drive: " + kFrozen);
     CHECK(drive_twice("local n = 0 function drive() pcall(function() n = 1 end) end") ==
           "code: local 'n' was changed by drive: " + kFrozen);
     CHECK(drive_twice("function drive() _ENV = {} end") == "code: local '_ENV' was changed by drive: " + kFrozen);
-    CHECK(drive_twice("local _ENV = {state = state} function drive() x = 1 end") ==
-          "neither drive(step) nor force(t, state) is defined");
-    CHECK(drive_twice("local e = _ENV function drive() e.x = 1 end") ==
-          "code:1: global 'x' cannot be assigned: " + kFrozen);
+    CHECK(drive_twice("local _ENV = {state = state} function drive() x = 1 end") == "neither drive(step) nor force(t, state) is defined");
+    CHECK(drive_twice("local e = _ENV function drive() e.x = 1 end") == "code:1: global 'x' cannot be assigned: " + kFrozen);
     CHECK(drive_twice("local next = pairs({1, 2, 3}) function drive() state.n = next() end") ==
           "what pairs returns cannot be kept: call pairs where the loop is");
-    CHECK(drive_twice("state.n = 1 function drive() end") ==
-          "line 1: state can be used in drive and force, not while the code is loaded");
+    CHECK(drive_twice("state.n = 1 function drive() end") == "line 1: state can be used in drive and force, not while the code is loaded");
 }
 
 TEST_CASE("what does not outlive a call is free: locals, closures and tables made in it")
 {
-    CHECK(drive_twice("function drive() local n = 0 local function up() n = n + 1 end up() up() state.n = n end") ==
-          "2");
+    CHECK(drive_twice("function drive() local n = 0 local function up() n = n + 1 end up() up() state.n = n end") == "2");
     CHECK(drive_twice("local k = 3 local t = {1, 2, {4}} local function f(x) return x * k + t[3][1] + #t end "
                       "function drive() local u = {} u.x = f(1) state.n = u.x end") == "10");
     CHECK(drive_twice("local n = 0 function drive() n = n + 1 n = n - 1 state.n = 5 end") == "5");
@@ -120,8 +111,7 @@ TEST_CASE("a memento is the columns: a restored script goes on as it did")
     for (int i = 0; i < 5; ++i) lab.step();
     ByteWriter saved;
     for (const Field& f : lab.schema.fields())
-        if (f.kind == FieldKind::State)
-            f.column->save(0, saved);
+        if (f.kind == FieldKind::State) f.column->save(0, saved);
     const auto go_on = [&]
     {
         for (int i = 0; i < 5; ++i) lab.step();
@@ -131,8 +121,7 @@ TEST_CASE("a memento is the columns: a restored script goes on as it did")
     {
         ByteReader in(saved.bytes());
         for (const Field& f : lab.schema.fields())
-            if (f.kind == FieldKind::State)
-                f.column->load(0, in);
+            if (f.kind == FieldKind::State) f.column->load(0, in);
     };
     const Entries first = go_on();
     restore();
@@ -248,8 +237,7 @@ TEST_CASE("rows run on different threads at once, and come out as on one")
     {
         Lab lab(code);
         lab.rows.state[0] = {{"x", 0.0}}, lab.owners[0] = owner;
-        if (!lab.prepare().empty())
-            return -1.0;
+        if (!lab.prepare().empty()) return -1.0;
         for (int i = 0; i < 200; ++i) lab.step();
         return lab.state("x");
     };

@@ -44,8 +44,8 @@ TEST_CASE("parts that are left out are made with stable ids")
 
 TEST_CASE("a part can be named by type, and its fields set with a dot")
 {
-    const model::SceneSpec s = compiled(scene(collision(
-        {{"response", "Response/Impulse"}, {"response.restitution", "0.5"}, {"resolution.tolerance", "1 us"}})));
+    const model::SceneSpec s =
+        compiled(scene(collision({{"response", "Response/Impulse"}, {"response.restitution", "0.5"}, {"resolution.tolerance", "1 us"}})));
     CHECK(field_of(s, "c.response", "restitution") == "0.5");
     CHECK(field_of(s, "c.resolution", "tolerance") == "1e-06");
     const model::SceneSpec ball = compiled(scene({body("r", {{"shape", "Shape/Sphere"}, {"shape.radius", "2 cm"}})}));
@@ -60,8 +60,7 @@ TEST_CASE("a part that the author wrote is used")
     CHECK(role_of(by_id, "c", "response") == "c.response");
     CHECK_FALSE(by_id.find("c.response")->generated);
     CHECK(field_of(by_id, "c.response", "restitution") == "0.5");
-    const model::SceneSpec by_name =
-        compiled(scene(collision({{"response", "soft"}}, {component("soft", "Response/Impulse")})));
+    const model::SceneSpec by_name = compiled(scene(collision({{"response", "soft"}}, {component("soft", "Response/Impulse")})));
     CHECK(role_of(by_name, "c", "response") == "soft");
     CHECK_FALSE(by_name.find("c.response"));
     const model::SceneSpec typed =
@@ -79,20 +78,15 @@ TEST_CASE("parts that are refused")
           "scene.xml:9:1: c.response (Response/Impulse): restitution must be at most 1, not 2");
     CHECK(errors_of(collision({{"response", "Resolution/Bisection"}})) ==
           c + "role response needs a component of type Response/..., but 'c.response' is Resolution/Bisection");
-    CHECK(errors_of(collision({{"answer.restitution", "1"}})).find("unknown attribute 'answer.restitution'") !=
-          std::string::npos);
-    CHECK(errors_of(collision({{"response", "soft"}, {"response.restitution", "1"}},
-                              {component("soft", "Response/Impulse")})) ==
+    CHECK(errors_of(collision({{"answer.restitution", "1"}})).find("unknown attribute 'answer.restitution'") != std::string::npos);
+    CHECK(errors_of(collision({{"response", "soft"}, {"response.restitution", "1"}}, {component("soft", "Response/Impulse")})) ==
           c + "'response.restitution': 'soft' is no part of this component, set it there");
-    CHECK(errors_of(collision({{"response.restitution", "1"}},
-                              {component("c.response", "Response/Impulse", {{"restitution", "0"}}, 12)})) ==
-          "scene.xml:9:1: c.response (Response/Impulse): restitution is given twice, here and at scene.xml:12:1");
     CHECK(
-        errors_of(
-            collision({{"response", "Response/Impulse"}}, {component("c.response", "Resolution/Bisection", {}, 12)}))
-            .find(
-                "response is 'Response/Impulse' here, but component 'c.response' is of type 'Resolution/Bisection'") !=
-        std::string::npos);
+        errors_of(collision({{"response.restitution", "1"}}, {component("c.response", "Response/Impulse", {{"restitution", "0"}}, 12)})) ==
+        "scene.xml:9:1: c.response (Response/Impulse): restitution is given twice, here and at scene.xml:12:1");
+    CHECK(errors_of(collision({{"response", "Response/Impulse"}}, {component("c.response", "Resolution/Bisection", {}, 12)}))
+              .find("response is 'Response/Impulse' here, but component 'c.response' is of type 'Resolution/Bisection'") !=
+          std::string::npos);
     CHECK(errors_of({body("r", {{"shape.radius", "1"}})}) ==
           "scene.xml:5:1: r (State/RigidBody): 'shape.radius' needs a part to set: give shape the type of one");
 }
@@ -139,15 +133,13 @@ TEST_CASE("nested components that fit more than one place")
 {
     ComponentNode two = body("two");
     two.children = {component("p", "Shape/Sphere", {}, 6), component("q", "Shape/Sphere", {}, 7)};
-    CHECK(errors_of({two}) ==
-          "scene.xml:7:1: two (State/RigidBody): 'p' and 'q' both fit role shape: name one of them");
+    CHECK(errors_of({two}) == "scene.xml:7:1: two (State/RigidBody): 'p' and 'q' both fit role shape: name one of them");
     two.attributes.push_back(text("shape", "q"));
     CHECK(role_of(compiled(scene({two})), "two", "shape") == "q");
 
     ComponentNode gear = component("g", "Constraint/AngularVelocity/Graph", {}, 4);
     gear.children = {component("p", "State/Shaft", {}, 5), component("q", "State/Shaft", {}, 6)};
-    CHECK(errors_of({gear}).find("'p' fits the roles 'driver' and 'driven': name it in one of them") !=
-          std::string::npos);
+    CHECK(errors_of({gear}).find("'p' fits the roles 'driver' and 'driven': name it in one of them") != std::string::npos);
     gear.attributes = {text("driver", "p")};
     CHECK(role_of(compiled(scene({gear})), "g", "driven") == "q");
     gear.attributes.clear();
@@ -164,16 +156,13 @@ TEST_CASE("nested components that fit more than one place")
 TEST_CASE("in an object, the only shape is the only state's")
 {
     CHECK(role_of(compiled(scene({group("ball", {body("s"), component("f", "Shape/Sphere")})})), "s", "shape") == "f");
-    CHECK(
-        role_of(compiled(scene({component("mesh", "Shape/Sphere"), group("ball", {shares("f", {"mesh"}), body("s")})})),
-                "s", "shape") == "mesh");
-    CHECK(role_of(compiled(scene(
-                      {group("ball", {body("s"), component("f", "Shape/Sphere"), component("g", "Shape/Sphere")})})),
-                  "s", "shape") == "-");
-    CHECK(role_of(compiled(scene({group("ball", {body("s"), body("t"), component("f", "Shape/Sphere")})})), "s",
+    CHECK(role_of(compiled(scene({component("mesh", "Shape/Sphere"), group("ball", {shares("f", {"mesh"}), body("s")})})), "s", "shape") ==
+          "mesh");
+    CHECK(role_of(compiled(scene({group("ball", {body("s"), component("f", "Shape/Sphere"), component("g", "Shape/Sphere")})})), "s",
                   "shape") == "-");
-    CHECK(role_of(compiled(scene({group("ball", {body("s", {{"shape", "h"}}), component("f", "Shape/Sphere")}),
-                                  component("h", "Shape/Sphere")})),
+    CHECK(role_of(compiled(scene({group("ball", {body("s"), body("t"), component("f", "Shape/Sphere")})})), "s", "shape") == "-");
+    CHECK(role_of(compiled(scene(
+                      {group("ball", {body("s", {{"shape", "h"}}), component("f", "Shape/Sphere")}), component("h", "Shape/Sphere")})),
                   "s", "shape") == "h");
 }
 
@@ -181,13 +170,10 @@ TEST_CASE("long and short form say the same")
 {
     ComponentNode c = component("c", "CDetection/Simple");
     c.parameters = {reference("between", {"b", "a"}), text("response", "c.response")};
-    c.children = {component("c.response", "Response/Impulse"),
-                  component("c.resolution", "Resolution/Bisection", {{"tolerance", "1e-6"}})};
+    c.children = {component("c.response", "Response/Impulse"), component("c.resolution", "Resolution/Bisection", {{"tolerance", "1e-6"}})};
     c.children[0].parameters = {text("restitution", "1/2")};
-    const model::SceneSpec longer =
-        compiled(scene({body("a"), body("b"), c, component("solver", "Solver/Automatic")}));
-    const model::SceneSpec shorter =
-        compiled(scene(collision({{"response.restitution", "0.5"}, {"resolution.tolerance", "1 us"}})));
+    const model::SceneSpec longer = compiled(scene({body("a"), body("b"), c, component("solver", "Solver/Automatic")}));
+    const model::SceneSpec shorter = compiled(scene(collision({{"response.restitution", "0.5"}, {"resolution.tolerance", "1 us"}})));
     for (const model::ComponentSpec& spec : shorter.components)
     {
         const model::ComponentSpec* other = longer.find(spec.id);

@@ -10,14 +10,8 @@ using model::ComponentNode;
 namespace
 {
 
-ComponentNode body(const std::string& id)
-{
-    return component(id, "State/RigidBody", {{"mass", "1"}});
-}
-ComponentNode shaft(const std::string& id)
-{
-    return component(id, "State/Shaft");
-}
+ComponentNode body(const std::string& id) { return component(id, "State/RigidBody", {{"mass", "1"}}); }
+ComponentNode shaft(const std::string& id) { return component(id, "State/Shaft"); }
 ComponentNode gear(const Texts& attributes, std::uint32_t line = 9)
 {
     return component("g", "Constraint/AngularVelocity/Graph", attributes, line);
@@ -40,15 +34,14 @@ TEST_CASE("ids are separated by blanks, and members stand in id order")
 
 TEST_CASE("an id that holds blanks is one id")
 {
-    const model::SceneSpec s =
-        compiled(scene({shaft("big wheel"), shaft("a"), gear({{"driver", "big wheel"}, {"driven", "a"}})}));
+    const model::SceneSpec s = compiled(scene({shaft("big wheel"), shaft("a"), gear({{"driver", "big wheel"}, {"driven", "a"}})}));
     CHECK(role_of(s, "g", "driver") == "big wheel");
 }
 
 TEST_CASE("everyone: all that fit, but the component itself")
 {
-    const model::SceneSpec s = compiled(
-        scene({collide("*"), body("b"), shaft("s"), body("a"), component("m", "Manager/Any", {{"parts", "*"}})}));
+    const model::SceneSpec s =
+        compiled(scene({collide("*"), body("b"), shaft("s"), body("a"), component("m", "Manager/Any", {{"parts", "*"}})}));
     CHECK(role_of(s, "c", "between") == "* a b");
     CHECK(role_of(s, "m", "parts") == "* a b c c.resolution c.response s solver");
     CHECK(role_of(compiled(scene({collide("*")})), "c", "between") == "* ");
@@ -60,31 +53,27 @@ TEST_CASE("everyone: all that fit, but the component itself")
 TEST_CASE("a group stands for all inside it that fit, an object for the only one")
 {
     const model::SceneSpec s =
-        compiled(scene({group("balls", {body("b"), group("more", {body("a"), component("s", "Shape/Sphere")})}),
-                        shares("some", {"a", "x"}), body("x"), collide("balls x"),
-                        component("d", "CDetection/Simple", {{"between", "some"}})}));
+        compiled(scene({group("balls", {body("b"), group("more", {body("a"), component("s", "Shape/Sphere")})}), shares("some", {"a", "x"}),
+                        body("x"), collide("balls x"), component("d", "CDetection/Simple", {{"between", "some"}})}));
     CHECK(role_of(s, "c", "between") == "a b x");
     CHECK(role_of(s, "d", "between") == "a x");
     CHECK(s.find("some")->group == std::vector<std::string>{"a", "x"});
     // Twice inside one group is once.
-    const model::SceneSpec twice =
-        compiled(scene({group("balls", {body("a"), body("b"), shares("pair", {"a", "b"})}), collide("balls")}));
+    const model::SceneSpec twice = compiled(scene({group("balls", {body("a"), body("b"), shares("pair", {"a", "b"})}), collide("balls")}));
     CHECK(role_of(twice, "c", "between") == "a b");
-    const model::SceneSpec one = compiled(scene({group("motor", {shaft("axle"), component("form", "Shape/Sphere")}),
-                                                 shaft("b"), gear({{"driver", "motor"}, {"driven", "b"}})}));
+    const model::SceneSpec one = compiled(scene(
+        {group("motor", {shaft("axle"), component("form", "Shape/Sphere")}), shaft("b"), gear({{"driver", "motor"}, {"driven", "b"}})}));
     CHECK(role_of(one, "g", "driver") == "axle");
-    CHECK(errors_of(
-              {group("motor", {shaft("p"), shaft("q")}), shaft("b"), gear({{"driver", "motor"}, {"driven", "b"}})}) ==
+    CHECK(errors_of({group("motor", {shaft("p"), shaft("q")}), shaft("b"), gear({{"driver", "motor"}, {"driven", "b"}})}) ==
           kGear + "role driver takes one participant, and 'motor' holds 2 that fit ('p' and 'q'): name one of them");
-    CHECK(errors_of({group("motor", {component("form", "Shape/Sphere")}), shaft("b"),
-                     gear({{"driver", "motor"}, {"driven", "b"}})}) ==
+    CHECK(errors_of({group("motor", {component("form", "Shape/Sphere")}), shaft("b"), gear({{"driver", "motor"}, {"driven", "b"}})}) ==
           kGear + "role driver needs a shaft, and 'motor' holds none");
 }
 
 TEST_CASE("a compref is the component that it refers to")
 {
-    const model::SceneSpec s = compiled(scene({shaft("a"), shares("same", {"a"}), shares("again", {"same"}), shaft("b"),
-                                               gear({{"driver", "again"}, {"driven", "b"}})}));
+    const model::SceneSpec s = compiled(
+        scene({shaft("a"), shares("same", {"a"}), shares("again", {"same"}), shaft("b"), gear({{"driver", "again"}, {"driven", "b"}})}));
     CHECK(role_of(s, "g", "driver") == "a");
     CHECK(s.find("again")->alias_of == "a");
     CHECK(s.find("again")->type.empty());
@@ -94,12 +83,10 @@ TEST_CASE("participants of the wrong kind")
 {
     CHECK(errors_of({body("a"), shaft("b"), gear({{"driver", "a"}, {"driven", "b"}})}) ==
           kGear + "role driver needs a shaft, but 'a' is State/RigidBody, a body");
-    CHECK(errors_of(
-              {shaft("a"), component("r", "Response/Impulse"), component("x", "State/Shaft", {{"solver", "r"}}, 9)}) ==
+    CHECK(errors_of({shaft("a"), component("r", "Response/Impulse"), component("x", "State/Shaft", {{"solver", "r"}}, 9)}) ==
           "scene.xml:9:1: x (State/Shaft): role solver needs a component of type Solver/..., but 'r' is "
           "Response/Impulse");
-    CHECK(errors_of({component("s", "Script/Lua", {{"code", "x"}, {"target", "r"}}, 9),
-                     component("r", "Response/Impulse")}) ==
+    CHECK(errors_of({component("s", "Script/Lua", {{"code", "x"}, {"target", "r"}}, 9), component("r", "Response/Impulse")}) ==
           "scene.xml:9:1: s (Script/Lua): role target needs a body or a shaft, but 'r' is Response/Impulse");
 }
 
@@ -116,14 +103,12 @@ TEST_CASE("dangling references name the nearest ids")
 TEST_CASE("how many take part")
 {
     CHECK(errors_of({shaft("b"), gear({{"driven", "b"}})}) == kGear + "driver is missing: name a shaft");
-    CHECK(errors_of({shaft("b"), gear({{"driver", ""}, {"driven", "b"}})}) ==
-          kGear + "driver names nobody: give ids, or leave it out");
+    CHECK(errors_of({shaft("b"), gear({{"driver", ""}, {"driven", "b"}})}) == kGear + "driver names nobody: give ids, or leave it out");
     CHECK(errors_of({shaft("a"), shaft("b"), shaft("c"), gear({{"driver", "a b"}, {"driven", "c"}})}) ==
           kGear + "role driver takes one participant, has 2");
     CHECK(errors_of({body("a"), collide("a")}) == kCollide + "role between needs at least 2 participants, has 1");
     CHECK(errors_of({body("a"), body("b"), collide("a b a")}) == kCollide + "role between names 'a' twice");
-    CHECK(errors_of({group("all", {body("a"), body("b")}), collide("all a")}) ==
-          kCollide + "role between names 'a' twice");
+    CHECK(errors_of({group("all", {body("a"), body("b")}), collide("all a")}) == kCollide + "role between names 'a' twice");
     CHECK(errors_of({shaft("a"), shaft("b"), gear({{"driver", "a"}, {"driver", "b"}, {"driven", "b"}})}) ==
           kGear + "driver is given twice, here and at scene.xml:9:1");
 }
@@ -142,18 +127,14 @@ TEST_CASE("nobody takes part in itself, directly or around a corner")
 {
     CHECK(errors_of({component("m", "Manager/Any", {{"parts", "m"}}, 3)}) ==
           "scene.xml:3:1: m (Manager/Any): role parts: a component cannot be its own participant");
-    CHECK(errors_of({component("m", "Manager/Any", {{"parts", "n"}}, 3),
-                     component("n", "Manager/Any", {{"parts", "o"}}, 4),
+    CHECK(errors_of({component("m", "Manager/Any", {{"parts", "n"}}, 3), component("n", "Manager/Any", {{"parts", "o"}}, 4),
                      component("o", "Manager/Any", {{"parts", "m"}}, 5)}) ==
           "scene.xml:3:1: m (Manager/Any): circular reference: 'm' -> 'n' -> 'o' -> 'm'");
-    CHECK(errors_of(
-              {component("p", "Shape/Placed", {{"of", "q"}}, 3), component("q", "Shape/Placed", {{"of", "p"}}, 4)}) ==
+    CHECK(errors_of({component("p", "Shape/Placed", {{"of", "q"}}, 3), component("q", "Shape/Placed", {{"of", "p"}}, 4)}) ==
           "scene.xml:3:1: p (Shape/Placed): circular reference: 'p' -> 'q' -> 'p'");
-    CHECK(errors_of({shares("x", {"y"}, 3), shares("y", {"x"}, 4)}) ==
-          "scene.xml:3:1: x: circular reference: 'x' -> 'y' -> 'x'");
+    CHECK(errors_of({shares("x", {"y"}, 3), shares("y", {"x"}, 4)}) == "scene.xml:3:1: x: circular reference: 'x' -> 'y' -> 'x'");
     CHECK(errors_of({shares("x", {"x"}, 3)}) == "scene.xml:3:1: x: circular reference: 'x' -> 'x'");
-    CHECK(errors_of({group("x", {shares("y", {"x"}, 4)}, 3)}) ==
-          "scene.xml:3:1: x: circular reference: 'x' -> 'y' -> 'x'");
+    CHECK(errors_of({group("x", {shares("y", {"x"}, 4)}, 3)}) == "scene.xml:3:1: x: circular reference: 'x' -> 'y' -> 'x'");
 }
 
 TEST_CASE("a chain of a hundred thousand references is followed without a stack")
@@ -175,8 +156,7 @@ TEST_CASE("an unknown type is complained about once, not where it is referred to
 
 TEST_CASE("participants of a scene that is there already")
 {
-    const model::SceneSpec s =
-        compiled(scene({group("motor", {shaft("axle")}), shares("same", {"motor"}), shaft("b")}));
+    const model::SceneSpec s = compiled(scene({group("motor", {shaft("axle")}), shares("same", {"motor"}), shaft("b")}));
     FixedTypes types;
     Role role;
     role.name = "driver";
@@ -194,16 +174,14 @@ TEST_CASE("participants of a scene that is there already")
 TEST_CASE("a fragment sees the scene that it joins")
 {
     const model::SceneSpec s = compiled(scene({shaft("a"), shaft("b"), gear({{"driver", "a"}, {"driven", "b"}})}));
-    model::Blueprint fragment =
-        scene({shaft("c"), component("h", "Constraint/AngularVelocity/Graph", {{"driver", "b"}, {"driven", "c"}})});
+    model::Blueprint fragment = scene({shaft("c"), component("h", "Constraint/AngularVelocity/Graph", {{"driver", "b"}, {"driven", "c"}})});
     const model::SceneSpec added = compiled(fragment, &s);
     CHECK(ids_of(added) == "c h");
     CHECK(role_of(added, "h", "driver") == "b");
     CHECK(role_of(added, "c", "solver") == "solver");
     CHECK(errors_of(scene({component("a", "Shape/Sphere", {}, 2)}), &s) ==
           "scene.xml:2:1: a (Shape/Sphere): id 'a' is already in the scene");
-    CHECK(errors_of(scene({component("h", "Constraint/AngularVelocity/Assign", {{"driver", "a"}, {"driven", "b"}}, 2)}),
-                    &s)
+    CHECK(errors_of(scene({component("h", "Constraint/AngularVelocity/Assign", {{"driver", "a"}, {"driven", "b"}}, 2)}), &s)
               .find("'b' is driven of g") != std::string::npos);
     fragment.settings = {text("dt", "1/60", 2)};
     CHECK(errors_of(fragment, &s) == "scene.xml:2:1: scene: dt belongs to the scene, not to a part that is added");

@@ -40,8 +40,7 @@ TEST_CASE("settings that are refused")
           "'title')");
     CHECK(why("solver", "bal") == "scene.xml:2:1: scene: solver: no component has the id 'bal', did you mean 'ball'?");
     CHECK(why("solver", "ball") == "scene.xml:2:1: scene: solver 'ball' is no component of type Solver/...");
-    CHECK(why("solver", "Shape/Sphere") ==
-          "scene.xml:2:1: scene: solver must be of type Solver/..., not 'Shape/Sphere'");
+    CHECK(why("solver", "Shape/Sphere") == "scene.xml:2:1: scene: solver must be of type Solver/..., not 'Shape/Sphere'");
     CHECK(why("solver", "Solver/RungeKuta4") ==
           "scene.xml:2:1: scene: solver: unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
     CHECK(why("solver", " ") == "scene.xml:2:1: scene: solver is empty: give the id or the type of a solver");
@@ -55,8 +54,7 @@ TEST_CASE("cameras that see nothing")
         b.cameras = {component("c", "", attributes, 3)};
         return errors_of(b);
     };
-    CHECK(why({{"position", "1 1 1"}, {"look_at", "1 1 1"}}).find("must not look at where it stands") !=
-          std::string::npos);
+    CHECK(why({{"position", "1 1 1"}, {"look_at", "1 1 1"}}).find("must not look at where it stands") != std::string::npos);
     CHECK(why({{"position", "0 0 5"}}) == "scene.xml:3:1: camera 'c': must not look along its up direction");
     CHECK(why({{"up", "0 0 0"}}) == "scene.xml:3:1: camera 'c': up must not be zero: it is a direction");
     CHECK(why({{"field_of_view", "200 deg"}}).find("field_of_view must be at most") != std::string::npos);
@@ -65,8 +63,7 @@ TEST_CASE("cameras that see nothing")
 
 TEST_CASE("fields are read with units and stand in the order of their declaration")
 {
-    const model::SceneSpec s =
-        compiled(scene({component("red", "State/RigidBody", {{"position", "0 0 30 cm"}, {"mass", "250 g"}})}));
+    const model::SceneSpec s = compiled(scene({component("red", "State/RigidBody", {{"position", "0 0 30 cm"}, {"mass", "250 g"}})}));
     CHECK(field_of(s, "red", "mass") == "0.25");
     CHECK(field_of(s, "red", "position") == "0 0 0.3");
     CHECK(field_of(s, "red", "orientation") == "-");
@@ -83,8 +80,7 @@ TEST_CASE("params and embedded values are fields as well")
     const model::SceneSpec s = compiled(scene({mesh, script}));
     CHECK(s.find("mesh")->type == "Shape/Mesh");
     mesh.type.clear();
-    CHECK(errors_of({mesh}).find("scene.xml:2:1: mesh: a component without type has no 'vertices': give it a type") ==
-          0);
+    CHECK(errors_of({mesh}).find("scene.xml:2:1: mesh: a component without type has no 'vertices': give it a type") == 0);
     CHECK(field_of(s, "mesh", "vertices") == "0 0 0");
     CHECK(field_of(s, "s", "state") == "count=1");
 }
@@ -103,12 +99,10 @@ TEST_CASE("fields that are refused")
               "'shape' and 'solver')");
     CHECK(why({{"mass", "1"}, {"energy", "3"}}) == b + "energy is an output of State/RigidBody and cannot be set");
     CHECK(why({{"mass", "1"}, {"mass", "2"}}) == b + "mass is given twice, here and at scene.xml:4:1");
-    CHECK(why({{"radius", "1"}}, "") ==
-          "scene.xml:4:1: b: a component without type has no 'radius': give it a type, or leave it out");
+    CHECK(why({{"radius", "1"}}, "") == "scene.xml:4:1: b: a component without type has no 'radius': give it a type, or leave it out");
     CHECK(why({{"restitution", "1.5"}}, "Response/Impulse") ==
           "scene.xml:4:1: b (Response/Impulse): restitution must be at most 1, not 1.5");
-    CHECK(why({}, "State/RigidBdy") ==
-          "scene.xml:4:1: b (State/RigidBdy): unknown type 'State/RigidBdy', did you mean 'State/RigidBody'?");
+    CHECK(why({}, "State/RigidBdy") == "scene.xml:4:1: b (State/RigidBdy): unknown type 'State/RigidBdy', did you mean 'State/RigidBody'?");
 
     model::ComponentNode referring = component("b", "State/RigidBody", {}, 4);
     referring.parameters = {reference("mass", {"b"}, 5)};
@@ -139,8 +133,8 @@ TEST_CASE("ids")
 
 TEST_CASE("all errors come at once, in the order of the file, and the rest are counted")
 {
-    CHECK(errors_of({component("b", "Shape/Sphere", {{"radius", "x"}}, 9),
-                     component("a", "Shape/Sphere", {{"radius", "0"}, {"r", "1"}}, 4)}) ==
+    CHECK(errors_of(
+              {component("b", "Shape/Sphere", {{"radius", "x"}}, 9), component("a", "Shape/Sphere", {{"radius", "0"}, {"r", "1"}}, 4)}) ==
           "scene.xml:4:1: a (Shape/Sphere): radius must be positive, not 0\n"
           "scene.xml:4:1: a (Shape/Sphere): unknown attribute 'r' (known are 'radius' and 'position')\n"
           "scene.xml:9:1: b (Shape/Sphere): radius must be a number, not 'x'");
@@ -159,8 +153,7 @@ TEST_CASE("all errors come at once, in the order of the file, and the rest are c
 TEST_CASE("the number of components is limited")
 {
     FixedTypes types;
-    Blueprint b =
-        scene({component("a", "Shape/Sphere"), component("b", "Shape/Sphere"), component("c", "Shape/Sphere")});
+    Blueprint b = scene({component("a", "Shape/Sphere"), component("b", "Shape/Sphere"), component("c", "Shape/Sphere")});
     model::CompileLimits limits;
     limits.components = 2;
     b.components[2].where = at(7, 3);

@@ -20,8 +20,7 @@ TEST_CASE("nearest names come first, far ones not at all")
 
 TEST_CASE("type names are found by their last part")
 {
-    const std::vector<std::string> known{"Constraint/AngularVelocity/Graph", "Constraint/AngularVelocity/Assign",
-                                         "Shape/Sphere"};
+    const std::vector<std::string> known{"Constraint/AngularVelocity/Graph", "Constraint/AngularVelocity/Assign", "Shape/Sphere"};
     CHECK(nearest_names("Graph", known) == std::vector<std::string>{"Constraint/AngularVelocity/Graph"});
     CHECK(nearest_names("Constraint/AngularVelocty/Graph", known).front() == "Constraint/AngularVelocity/Graph");
     CHECK(nearest_names("shape/sphere", known) == std::vector<std::string>{"Shape/Sphere"});
@@ -39,6 +38,5 @@ TEST_CASE("setter names")
     CHECK(field_name_of_setter("SetURLName") == "url_name");
     CHECK(setter_of_field_name("velocity_factor") == "SetVelocityFactor");
     CHECK(setter_of_field_name("axis_2") == "SetAxis2");
-    for (const char* name : {"mass", "driver_teeth", "field_of_view"})
-        CHECK(field_name_of_setter(setter_of_field_name(name)) == name);
+    for (const char* name : {"mass", "driver_teeth", "field_of_view"}) CHECK(field_name_of_setter(setter_of_field_name(name)) == name);
 }

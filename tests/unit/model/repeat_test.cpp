@@ -19,25 +19,21 @@ ComponentNode body(const std::string& id, Texts more = {})
     return component(id, "State/RigidBody", more, 5);
 }
 
-model::Blueprint repeated(const Texts& attributes, std::vector<ComponentNode> components,
-                          std::vector<ComponentNode> others = {})
+model::Blueprint repeated(const Texts& attributes, std::vector<ComponentNode> components, std::vector<ComponentNode> others = {})
 {
     model::Blueprint b = scene(std::move(others));
     b.repeats = {repeat(attributes, std::move(components), 3)};
     return b;
 }
 
-std::string why(const Texts& attributes)
-{
-    return errors_of(repeated(attributes, {body("b")}));
-}
+std::string why(const Texts& attributes) { return errors_of(repeated(attributes, {body("b")})); }
 
 }  // namespace
 
 TEST_CASE("a row goes along its step, a grid has an axis per count")
 {
-    const model::SceneSpec row = compiled(
-        repeated({{"count", "3"}, {"step", "10 0 5 cm"}, {"origin", "0 0 1"}}, {body("b", {{"position", "1 0 0"}})}));
+    const model::SceneSpec row =
+        compiled(repeated({{"count", "3"}, {"step", "10 0 5 cm"}, {"origin", "0 0 1"}}, {body("b", {{"position", "1 0 0"}})}));
     CHECK(ids_of(row) == "b.0 b.1 b.2 solver");
     CHECK(field_of(row, "b.0", "position") == "1 0 1");
     CHECK(field_of(row, "b.2", "position") == "1.2 0 1.1");
@@ -54,10 +50,9 @@ TEST_CASE("references stay within the cell, shapes stay with their bodies")
 {
     ComponentNode ball = body("ball", {{"shape", "ball.form"}});
     ball.children = {component("ball.form", "Shape/Sphere", {{"position", "0 0 1"}})};
-    const model::SceneSpec s =
-        compiled(repeated({{"count", "2"}, {"step", "1 0 0"}, {"id", "balls"}},
-                          {ball, component("c", "CDetection/Simple", {{"between", "ball outside"}})},
-                          {body("outside"), component("all", "CDetection/Simple", {{"between", "balls"}})}));
+    const model::SceneSpec s = compiled(repeated({{"count", "2"}, {"step", "1 0 0"}, {"id", "balls"}},
+                                                 {ball, component("c", "CDetection/Simple", {{"between", "ball outside"}})},
+                                                 {body("outside"), component("all", "CDetection/Simple", {{"between", "balls"}})}));
     CHECK(role_of(s, "ball.1", "shape") == "ball.form.1");
     CHECK(field_of(s, "ball.form.1", "position") == "0 0 1");
     CHECK(role_of(s, "c.1", "between") == "ball.1 outside");
@@ -69,8 +64,8 @@ TEST_CASE("references stay within the cell, shapes stay with their bodies")
 
 TEST_CASE("parts that are called after their place are used in each cell")
 {
-    const model::SceneSpec s = compiled(
-        repeated({{"count", "2"}}, {body("r", {{"shape.radius", "2"}}), component("r.shape", "Shape/Sphere")}));
+    const model::SceneSpec s =
+        compiled(repeated({{"count", "2"}}, {body("r", {{"shape.radius", "2"}}), component("r.shape", "Shape/Sphere")}));
     CHECK(role_of(s, "r.1", "shape") == "r.shape.1");
     CHECK(field_of(s, "r.shape.1", "radius") == "2");
     CHECK(ids_of(s) == "r.0 r.shape.0 r.1 r.shape.1 solver");
@@ -81,8 +76,8 @@ TEST_CASE("commands and objects are repeated as well")
     model::CommandNode set = command("g", "Constraint/AngularVelocity");
     set.id = "set";
     set.parameters = {reference("SetDriver", {"a"}), reference("SetDriven", {"b"})};
-    ComponentNode object = group("pair", {component("a", "State/Shaft"), component("b", "State/Shaft"),
-                                          component("g", "Constraint/AngularVelocity/Graph")});
+    ComponentNode object =
+        group("pair", {component("a", "State/Shaft"), component("b", "State/Shaft"), component("g", "Constraint/AngularVelocity/Graph")});
     object.commands = {set};
     const model::SceneSpec s = compiled(repeated({{"count", "2"}}, {object}));
     CHECK(role_of(s, "g.0", "driver") == "a.0");
@@ -92,9 +87,8 @@ TEST_CASE("commands and objects are repeated as well")
 
 TEST_CASE("a repeat stands where it is written")
 {
-    model::Blueprint b =
-        repeated({{"count", "2"}}, {component("r", "Shape/Sphere")},
-                 {component("before", "Shape/Sphere", {}, 1), component("after", "Shape/Sphere", {}, 9)});
+    model::Blueprint b = repeated({{"count", "2"}}, {component("r", "Shape/Sphere")},
+                                  {component("before", "Shape/Sphere", {}, 1), component("after", "Shape/Sphere", {}, 9)});
     CHECK(ids_of(compiled(b)) == "before r.0 r.1 after");
 }
 
@@ -109,8 +103,7 @@ TEST_CASE("jitter is bounded, the cell's own, and comes from the seed")
         const model::SceneSpec s = compiled(b);
         for (const model::ComponentSpec& c : s.components)
             for (const model::FieldSpec& f : c.fields)
-                if (f.name == "position")
-                    out.push_back(std::get<Vec3>(f.value));
+                if (f.name == "position") out.push_back(std::get<Vec3>(f.value));
         return out;
     };
     const std::vector<Vec3> one = positions("1");
@@ -137,8 +130,7 @@ TEST_CASE("repeats that are refused")
     CHECK(why({{"count", "0"}}) == r + "count must be 1 or more, not 0");
     CHECK(why({{"count", "2.5"}}) == r + "count: '2.5' is not a whole number");
     CHECK(why({{"count", "1 1 1 1"}}) == r + "count needs 1 to 3 whole numbers, has 4");
-    CHECK(why({{"count", "1000000 1000000 1000000"}}) ==
-          r + "makes 1000000000000000000 components: a scene has at most 100000");
+    CHECK(why({{"count", "1000000 1000000 1000000"}}) == r + "makes 1000000000000000000 components: a scene has at most 100000");
     CHECK(why({{"count", "100001"}}) == r + "makes 100001 components: a scene has at most 100000");
     CHECK(why({{"count", "9999999999"}}) == r + "count must be at most 1000000, not 9999999999");
     CHECK(why({{"count", "2"}, {"step", "1 0"}}) == r + "step needs 3 numbers, has 2");
@@ -156,8 +148,7 @@ TEST_CASE("an error in a repeat is said once")
 {
     CHECK(errors_of(repeated({{"count", "500"}}, {component("b", "Shape/Sphere", {{"radius", "0"}}, 5)})) ==
           "scene.xml:5:1: b.0 (Shape/Sphere): radius must be positive, not 0");
-    CHECK(errors_of(repeated({{"count", "500"}},
-                             {component("b", "Shape/Sphere", {}, 5), component("b", "Shape/Sphere", {}, 6)})) ==
+    CHECK(errors_of(repeated({{"count", "500"}}, {component("b", "Shape/Sphere", {}, 5), component("b", "Shape/Sphere", {}, 6)})) ==
           "scene.xml:6:1: b.0 (Shape/Sphere): id 'b' is already used at scene.xml:5:1");
 }
 
@@ -173,13 +164,10 @@ TEST_CASE("the same tree gives the same scene")
 
 TEST_CASE("ten thousand bodies compile in well under a second")
 {
-    const model::Blueprint b = repeated({{"count", "100 100"}, {"step", "1 1 0"}, {"jitter", "0.1"}, {"id", "balls"}},
-                                        {body("ball", {{"position", "0 0 50 cm"},
-                                                       {"linear_velocity", "0 0 -1"},
-                                                       {"shape", "Shape/Sphere"},
-                                                       {"shape.radius", "5 cm"}})},
-                                        {component("c", "CDetection/Simple", {{"between", "balls"}}),
-                                         component("d", "CDetection/Simple", {{"between", "*"}})});
+    const model::Blueprint b = repeated(
+        {{"count", "100 100"}, {"step", "1 1 0"}, {"jitter", "0.1"}, {"id", "balls"}},
+        {body("ball", {{"position", "0 0 50 cm"}, {"linear_velocity", "0 0 -1"}, {"shape", "Shape/Sphere"}, {"shape.radius", "5 cm"}})},
+        {component("c", "CDetection/Simple", {{"between", "balls"}}), component("d", "CDetection/Simple", {{"between", "*"}})});
     FixedTypes types;
     const auto begin = std::chrono::steady_clock::now();
     const auto result = model::compile(b, types);

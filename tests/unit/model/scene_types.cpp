@@ -92,9 +92,7 @@ struct CouplingRows
     {
         s.role(driver, "driver", {Facet::Shaft}, "turns the other");
         s.role(driven, "driven", {Facet::Shaft}, "is turned").writes().exclusive();
-        s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver")
-            .or_else(1)
-            .nonzero();
+        s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
         s.param(mesh, "mesh", unit::one, "of teeth").or_else("external").one_of({"external", "internal", "belt"});
     }
 };
@@ -107,12 +105,8 @@ struct DetectionRows
     void describe(Schema& s)
     {
         s.role(between, "between", {Facet::Body}, "collide").at_least(2);
-        s.role(resolution, "resolution", {Facet::Component}, "locates")
-            .family("Resolution/")
-            .default_type("Resolution/Bisection");
-        s.role(response, "response", {Facet::Component}, "answers")
-            .family("Response/")
-            .default_type("Response/Impulse");
+        s.role(resolution, "resolution", {Facet::Component}, "locates").family("Resolution/").default_type("Resolution/Bisection");
+        s.role(response, "response", {Facet::Component}, "answers").family("Response/").default_type("Response/Impulse");
     }
 };
 
@@ -123,9 +117,7 @@ struct ResponseRows
     void describe(Schema& s)
     {
         s.param(restitution, "restitution", unit::one, "Newton's coefficient").or_else(1).not_negative().at_most(1);
-        s.param(limit, "limit", unit::newton_second, "of an impulse")
-            .or_else(std::numeric_limits<double>::infinity())
-            .may_be_infinite();
+        s.param(limit, "limit", unit::newton_second, "of an impulse").or_else(std::numeric_limits<double>::infinity()).may_be_infinite();
     }
 };
 
@@ -157,12 +149,8 @@ struct ManagerRows
 
 void register_objects(Registrar& r)
 {
-    r.component<BodyRows>("State/RigidBody", "a body")
-        .facet(Facet::Body)
-        .host_command(Phase::Restore, "State/Restore", "");
-    r.component<ShaftRows>("State/Shaft", "a shaft")
-        .facet(Facet::Shaft)
-        .host_command(Phase::Restore, "State/Restore", "");
+    r.component<BodyRows>("State/RigidBody", "a body").facet(Facet::Body).host_command(Phase::Restore, "State/Restore", "");
+    r.component<ShaftRows>("State/Shaft", "a shaft").facet(Facet::Shaft).host_command(Phase::Restore, "State/Restore", "");
     r.component<SphereRows>("Shape/Sphere", "a sphere")
         .facet(Facet::Shape)
         .host_command(Phase::Prepare, "Shape/Prepare", "")
@@ -208,8 +196,7 @@ FixedTypes::FixedTypes()
 Result<const model::ComponentType*> FixedTypes::require(const std::string& name)
 {
     asked.push_back(name);
-    if (const model::ComponentType* type = registry_.find(name))
-        return type;
+    if (const model::ComponentType* type = registry_.find(name)) return type;
     return reason("unknown type '" + name + "'" + model::did_you_mean(name, names()));
 }
 

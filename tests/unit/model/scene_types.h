@@ -37,8 +37,7 @@ model::ComponentNode group(std::string id, std::vector<model::ComponentNode> chi
 /// <component id><compref>..</compref></component>.
 model::ComponentNode shares(std::string id, std::vector<std::string> ids, std::uint32_t line = 0);
 model::CommandNode command(std::string subject, std::string type, std::uint32_t line = 0);
-model::CommandNode composite(std::string id, std::string name, std::vector<model::CommandNode> children,
-                             std::uint32_t line = 0);
+model::CommandNode composite(std::string id, std::string name, std::vector<model::CommandNode> children, std::uint32_t line = 0);
 model::CommandNode see_command(std::string id, std::uint32_t line = 0);
 model::RepeatNode repeat(const Texts& attributes, std::vector<model::ComponentNode> components, std::uint32_t line = 0);
 model::Blueprint scene(std::vector<model::ComponentNode> components);

@@ -6,10 +6,7 @@
 namespace plab::test
 {
 
-SourceLocation at(std::uint32_t line, std::uint32_t column)
-{
-    return {"scene.xml", line, column};
-}
+SourceLocation at(std::uint32_t line, std::uint32_t column) { return {"scene.xml", line, column}; }
 
 model::TextNode text(std::string name, std::string value, std::uint32_t line)
 {
@@ -68,8 +65,7 @@ model::CommandNode command(std::string subject, std::string type, std::uint32_t 
     return node;
 }
 
-model::CommandNode composite(std::string id, std::string name, std::vector<model::CommandNode> children,
-                             std::uint32_t line)
+model::CommandNode composite(std::string id, std::string name, std::vector<model::CommandNode> children, std::uint32_t line)
 {
     model::CommandNode node;
     node.id = std::move(id);
@@ -108,8 +104,7 @@ model::SceneSpec compiled(const model::Blueprint& blueprint, const model::SceneS
 {
     FixedTypes types;
     Result<model::SceneSpec> result = model::compile(blueprint, types, existing);
-    if (result)
-        return result.take();
+    if (result) return result.take();
     std::string all;
     for (const Error& e : result.errors()) all += e.text() + "\n";
     FAIL(all);
@@ -126,10 +121,7 @@ std::string errors_of(const model::Blueprint& blueprint, const model::SceneSpec*
     return all;
 }
 
-std::string errors_of(std::vector<model::ComponentNode> components)
-{
-    return errors_of(scene(std::move(components)));
-}
+std::string errors_of(std::vector<model::ComponentNode> components) { return errors_of(scene(std::move(components))); }
 
 namespace
 {
@@ -153,16 +145,14 @@ const model::ComponentSpec& get(const model::SceneSpec& scene, const std::string
 std::string role_of(const model::SceneSpec& scene, const std::string& id, const std::string& role)
 {
     for (const model::RoleSpec& r : get(scene, id).roles)
-        if (r.name == role)
-            return (r.everyone ? "* " : "") + join(r.members);
+        if (r.name == role) return (r.everyone ? "* " : "") + join(r.members);
     return "-";
 }
 
 std::string field_of(const model::SceneSpec& scene, const std::string& id, const std::string& field)
 {
     for (const model::FieldSpec& f : get(scene, id).fields)
-        if (f.name == field)
-            return model::format_value(f.value);
+        if (f.name == field) return model::format_value(f.value);
     return "-";
 }
 
@@ -184,8 +174,7 @@ std::string dump(const model::SceneSpec& scene)
     std::string out;
     for (const model::ComponentSpec& c : scene.components)
     {
-        out += c.id + "|" + c.type + "|" + c.parent + "|" + c.alias_of + "|" + join(c.group) +
-               (c.generated ? "|generated" : "|");
+        out += c.id + "|" + c.type + "|" + c.parent + "|" + c.alias_of + "|" + join(c.group) + (c.generated ? "|generated" : "|");
         for (const model::FieldSpec& f : c.fields) out += " " + f.name + "=" + model::format_value(f.value);
         for (const model::RoleSpec& r : c.roles) out += " " + r.name + "=" + role_of(scene, c.id, r.name);
         out += " " + commands_of(scene, c.id) + "\n";

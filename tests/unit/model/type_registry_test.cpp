@@ -117,10 +117,7 @@ struct NoFacet
 struct WrongDefaultType
 {
     Column<Ref> role;
-    void describe(Schema& s)
-    {
-        s.role(role, "role", {Facet::Component}, "").family("Response/").default_type("Solver/Euler");
-    }
+    void describe(Schema& s) { s.role(role, "role", {Facet::Component}, "").family("Response/").default_type("Solver/Euler"); }
 };
 struct SilentExclusive
 {
@@ -135,14 +132,11 @@ TEST_CASE("declarations that contradict themselves")
     CHECK(refusal<BadName>("A/B") == "plugin sample: A/B: 'bodyMass' must be in snake_case");
     CHECK(refusal<Reserved>("A/B") == "plugin sample: A/B: 'type' is an attribute of every component");
     CHECK(refusal<Twice>("A/B") == "plugin sample: A/B: 'mass' is declared twice");
-    CHECK(refusal<BadDefault>("A/B") ==
-          "plugin sample: A/B: the default breaks its own rule: mass must be positive, not 0");
+    CHECK(refusal<BadDefault>("A/B") == "plugin sample: A/B: the default breaks its own rule: mass must be positive, not 0");
     CHECK(refusal<LongDirection>("A/B") == "plugin sample: A/B: the default of axis must be of unit length");
     CHECK(refusal<NoFacet>("A/B") == "plugin sample: A/B: role role accepts nobody: it names no facet");
-    CHECK(refusal<WrongDefaultType>("A/B") ==
-          "plugin sample: A/B: role role has a default type outside its family Response/");
-    CHECK(refusal<SilentExclusive>("A/B") ==
-          "plugin sample: A/B: role role is exclusive, so it must say that it writes");
+    CHECK(refusal<WrongDefaultType>("A/B") == "plugin sample: A/B: role role has a default type outside its family Response/");
+    CHECK(refusal<SilentExclusive>("A/B") == "plugin sample: A/B: role role is exclusive, so it must say that it writes");
 }
 
 TEST_CASE("a command is declared once")
@@ -195,8 +189,7 @@ TEST_CASE("what keeps types from standing in for one another")
     r.component<BodyRole>("K/F/Kind", "");
     r.component<TwoRoles>("K/F/Two", "");
     REQUIRE(registry.add(std::move(r), "sample").ok());
-    const auto why = [&](const char* other)
-    { return registry.find("K/F/One")->why_not_exchangeable(*registry.find(other)); };
+    const auto why = [&](const char* other) { return registry.find("K/F/One")->why_not_exchangeable(*registry.find(other)); };
     CHECK(why("K/F/One").empty());
     CHECK(why("K/F/Same").empty());
     CHECK(why("K/G/Other") == "K/F/One is of family K/F, K/G/Other of family K/G");

@@ -101,8 +101,7 @@ TEST_CASE("numbers and their units")
         CAPTURE(row.text);
         const Result<Value> value = parse_value(row.text, field(FieldType::Real, row.unit));
         CHECK_MESSAGE(value.ok(), (value ? "" : value.error().reason));
-        if (value)
-            CHECK(std::get<double>(*value) == doctest::Approx(row.wanted).epsilon(1e-15));
+        if (value) CHECK(std::get<double>(*value) == doctest::Approx(row.wanted).epsilon(1e-15));
     }
     // Exact: a decimal with a decimal unit is the double nearest to it, half a turn is the double pi.
     CHECK(std::get<double>(*parse_value("35 cm", field(FieldType::Real, unit::metre))) == 0.35);
@@ -164,14 +163,11 @@ TEST_CASE("values of other types")
     CHECK(vector("1 2 3") == Vec3{1, 2, 3});
     CHECK(vector("0 0 30 cm") == Vec3{0, 0, 0.3});
     CHECK(error_of("1 2", field(FieldType::Vector)) == "x needs 3 numbers, has 2");
-    CHECK(error_of("1,2,3", field(FieldType::Vector)) ==
-          "x: '1,2,3': use a point, not a comma, in numbers, and blanks between them");
-    CHECK(error_of("1 , 2", field(FieldType::Vector)) ==
-          "x: ',': use a point, not a comma, in numbers, and blanks between them");
+    CHECK(error_of("1,2,3", field(FieldType::Vector)) == "x: '1,2,3': use a point, not a comma, in numbers, and blanks between them");
+    CHECK(error_of("1 , 2", field(FieldType::Vector)) == "x: ',': use a point, not a comma, in numbers, and blanks between them");
 
     for (const char* yes : {"true", "yes", "1"}) CHECK(std::get<bool>(*parse_value(yes, field(FieldType::Boolean))));
-    for (const char* no : {"false", "no", " 0 "})
-        CHECK_FALSE(std::get<bool>(*parse_value(no, field(FieldType::Boolean))));
+    for (const char* no : {"false", "no", " 0 "}) CHECK_FALSE(std::get<bool>(*parse_value(no, field(FieldType::Boolean))));
     CHECK(error_of("TRUE?", field(FieldType::Boolean)) == "x must be true or false, not 'TRUE?'");
 
     CHECK(std::get<std::int64_t>(*parse_value("-12", field(FieldType::Integer))) == -12);
@@ -298,8 +294,7 @@ TEST_CASE("what is printed reads back to the same bits")
     CHECK(round_trip(Value(std::string("a b\n c"))));
     CHECK(round_trip(Value(Reals{1, 0.2})));
     CHECK(round_trip(Value(Integers{1, -2})));
-    CHECK(round_trip(
-        Value(Entries{{"count", 1.5}, {"on", true}, {"label", std::string("it's 'so'")}, {"empty", std::string()}})));
+    CHECK(round_trip(Value(Entries{{"count", 1.5}, {"on", true}, {"label", std::string("it's 'so'")}, {"empty", std::string()}})));
 }
 
 TEST_CASE("entries")
@@ -317,8 +312,7 @@ TEST_CASE("the process's locale changes nothing")
 {
     const std::string before = std::setlocale(LC_ALL, nullptr);
     for (const char* locale : {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8"})
-        if (std::setlocale(LC_ALL, locale))
-            break;
+        if (std::setlocale(LC_ALL, locale)) break;
     CHECK(std::get<double>(*parse_value("1.5", field(FieldType::Real))) == 1.5);
     CHECK(format_real(1.5) == "1.5");
     CHECK_FALSE(parse_value("1,5", field(FieldType::Real)).ok());

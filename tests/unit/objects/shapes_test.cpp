@@ -36,10 +36,7 @@ std::string refusal(const MeshData& mesh)
     return solid ? "accepted" : solid.error().reason;
 }
 
-double relative(double value, double expected)
-{
-    return std::fabs(value - expected) / std::fabs(expected);
-}
+double relative(double value, double expected) { return std::fabs(value - expected) / std::fabs(expected); }
 
 }  // namespace
 
@@ -95,8 +92,7 @@ TEST_CASE("icospheres converge to the sphere with the square of the edge")
     {
         const MassProperties solid = integrate(icosphere(level));
         const double now = relative(solid.inertia(2, 2), sphere.inertia(2, 2));
-        if (level > 2)
-            CHECK(error / now == doctest::Approx(4).epsilon(0.03));
+        if (level > 2) CHECK(error / now == doctest::Approx(4).epsilon(0.03));
         error = now;
     }
     CHECK(error < 3e-3);
@@ -162,12 +158,10 @@ TEST_CASE("a mesh without a definite volume is refused with the edge")
 
     MeshData turned = box_mesh({1, 1, 1});
     std::swap(turned.triangles[0], turned.triangles[1]);
-    CHECK(refusal(turned) ==
-          "mesh is wound inconsistently: the two triangles at edge 0-2 run along it in the same direction");
+    CHECK(refusal(turned) == "mesh is wound inconsistently: the two triangles at edge 0-2 run along it in the same direction");
 
     MeshData inverted = box_mesh({1, 1, 1});
-    for (std::size_t i = 0; i < inverted.triangles.size(); i += 3)
-        std::swap(inverted.triangles[i], inverted.triangles[i + 1]);
+    for (std::size_t i = 0; i < inverted.triangles.size(); i += 3) std::swap(inverted.triangles[i], inverted.triangles[i + 1]);
     CHECK(refusal(inverted) == "mesh is inside out; triangles must be counter-clockwise seen from outside");
 
     CHECK(refusal(box_mesh({1, 1, 0})) == "mesh has no volume; it must enclose a solid");
@@ -218,8 +212,7 @@ TEST_CASE("an open mesh is drawn but not measured")
     CHECK(host.geometry[0].vertices[2] == Vec3{0, 1, 0});
     CHECK(host.geometry[0].triangles == std::vector<std::uint32_t>{0, 1, 2});
     CHECK_FALSE(host.geometry[0].hull_collides);
-    CHECK(reason_of(measure_mesh(0, table.rows, solid)) ==
-          "mesh is open at edge 0-1; every edge must have two triangles");
+    CHECK(reason_of(measure_mesh(0, table.rows, solid)) == "mesh is open at edge 0-1; every edge must have two triangles");
 }
 
 TEST_CASE("primitives hand over their geometry and measure themselves in the body's frame")

@@ -20,8 +20,7 @@ struct TableFixture
         rows.describe(schema);
         for (ColumnBase* column : schema.columns()) column->resize(count);
         for (const Field& field : schema.fields())
-            for (Row row = 0; row < count && type_of(field.fallback) != FieldType::None; ++row)
-                field.column->set(row, field.fallback);
+            for (Row row = 0; row < count && type_of(field.fallback) != FieldType::None; ++row) field.column->set(row, field.fallback);
         for (Row row = 0; row < count; ++row) indices.push_back(row);
     }
     /// Row i is component i and host row i.
@@ -67,9 +66,6 @@ inline double largest_difference(const Mat3& a, const Mat3& b)
     return most;
 }
 
-inline std::string reason_of(const Result<void>& result)
-{
-    return result ? "accepted" : result.error().reason;
-}
+inline std::string reason_of(const Result<void>& result) { return result ? "accepted" : result.error().reason; }
 
 }  // namespace plab::test

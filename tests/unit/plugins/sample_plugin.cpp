@@ -7,10 +7,7 @@ namespace
 struct Rows
 {
     plab::Column<double> value;
-    void describe(plab::Schema& schema)
-    {
-        schema.param(value, "value", plab::unit::metre, "a length").or_else(2).positive();
-    }
+    void describe(plab::Schema& schema) { schema.param(value, "value", plab::unit::metre, "a length").or_else(2).positive(); }
 };
 
 [[maybe_unused]] void add_types([[maybe_unused]] plab::Registrar& registrar)
@@ -18,8 +15,7 @@ struct Rows
 #if defined(SAMPLE_THROWS)
     throw 1;
 #elif !defined(SAMPLE_EMPTY)
-    registrar.component<Rows>("Sample/Good", "works")
-        .host_command(plab::Phase::Finish, "Sample/Finish", "does nothing");
+    registrar.component<Rows>("Sample/Good", "works").host_command(plab::Phase::Finish, "Sample/Finish", "does nothing");
     registrar.component<Rows>("Sample/Better", "works, too");
 #endif
 #if defined(SAMPLE_TWICE)
@@ -57,8 +53,5 @@ extern "C" PLAB_EXPORT const plab::PluginStamp plab_plugin_stamp
 #endif
 
 #if !defined(SAMPLE_ENTRY)
-extern "C" PLAB_EXPORT void plab_plugin_register(plab::Registrar& registrar)
-{
-    add_types(registrar);
-}
+extern "C" PLAB_EXPORT void plab_plugin_register(plab::Registrar& registrar) { add_types(registrar); }
 #endif

@@ -13,8 +13,7 @@ std::atomic<long> allocations{0};
 void* operator new(std::size_t n)
 {
     ++allocations;
-    if (void* p = std::malloc(n == 0 ? 1 : n))
-        return p;
+    if (void* p = std::malloc(n == 0 ? 1 : n)) return p;
     throw std::bad_alloc();
 }
 void* operator new(std::size_t n, const std::nothrow_t&) noexcept
@@ -22,14 +21,8 @@ void* operator new(std::size_t n, const std::nothrow_t&) noexcept
     ++allocations;
     return std::malloc(n == 0 ? 1 : n);
 }
-void operator delete(void* p) noexcept
-{
-    std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept
-{
-    std::free(p);
-}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace plab;
 using namespace plab::test;

@@ -82,8 +82,7 @@ TEST_CASE("Impulse: J_eff = J1 + r^2 J2 to 1e-12 for |r| <= 100 and mass ratios 
                 once = std::max(once, relative_error(t.rates()[0], reference));
                 t.shafts.speed[0] = 1;
                 t.solve_speeds();
-                worst = std::max({worst, relative_error(t.shafts.speed[0], reference),
-                                  relative_error(t.shafts.speed[1], f * reference)});
+                worst = std::max({worst, relative_error(t.shafts.speed[0], reference), relative_error(t.shafts.speed[1], f * reference)});
             }
     MESSAGE("worst relative error of J_eff: swept ", worst, ", one sweep ", once);
     CHECK(worst < 1e-12);
@@ -149,8 +148,7 @@ TEST_CASE("a train of Impulses agrees with the graph; sweeps grow with its lengt
         double size = 0;
         for (const double x : b) size = std::max(size, std::fabs(x));
         for (std::uint32_t i = 0; i < n; ++i) CHECK(std::fabs(a[i] - b[i]) < 1e-12 * size);
-        for (std::uint32_t i = 0; i + 1 < n; ++i)
-            CHECK(std::fabs(pairs.torque(i) - train.torque(i)) < 1e-11 * (1 + size));
+        for (std::uint32_t i = 0; i + 1 < n; ++i) CHECK(std::fabs(pairs.torque(i) - train.torque(i)) < 1e-11 * (1 + size));
     }
 }
 

@@ -12,8 +12,7 @@ TEST_CASE("F1: a pair feels the reflected inertia, and its torques are those of 
     for (const bool swapped : {false, true})
     {
         Train t;
-        if (swapped)
-            t.shaft_rank = {1, 0};  // the driven shaft is the root
+        if (swapped) t.shaft_rank = {1, 0};  // the driven shaft is the root
         t.add_shaft(10), t.add_shaft(100);
         const auto g = t.gear(0, 1, exact_ratio(-1, 10));
         t.build();
@@ -37,8 +36,7 @@ TEST_CASE("F2: six 10:1 meshes, both ways, whichever end is driven and whichever
                 CAPTURE(far_root);
                 Train t;
                 for (std::uint32_t i = 0; i < 7; ++i) t.add_shaft(1e-3), t.shaft_rank.push_back(far_root ? 6 - i : i);
-                for (std::uint32_t i = 0; i < 6; ++i)
-                    t.gear(i, i + 1, up == 1 ? exact_ratio(1, 10) : exact_ratio(10, 1));
+                for (std::uint32_t i = 0; i < 6; ++i) t.gear(i, i + 1, up == 1 ? exact_ratio(1, 10) : exact_ratio(10, 1));
                 t.build();
                 std::vector<double> torque(7, 0.0);
                 torque[driven_end] = 1;
@@ -96,8 +94,7 @@ TEST_CASE("engagement books the work of each mesh of a train, and the sum is the
     std::vector<double> work(8, 0.0);
     const double change = t.graph.engage(t.shafts, &work);
     for (std::uint32_t i = 0; i < 9; ++i)
-        after_momentum += t.shafts.ratio[i] * t.shafts.inertia[i] * t.shafts.speed[i],
-            after += t.shafts.kinetic_energy(i);
+        after_momentum += t.shafts.ratio[i] * t.shafts.inertia[i] * t.shafts.speed[i], after += t.shafts.kinetic_energy(i);
     for (const double w : work) booked += w;
     CHECK(relative_error(after_momentum, momentum) < 1e-13);
     CHECK(relative_error(change, after - before) < 1e-13);
@@ -120,8 +117,7 @@ TEST_CASE("F7: angles of 1000 gears are derived from the root's, so they cannot 
     {
         t.shafts.speed[0] += dt * std::sin(step * dt);
         t.shafts.angle[0] += dt * t.shafts.speed[0];
-        if (step % 100 == 99)
-            t.graph.derive(t.shafts);
+        if (step % 100 == 99) t.graph.derive(t.shafts);
     }
     double angles = 0, speeds = 0;
     for (std::uint32_t i = 0; i < 1000; ++i)
@@ -226,8 +222,7 @@ TEST_CASE("nothing depends on rows: a train written in another order moves by th
         t.shaft_rank.resize(5), t.members.clear();
         std::vector<double> by_row(5), torque_by_row(5);
         const auto at = [&](std::uint32_t i) { return shuffled ? row[i] : i; };
-        for (std::uint32_t i = 0; i < 5; ++i)
-            t.shaft_rank[at(i)] = i, by_row[at(i)] = inertia[i], torque_by_row[at(i)] = torque[i];
+        for (std::uint32_t i = 0; i < 5; ++i) t.shaft_rank[at(i)] = i, by_row[at(i)] = inertia[i], torque_by_row[at(i)] = torque[i];
         for (const double j : by_row) t.add_shaft(j);
         t.members = {at(0), at(1), at(2), at(3), at(4)};
         t.component_rank = shuffled ? std::vector<std::uint32_t>{3, 2, 1, 0} : std::vector<std::uint32_t>{0, 1, 2, 3};

@@ -19,15 +19,9 @@ Train ring(const Ratio& a, const Ratio& b, const Ratio& c)
     return t;
 }
 
-bool contains(const std::string& text, const std::string& part)
-{
-    return text.find(part) != std::string::npos;
-}
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-ExactRatio exact(std::int64_t n, std::int64_t d)
-{
-    return *ExactRatio::from(exact_ratio(n, d));
-}
+ExactRatio exact(std::int64_t n, std::int64_t d) { return *ExactRatio::from(exact_ratio(n, d)); }
 
 }  // namespace
 
@@ -146,9 +140,7 @@ TEST_CASE("couplings that cannot be are refused by name")
         t.graph.drive(t.components++, shaft(3), shaft(0));
         t.build();
         t.gear(1, 2, 2.0);
-        CHECK(
-            t.build_error() ==
-            "g0: one-way drives in a circle: g0 -> g1 -> g2 -> g0; one of them must be able to feel its driven shaft");
+        CHECK(t.build_error() == "g0: one-way drives in a circle: g0 -> g1 -> g2 -> g0; one of them must be able to feel its driven shaft");
     }
     SUBCASE("a drive of its own train, or of a prescribed shaft")
     {

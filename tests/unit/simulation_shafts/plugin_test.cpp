@@ -63,16 +63,12 @@ TEST_CASE("factors that cannot be are refused with the reason")
         const auto r = ratio_of(g);
         return r.ok() ? std::string("accepted") : r.error().reason;
     };
-    CHECK(why({2, 20, 40, "external"}) ==
-          "the ratio is given twice; give either velocity_factor or driver_teeth and driven_teeth");
+    CHECK(why({2, 20, 40, "external"}) == "the ratio is given twice; give either velocity_factor or driver_teeth and driven_teeth");
     CHECK(why({1, -20, 40, "external"}) == "driver_teeth must be positive, not -20");
     CHECK(why({1, 20, -40, "external"}) == "driven_teeth must be positive, not -40");
-    CHECK(why({1, 20, 0, "external"}) ==
-          "driver_teeth and driven_teeth must be given together and positive; driven_teeth is missing or 0");
-    CHECK(why({1, 0, 20, "external"}) ==
-          "driver_teeth and driven_teeth must be given together and positive; driver_teeth is missing or 0");
-    CHECK(why({2, 0, 0, "internal"}) ==
-          "mesh 'internal' needs driver_teeth and driven_teeth; a velocity_factor has its own sign");
+    CHECK(why({1, 20, 0, "external"}) == "driver_teeth and driven_teeth must be given together and positive; driven_teeth is missing or 0");
+    CHECK(why({1, 0, 20, "external"}) == "driver_teeth and driven_teeth must be given together and positive; driver_teeth is missing or 0");
+    CHECK(why({2, 0, 0, "internal"}) == "mesh 'internal' needs driver_teeth and driven_teeth; a velocity_factor has its own sign");
     CHECK(why({0, 0, 0, "external"}) == "velocity_factor must be finite and other than 0");
     CHECK(why({NAN, 0, 0, "external"}) == "velocity_factor must be finite and other than 0");
 }

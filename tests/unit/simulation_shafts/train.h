@@ -32,10 +32,7 @@ inline Ratio exact_ratio(std::int64_t numerator, std::int64_t denominator)
     return {static_cast<double>(numerator) / static_cast<double>(denominator), true, numerator, denominator};
 }
 
-inline Ref shaft(std::uint32_t i)
-{
-    return {Facet::Shaft, i};
-}
+inline Ref shaft(std::uint32_t i) { return {Facet::Shaft, i}; }
 
 inline double relative_error(double value, double reference)
 {
@@ -60,8 +57,7 @@ struct Train
         shafts.motion.push_back(motion), shafts.angle.push_back(0), shafts.speed.push_back(speed);
         shafts.inertia.push_back(inertia), shafts.inverse_inertia.push_back(dynamic ? 1 / inertia : 0);
         shafts.axle.push_back({}), shafts.shapes.push_back({});
-        shafts.root.push_back(i), shafts.ratio.push_back(1), shafts.anchor.push_back(0),
-            shafts.root_anchor.push_back(0);
+        shafts.root.push_back(i), shafts.ratio.push_back(1), shafts.anchor.push_back(0), shafts.root_anchor.push_back(0);
         (dynamic ? members : prescribed).push_back(i);
         return i;
     }
@@ -70,10 +66,7 @@ struct Train
         graph.add(components, shaft(driver), shaft(driven), ratio);
         return components++;
     }
-    std::uint32_t gear(std::uint32_t driver, std::uint32_t driven, double ratio)
-    {
-        return gear(driver, driven, real_ratio(ratio));
-    }
+    std::uint32_t gear(std::uint32_t driver, std::uint32_t driven, double ratio) { return gear(driver, driven, real_ratio(ratio)); }
     Result<void> try_build()
     {
         return graph.build(shafts, {shaft_rank, component_rank, [](std::uint32_t i) { return "s" + std::to_string(i); },
@@ -125,8 +118,7 @@ public:
     {
         plab_plugin_register(registrar_);
         for (TypeInfo& t : registrar_.types())
-            if (t.name == "Constraint/AngularVelocity/" + algorithm)
-                type_ = &t;
+            if (t.name == "Constraint/AngularVelocity/" + algorithm) type_ = &t;
         REQUIRE(type_ != nullptr);
         table_ = type_->make();
         table_->describe(schema_);
@@ -139,18 +131,14 @@ public:
         rows_.push_back(row), component_of_row_.push_back(component);
         for (ColumnBase* c : schema_.columns()) c->resize(rows_.size());
         for (const Field& f : schema_.fields())
-            if (type_of(f.fallback) != FieldType::None)
-                f.column->set(row, f.fallback);
+            if (type_of(f.fallback) != FieldType::None) f.column->set(row, f.fallback);
         (*schema_.find_role("driver")->one)[row] = shaft(driver);
         (*schema_.find_role("driven")->one)[row] = shaft(driven);
         set(row, "velocity_factor", factor);
         return row;
     }
     void set(Row row, const char* field, const Value& value) { schema_.find_field(field)->column->set(row, value); }
-    double get(Row row, const char* field) const
-    {
-        return std::get<double>(schema_.find_field(field)->column->get(row));
-    }
+    double get(Row row, const char* field) const { return std::get<double>(schema_.find_field(field)->column->get(row)); }
 
     Result<void> prepare() { return run(Phase::Prepare, {}); }
     void couple(ShaftMotion& motion)
@@ -182,8 +170,7 @@ private:
         context.component_of_row = component_of_row_;
         call.context = &context, call.rows = rows_;
         for (const CommandInfo& c : type_->commands)
-            if (c.phase == phase && c.run)
-                return c.run(call, table_->rows());
+            if (c.phase == phase && c.run) return c.run(call, table_->rows());
         return reason("no such command");
     }
 

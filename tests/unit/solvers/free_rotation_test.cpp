@@ -1,8 +1,8 @@
 /// Free rotation in closed form, and Solver/Exact with it: machine precision at any step, for every kind of top.
 #include "plab/free_rotation.h"
-#include "plab/elliptic.h"
 #include "objects/solvers/exact.h"
 #include "objects/solvers/runge_kutta4.h"
+#include "plab/elliptic.h"
 #include "unit/solvers/problems.h"
 
 using namespace plab;

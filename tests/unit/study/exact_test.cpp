@@ -8,11 +8,11 @@
 
 using namespace plab;
 using namespace plab::study;
-using plab::world::principal_axes, plab::world::PrincipalAxes;
 using plab::test::attitude_error;
 using plab::test::distance;
 using plab::test::near;
 using plab::test::Scene;
+using plab::world::principal_axes, plab::world::PrincipalAxes;
 
 namespace
 {

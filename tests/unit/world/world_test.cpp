@@ -70,8 +70,9 @@ TEST_CASE("a row's fields go into bytes and come back")
 
 TEST_CASE("position and velocity are those of the frame that the author sees")
 {
-    Scene s("<component id=\"b\" type=\"State/RigidBody\" mass=\"2\" inertia=\"1 1 1\" center_of_mass=\"0.5 0 0\" position=\"1 2 3\" "
-            "orientation=\"axis 0 0 1 90 deg\" linear_velocity=\"1 0 0\" angular_velocity=\"0 0 2\"/>");
+    Scene s(
+        "<component id=\"b\" type=\"State/RigidBody\" mass=\"2\" inertia=\"1 1 1\" center_of_mass=\"0.5 0 0\" position=\"1 2 3\" "
+        "orientation=\"axis 0 0 1 90 deg\" linear_velocity=\"1 0 0\" angular_velocity=\"0 0 2\"/>");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     CHECK(distance(s.vec("b", "position"), {1, 2, 3}) < 1e-15);
     CHECK(distance(s.vec("b", "linear_velocity"), {1, 0, 0}) < 1e-15);
@@ -88,8 +89,10 @@ TEST_CASE("position and velocity are those of the frame that the author sees")
 
 TEST_CASE("a backup brings back values and structure")
 {
-    Scene s("<component id=\"a\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"2\"/><component id=\"b\" type=\"State/Shaft\" inertia=\"1\"/>"
-            "<component id=\"g\" type=\"Constraint/AngularVelocity/Graph\" driver=\"a\" driven=\"b\" velocity_factor=\"2\"/>");
+    Scene s(
+        "<component id=\"a\" type=\"State/Shaft\" inertia=\"1\" angular_velocity=\"2\"/><component id=\"b\" type=\"State/Shaft\" "
+        "inertia=\"1\"/>"
+        "<component id=\"g\" type=\"Constraint/AngularVelocity/Graph\" driver=\"a\" driven=\"b\" velocity_factor=\"2\"/>");
     world::World& world = s.simulation().world();
     const std::uint64_t hash = world.state_hash(0);
     const world::Backup backup = world.backup();

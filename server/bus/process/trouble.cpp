@@ -1,4 +1,4 @@
-#include "bus/trouble.h"
+#include "bus/process/trouble.h"
 
 #include <cstdio>
 

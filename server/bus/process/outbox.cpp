@@ -1,4 +1,4 @@
-#include "bus/outbox.h"
+#include "bus/process/outbox.h"
 
 #include <algorithm>
 

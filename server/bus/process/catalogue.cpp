@@ -1,4 +1,4 @@
-#include "bus/catalogue.h"
+#include "bus/process/catalogue.h"
 
 #include <algorithm>
 #include <set>

@@ -1,4 +1,6 @@
-#include "bus/presence.h"
+#include "bus/process/presence.h"
+
+#include <utility>
 
 #include "wire/wire_view.h"
 
@@ -21,23 +23,10 @@ Result<void> Presence::open(const wire::Entity& participant, const wire::Entity&
     return {};
 }
 
-void Presence::push(const publish::Status& status)
+void Presence::send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble)
 {
-    ring_.begin_push() = status;
-    ring_.end_push();
-}
-
-void Presence::send(Clock::time_point now, std::span<const wire::Dropped> dropped, const std::string& busy, Trouble& trouble)
-{
-    bool is_new = false;
-    while (publish::Status* status = ring_.begin_pop())
-    {
-        status_ = *status, is_new = true;
-        ring_.end_pop();
-    }
-    if (!status_ || (!is_new && now - written_ < kHeartbeat)) return;
+    if (!status_ || (!std::exchange(is_new_, false) && now - written_ < kHeartbeat)) return;
     written_ = now;
-    status_->busy = busy;
     (void)trouble.check(wire::topic_of<plab_v2_Server>().name, writer_.write(sample_.of(identity_, *status_, dropped)));
 }
 

@@ -5,7 +5,7 @@
 #include <deque>
 #include <functional>
 
-#include "bus/trouble.h"
+#include "bus/process/trouble.h"
 #include "publish/records.h"
 
 namespace plab::bus

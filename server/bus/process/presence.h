@@ -1,12 +1,11 @@
-/// The server's own topic: what it says of itself, and whether another one has its name. Bus thread, except push().
+/// The server's own topic: what it says of itself, and whether another one has its name.
 #pragma once
 
 #include <chrono>
 #include <optional>
 
-#include "bus/trouble.h"
+#include "bus/process/trouble.h"
 #include "idl/entity.h"
-#include "publish/ring.h"
 #include "wire/samples.h"
 
 namespace plab::bus
@@ -19,11 +18,9 @@ public:
     explicit Presence(wire::Identity identity) : identity_(std::move(identity)) {}
 
     Result<void> open(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber);
-    /// Step thread.
-    void push(const publish::Status& status);
-    /// The newest status if there is a new one, and the last one again when nobody heard of it for a second.
-    /// `busy`: what the step thread is at, where that takes long.
-    void send(Clock::time_point now, std::span<const wire::Dropped> dropped, const std::string& busy, Trouble& trouble);
+    void set(publish::Status&& status) { status_ = std::move(status), is_new_ = true; }
+    /// The status if it is new, and again when nobody heard of it for a second.
+    void send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble);
     /// Until send() is due without a new status.
     Clock::duration due_in(Clock::time_point now) const;
     /// Why this server has to go, if it has: the first one keeps the name.
@@ -33,11 +30,11 @@ public:
 
 private:
     wire::Identity identity_;
-    publish::Ring<publish::Status> ring_{4};
     wire::Writer<plab_v2_Server> writer_;
     wire::Reader<plab_v2_Server> reader_;
     wire::ServerSample sample_;
     std::optional<publish::Status> status_;
+    bool is_new_ = false;
     Clock::time_point written_{};
 };
 

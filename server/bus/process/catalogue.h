@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "bus/trouble.h"
+#include "bus/process/trouble.h"
 #include "idl/entity.h"
 #include "wire/samples.h"
 

@@ -1,0 +1,190 @@
+/// Records as bytes and back: their fields in order, numbers as they lie in memory, text and sequences with their length
+/// before them. Both programs are of one build and on one machine, so nothing says what it is.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bus/channel/fields.h"
+#include "publish/records.h"
+
+namespace plab::bus
+{
+
+/// Copied as it lies in memory.
+template <class T>
+inline constexpr bool kIsFlat = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <>
+inline constexpr bool kIsFlat<bool> = false;  // not every byte is one
+template <>
+inline constexpr bool kIsFlat<Vec3> = true;
+template <>
+inline constexpr bool kIsFlat<Quat> = true;
+template <>
+inline constexpr bool kIsFlat<publish::BodyState> = true;
+template <>
+inline constexpr bool kIsFlat<publish::ShaftState> = true;
+template <class T, std::size_t N>
+inline constexpr bool kIsFlat<std::array<T, N>> = kIsFlat<T>;
+
+/// Writes into a span. What does not fit is only counted: size() is what it would take.
+class Encoder
+{
+public:
+    explicit Encoder(std::span<std::byte> target) : target_(target) {}
+
+    std::size_t size() const { return size_; }
+    bool fits() const { return size_ <= target_.size(); }
+
+    template <class T>
+    void put(const T& value)
+    {
+        if constexpr (kIsFlat<T>)
+            raw(&value, sizeof value);
+        else if constexpr (std::is_same_v<T, bool>)
+            put(static_cast<std::uint8_t>(value ? 1 : 0));
+        else
+            for_each_field(value, [this](const auto& field) { put(field); });
+    }
+    void put(const std::string& text) { put_text(text); }
+    void put(const char* const& text) { put_text(text); }
+    template <class T>
+    void put(const std::vector<T>& values)
+    {
+        put(static_cast<std::uint64_t>(values.size()));
+        if constexpr (kIsFlat<T>)
+            raw(values.data(), values.size() * sizeof(T));
+        else
+            for (const T& value : values) put(value);
+    }
+    template <class A, class B>
+    void put(const std::pair<A, B>& pair)
+    {
+        put(pair.first), put(pair.second);
+    }
+    template <class T>
+    void put(const std::optional<T>& value)
+    {
+        put(value.has_value());
+        if (value) put(*value);
+    }
+
+private:
+    void put_text(std::string_view text)
+    {
+        put(static_cast<std::uint64_t>(text.size()));
+        raw(text.data(), text.size());
+    }
+    void raw(const void* data, std::size_t bytes)
+    {
+        if (bytes > 0 && bytes <= target_.size() && size_ <= target_.size() - bytes) std::memcpy(target_.data() + size_, data, bytes);
+        size_ += bytes;
+    }
+
+    std::span<std::byte> target_;
+    std::size_t size_ = 0;
+};
+
+/// Reads what anybody may have written: nothing beyond the span, and no more memory than a multiple of it.
+class Decoder
+{
+public:
+    /// `words` keeps the text behind `const char*` fields, which are few words; without it such a field is an error.
+    explicit Decoder(std::span<const std::byte> source, std::set<std::string, std::less<>>* words = nullptr) : rest_(source), words_(words)
+    {
+    }
+
+    /// Everything was there, and nothing is left.
+    bool whole() const { return fine_ && rest_.empty(); }
+    /// What was there, so far.
+    bool fine() const { return fine_; }
+
+    template <class T>
+    void get(T& value)
+    {
+        if constexpr (kIsFlat<T>)
+            raw(&value, sizeof value);
+        else if constexpr (std::is_same_v<T, bool>)
+        {
+            std::uint8_t byte = 0;
+            get(byte);
+            value = byte != 0;
+        }
+        else
+            for_each_field(value, [this](auto& field) { get(field); });
+    }
+    void get(std::string& text)
+    {
+        const std::size_t size = length(1);
+        text.assign(reinterpret_cast<const char*>(rest_.data()), size);
+        rest_ = rest_.subspan(size);
+    }
+    void get(const char*& text)
+    {
+        std::string word;
+        get(word);
+        fine_ = fine_ && words_ != nullptr;
+        text = fine_ ? words_->insert(std::move(word)).first->c_str() : "";
+    }
+    template <class T>
+    void get(std::vector<T>& values)
+    {
+        if constexpr (kIsFlat<T>)
+        {
+            values.resize(length(sizeof(T)));
+            raw(values.data(), values.size() * sizeof(T));
+        }
+        else
+        {
+            // Not resized at once: each element takes some of the span, so that there are no more than it has bytes.
+            std::size_t count = length(1);
+            values.clear();
+            while (fine_ && count-- > 0) get(values.emplace_back());
+        }
+    }
+    template <class A, class B>
+    void get(std::pair<A, B>& pair)
+    {
+        get(pair.first), get(pair.second);
+    }
+    template <class T>
+    void get(std::optional<T>& value)
+    {
+        bool there = false;
+        get(there);
+        value.reset();
+        if (there) get(value.emplace());
+    }
+
+private:
+    /// The number of elements that come next, each of `least` bytes or more; 0 if there are fewer bytes.
+    std::size_t length(std::size_t least)
+    {
+        std::uint64_t count = 0;
+        get(count);
+        fine_ = fine_ && count <= rest_.size() / least;
+        return fine_ ? static_cast<std::size_t>(count) : 0;
+    }
+    void raw(void* data, std::size_t bytes)
+    {
+        fine_ = fine_ && bytes <= rest_.size();
+        if (!fine_ || bytes == 0) return;
+        std::memcpy(data, rest_.data(), bytes);
+        rest_ = rest_.subspan(bytes);
+    }
+
+    std::span<const std::byte> rest_;
+    std::set<std::string, std::less<>>* words_;
+    bool fine_ = true;
+};
+
+}  // namespace plab::bus

@@ -1,0 +1,87 @@
+/// What plab-bus does: records that plabd sends become samples, requests of clients go to plabd.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <set>
+#include <string>
+
+#include "bus/channel/bell.h"
+#include "bus/channel/messages.h"
+#include "bus/process/catalogue.h"
+#include "bus/process/outbox.h"
+#include "bus/process/presence.h"
+#include "bus/process/stream.h"
+#include "wire/samples.h"
+
+namespace plab::bus
+{
+
+/// One thread; DDS has its own, whose listeners set a mark and ring.
+class BusLoop
+{
+public:
+    /// The descriptors of channel/inherited.h.
+    BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const Bell& server, int lifeline, const StartMessage& start);
+    /// False if it cannot join; plabd is told why.
+    bool join();
+    /// Until plabd says that this is the end. False if it has ended without a word: then nobody says goodbye.
+    bool run();
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    Result<void> enter();
+    bool pass(Clock::time_point now);
+    bool receive();
+    bool handle(const MessageReader::Message& message);
+    bool stream(std::uint32_t stream, std::span<const std::byte> bytes);
+    bool read_requests();
+    void keep(const plab_v2_Request& request);
+    void pass_on();
+    void look_at_readers();
+    void follow_scene();
+    void each_second(Clock::time_point now);
+    std::vector<wire::Dropped> dropped() const;
+    void say_goodbye();
+    template <class Function>
+    void each(Function function);
+    template <class... Record>
+    void tell(Up kind, const Record&... record);
+    bool sleep(Clock::time_point now);
+
+    StartMessage start_;
+    Bell* bell_;
+    const Bell* server_;
+    int lifeline_;
+    MessageReader reader_;
+    MessageWriter writer_;
+    std::set<std::string, std::less<>> words_;
+    Trouble trouble_;
+    std::atomic<bool> matched_{true}, arrived_{true};  ///< set by listeners of DDS, on its threads
+    bool is_over_ = false;
+
+    // Before all that is made of them; and the listeners ring until the participant is gone.
+    wire::Entity participant_, publisher_, subscriber_;
+    Stream<plab_v2_Frame, wire::FrameSample, publish::Frame> states_;
+    Stream<plab_v2_Collisions, wire::CollisionsSample, publish::Batch<publish::CollisionRecord>> collisions_;
+    Stream<plab_v2_Events, wire::EventsSample, publish::Batch<publish::EventRecord>> events_;
+    Stream<plab_v2_Metrics, wire::MetricsSample, publish::Metrics> metrics_;
+    Stream<plab_v2_Image, wire::ImageSample, publish::Image> images_;
+    Stream<plab_v2_Journal, wire::JournalSample, publish::JournalRecord> journal_;
+    Stream<plab_v2_Hashes, wire::HashesSample, publish::HashRecord> hashes_;
+    Stream<plab_v2_Snapshot, wire::SnapshotSample, publish::SnapshotRecord> snapshots_;
+    Catalogue catalogue_;
+    Presence presence_;
+    wire::Reader<plab_v2_Request> requests_;
+    std::deque<RequestMessage> waiting_;  ///< taken, and not passed on yet; what one look at the reader brought
+    wire::Writer<plab_v2_Reply> replies_;
+    wire::ReplySample reply_sample_;
+    Outbox outbox_;
+    std::array<std::uint64_t, kStreams> ring_dropped_{};
+    Clock::time_point second_{};
+};
+
+}  // namespace plab::bus

@@ -1,0 +1,55 @@
+// plab-bus: the one process of a server that maps DDS. plabd starts it, and starts it again when it ends; nobody else does.
+#include <fcntl.h>
+#include <pthread.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "bus/channel/inherited.h"
+#include "bus/process/bus_loop.h"
+
+namespace
+{
+
+using namespace plab::bus;
+
+int run(const PipeMemory& memory, Bell& bell, const Bell& server)
+{
+    // Written by plabd before it started this process.
+    MessageReader reader(PipeReader(memory.down_state(), memory.down()), ~std::uint64_t{0}, false);
+    MessageReader::Message message;
+    StartMessage start;
+    if (reader.next(message) != MessageReader::State::Whole || message.kind != static_cast<std::uint32_t>(Down::Start)) return 1;
+    Decoder decoder(message.bytes);
+    decoder.get(start);
+    if (!decoder.whole()) return 1;
+    BusLoop loop(reader, MessageWriter(PipeWriter(memory.up_state(), memory.up())), bell, server, kInheritedLifeline, start);
+    if (!loop.join()) return 1;
+    // After those of DDS, which are to be woken at once. Batch: it does not push the step thread aside when it is woken on the same core.
+    const sched_param priority{};
+    (void)pthread_setschedparam(pthread_self(), SCHED_BATCH, &priority);
+    if (!loop.run()) _exit(1);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char**)
+{
+    // plabd ends it: a signal to the whole group must not take the bus away before clients have heard the end.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) (void)std::signal(signal, SIG_IGN);
+    (void)std::signal(SIGPIPE, SIG_IGN);
+    (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
+    auto memory = PipeMemory::attach(kInheritedMemory);
+    if (argc != 1 || !memory)
+    {
+        const std::string why = memory ? "" : " (" + memory.error().text() + ")";
+        return std::fprintf(stderr, "plab-bus is started by plabd, and by nobody else%s\n", why.c_str()), 2;
+    }
+    for (int fd = kInheritedFirst; fd < kInheritedEnd; ++fd) (void)fcntl(fd, F_SETFD, FD_CLOEXEC);
+    Bell bell(kInheritedBell);
+    const Bell server(kInheritedServer);
+    return run(*memory, bell, server);
+}

@@ -1,0 +1,62 @@
+/// One topic without keys or history for late joiners: a writer for the records of one stream.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "bus/channel/archive.h"
+#include "bus/process/trouble.h"
+#include "idl/entity.h"
+
+namespace plab::bus
+{
+
+/// T: type of the wire. Sample: makes one of a Record.
+template <class T, class Sample, class Record>
+class Stream
+{
+public:
+    /// The writer is there while the scene has something to write with it.
+    Result<void> be(bool there, const wire::Entity& participant, const wire::Entity& publisher)
+    {
+        if (there == writer_.entity().valid()) return {};
+        writer_ = {}, seen_ = 0;
+        if (!there) return {};
+        auto writer = wire::Writer<T>::make(participant, publisher);
+        if (!writer) return writer.errors();
+        writer_ = writer.take();
+        return {};
+    }
+    /// Looks for readers. True if something is not as it was at the last look.
+    bool look()
+    {
+        const wire::Matched readers = writer_.entity().valid() ? writer_.matched() : wire::Matched{};
+        const bool came = readers.ever > seen_ && readers.now > 0, was_wanted = is_wanted_;
+        seen_ = readers.ever, is_wanted_ = readers.now > 0;
+        joins_ += came ? 1 : 0;
+        return came || was_wanted != is_wanted_;
+    }
+    bool wanted() const { return is_wanted_; }
+    std::uint64_t joins() const { return joins_; }
+    /// False if that is no record.
+    bool write(std::span<const std::byte> bytes, std::set<std::string, std::less<>>& words, Trouble& trouble)
+    {
+        if (!is_wanted_ || !writer_.entity().valid()) return true;
+        Decoder decoder(bytes, &words);
+        decoder.get(record_);
+        if (decoder.whole()) (void)trouble.check(topic(), writer_.write(sample_.of(record_)));
+        return decoder.whole();
+    }
+    static const char* topic() { return wire::topic_of<T>().name; }
+    const wire::Entity& writer() const { return writer_.entity(); }
+
+private:
+    Record record_;  ///< filled again each time, with the memory of the last one
+    Sample sample_;
+    wire::Writer<T> writer_;
+    bool is_wanted_ = false;
+    std::uint64_t joins_ = 0;
+    std::uint32_t seen_ = 0;  ///< readers of this writer, ever, at the last look
+};
+
+}  // namespace plab::bus

@@ -1,0 +1,126 @@
+#include "simulation/contacts/midway_contacts.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "plab/rotation.h"
+#include "plab/surface.h"
+#include "simulation/step/stepper.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// Of the smaller body's radius: who goes less than this along a curve in a step is off it by 2^-27 of the radius at most.
+constexpr double kNoWay = 0x1p-13;
+/// Normals that turn further than this (its cosine) in half a step are no longer of one curve.
+constexpr double kSameCurve = 0.9;
+
+bool is_round(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
+{
+    const auto round = [](const Geometry& g)
+    {
+        return g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder ||
+               surface_of(g) == Surface::Bore || surface_of(g) == Surface::Bowl;
+    };
+    return std::any_of(bodies.shapes[b].begin(), bodies.shapes[b].end(),
+                       [&](const Ref& shape)
+                       {
+                           const Geometry& g = shapes.geometry[shape.index];
+                           return round(g) || std::any_of(g.parts.begin(), g.parts.end(),
+                                                          [&](std::uint32_t part) { return round(shapes.geometry[part]); });
+                       });
+}
+
+}  // namespace
+
+bool MidwayContacts::turns(const Contact& c, double h) const
+{
+    const world::HostTables& host = s_->world_.host();
+    const Bodies& bodies = host.bodies;
+    for (const Ref r : {c.a, c.b})
+        if (bodies.motion[r.index] == Motion::Kinematic) return false;
+    const Vec3 v = bodies.velocity[c.b.index] - bodies.velocity[c.a.index];
+    const double along = length(v - c.normal * dot(v, c.normal));
+    if (!(along * h > kNoWay * s_->smaller_radius(c.a, c.b))) return false;
+    return is_round(bodies, host.shapes, c.a.index) && is_round(bodies, host.shapes, c.b.index);
+}
+
+void MidwayContacts::lead(GroupSystem& system, std::span<const std::uint32_t> members, double h)
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    const std::span<double> x = system.coordinates();
+    ways_.resize(bodies.size());
+    for (const std::uint32_t i : members)
+    {
+        const std::uint32_t b = system.bodies()[i];
+        const Vec3 way = bodies.velocity[b] * (0.5 * h);
+        const Vec3 turn = rotate_back(bodies.orientation[b], bodies.angular_velocity[b]) * (0.5 * h);
+        led_.push_back({b, way, bodies.orientation[b]});
+        ways_[b] = way;
+        std::copy_n(&way.x, 3, &x[6 * i]), std::copy_n(&turn.x, 3, &x[6 * i + 3]);
+    }
+}
+
+/// The same pairs half way, with what the curves open by: less than way^2 / 2r.
+void MidwayContacts::look(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all)
+{
+    midway_.clear();
+    for (std::size_t i = 0; i < places.size();)
+    {
+        const std::uint32_t detector = all[places[i]].detector;
+        double margin = 0;
+        standing_.clear();
+        for (; i < places.size() && all[places[i]].detector == detector; ++i)
+        {
+            const Contact& c = all[places[i]].contact;
+            if (standing_.empty() || standing_.back().a != c.a || standing_.back().b != c.b) standing_.push_back({c.a, c.b, {}});
+            const Vec3 way = way_of(c.b) - way_of(c.a);
+            const double radius = s_->smaller_radius(c.a, c.b), opens = radius > 0 ? dot(way, way) / (2 * radius) : 0.0;
+            margin = std::max(margin, std::max(0.0, -c.depth) + opens + s_->overlap_tolerance(c.a, c.b));
+        }
+        s_->detect(s_->detectors_[detector], detector, standing_, true, midway_, margin);
+    }
+    sort_contacts(midway_, s_->world_);
+    for (FoundContact& f : midway_) f.contact.depth -= s_->known_contact(f).rest_depth;
+}
+
+void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h)
+{
+    Bodies& bodies = s_->world_.host().bodies;
+    for (const Led& led : led_)
+    {
+        bodies.orientation[led.body] = led.start;
+        bodies.refresh_spin(led.body);
+    }
+    look(places, all);
+    const auto key = [&](const FoundContact& f)
+    { return std::tuple(f.detector, s_->world_.rank(f.contact.a), s_->world_.rank(f.contact.b), f.contact.feature); };
+    for (const std::uint32_t place : places)
+    {
+        Contact& c = all[place].contact;
+        const auto found = std::lower_bound(midway_.begin(), midway_.end(), key(all[place]),
+                                            [&](const FoundContact& f, const auto& wanted) { return key(f) < wanted; });
+        const bool same = found != midway_.end() && key(*found) == key(all[place]) && dot(found->contact.normal, c.normal) > kSameCurve;
+        if (!same)
+        {
+            // It goes along with who is led.
+            const Vec3 a = way_of(c.a), b = way_of(c.b);
+            c.point += bodies.dynamic(c.a.index) && bodies.dynamic(c.b.index) ? (a + b) * 0.5 : a + b;
+            continue;
+        }
+        const double opened = c.depth - found->contact.depth - dot(way_of(c.b) - way_of(c.a), c.normal);
+        c.turning = -4 * opened / h;
+        c.normal = found->contact.normal, c.point = found->contact.point;
+    }
+}
+
+void MidwayContacts::take_back()
+{
+    Bodies& bodies = s_->world_.host().bodies;
+    for (const Led& led : led_) bodies.position[led.body] -= led.way, ways_[led.body] = {};
+    led_.clear();
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,56 @@
+/// Packets of DDS discovery as this process sends them, and changed ones of them for others.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace plab::test
+{
+
+using Packet = std::vector<std::uint8_t>;
+
+/// What this process has sent to ports of discovery so far: announcements of participants, readers and writers with their types,
+/// acknowledgements. sendmsg() is watched, nothing else.
+std::vector<Packet> sent_for_discovery();
+
+/// Changed packets, as many as one likes: bytes, lengths, identifiers of parameters, ends. Half of them announce a participant
+/// with the description of a type, a broken one: Cyclone 0.10.2 aborts at some of these.
+class PacketMutator
+{
+public:
+    PacketMutator(std::vector<Packet> good, std::uint64_t seed);
+    Packet next();
+    /// Descriptions of types and announcements of participants among the good ones.
+    std::size_t types() const { return types_.size(); }
+    std::size_t announcements() const { return announcements_.size(); }
+
+private:
+    std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % (n > 0 ? n : 1)); }
+    std::uint8_t byte() { return static_cast<std::uint8_t>(random_()); }
+    void take_another_sender(Packet& packet);
+    Packet changed(Packet packet);
+    Packet with_broken_type();
+    void change_once(Packet& packet, std::size_t begin);
+
+    std::mt19937_64 random_;
+    std::vector<Packet> good_, types_, announcements_;
+};
+
+/// Sends packets to the discovery ports of participants on this host.
+class PacketSender
+{
+public:
+    explicit PacketSender(std::uint32_t domain);
+    ~PacketSender();
+    PacketSender(const PacketSender&) = delete;
+    PacketSender& operator=(const PacketSender&) = delete;
+    /// To participant `index`: 0 is the first one that joined.
+    void send(const Packet& packet, unsigned index) const;
+
+private:
+    int socket_ = -1;
+    std::uint32_t base_ = 0;
+};
+
+}  // namespace plab::test
