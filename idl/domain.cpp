@@ -1,8 +1,11 @@
 #include "idl/domain.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <mutex>
 
 namespace plab::wire
 {
@@ -27,7 +30,57 @@ Error not_joined(const DomainOptions& options, dds_return_t code)
     return reason(why + ": " + dds_strretcode(code) + " (Cyclone DDS says more on standard error)");
 }
 
+/// Domains that this process has opened with a configuration of its own, and how many participants each has.
+class OpenDomains
+{
+public:
+    static OpenDomains& instance()
+    {
+        // Never destroyed: who calls exit() with participants open leaves them to the system.
+        static OpenDomains& domains = *new OpenDomains;
+        return domains;
+    }
+
+    /// What Cyclone says where it cannot open the domain; 0 or more: counted in.
+    dds_return_t enter(const DomainOptions& options)
+    {
+        const std::lock_guard guard(mutex_);
+        const auto known = open_.find(options.id);
+        if (known != open_.end()) return static_cast<dds_return_t>(++known->second.participants);
+        const dds_entity_t domain = dds_create_domain(options.id, configuration_of(options).c_str());
+        if (domain > 0) open_.emplace(options.id, OpenDomain{Entity(domain), 1});
+        return domain;
+    }
+    void leave(std::uint32_t id)
+    {
+        const std::lock_guard guard(mutex_);
+        const auto known = open_.find(id);
+        if (known != open_.end() && --known->second.participants == 0) open_.erase(known);
+    }
+
+private:
+    struct OpenDomain
+    {
+        Entity entity;
+        int participants = 0;
+    };
+    std::mutex mutex_;
+    std::map<std::uint32_t, OpenDomain> open_;
+};
+
 }  // namespace
+
+Participant& Participant::operator=(Participant&& other) noexcept
+{
+    if (this != &other) reset(), entity_ = std::move(other.entity_), domain_ = std::exchange(other.domain_, {});
+    return *this;
+}
+
+void Participant::reset()
+{
+    entity_.reset();
+    if (domain_) OpenDomains::instance().leave(*std::exchange(domain_, {}));
+}
 
 std::string configuration_of(const DomainOptions& options)
 {
@@ -47,21 +100,23 @@ std::string configuration_of(const DomainOptions& options)
            discovery + "</Discovery><Internal><WriterLingerDuration>100ms</WriterLingerDuration></Internal></Domain></CycloneDDS>";
 }
 
-Result<Entity> join(const DomainOptions& options)
+Result<Participant> join(const DomainOptions& options)
 {
     if (options.id > kLastDomain) return reason("a DDS domain is from 0 to 232, not " + std::to_string(options.id));
     if (!options.network_interface.empty() && !is_interface_name(options.network_interface))
         return reason("'" + options.network_interface + "' is no name of a network interface");
-    const char* const own = std::getenv("CYCLONEDDS_URI");
-    if (own == nullptr || *own == 0)
+    std::optional<std::uint32_t> counted;
+    if (const char* const own = std::getenv("CYCLONEDDS_URI"); own == nullptr || *own == 0)
     {
-        const dds_entity_t domain = dds_create_domain(options.id, configuration_of(options).c_str());
-        // A process that joins twice finds its domain there already.
-        if (domain < 0 && domain != DDS_RETCODE_PRECONDITION_NOT_MET) return not_joined(options, domain);
+        const dds_return_t entered = OpenDomains::instance().enter(options);
+        // Somebody else in this process may have opened it.
+        if (entered < 0 && entered != DDS_RETCODE_PRECONDITION_NOT_MET) return not_joined(options, entered);
+        if (entered > 0) counted = options.id;
     }
     const dds_entity_t participant = dds_create_participant(options.id, nullptr, nullptr);
+    Participant out(Entity(std::max(participant, 0)), counted);
     if (participant < 0) return not_joined(options, participant);
-    return Entity(participant);
+    return out;
 }
 
 Result<DomainOptions> domain_from_environment()

@@ -108,7 +108,7 @@ private:
     std::vector<ServerInfo> servers_in(const std::string& partition, Seconds timeout, std::size_t enough) const;
 
     std::string server_;
-    wire::Entity participant_;
+    wire::Participant participant_;
     wire::Entity publisher_, subscriber_;
 };
 

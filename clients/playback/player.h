@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "idl/domain.h"
 #include "idl/recording/reader.h"
 #include "link/session.h"
 #include "playback/front.h"
@@ -100,7 +101,8 @@ private:
     bool loop_, moved_only_ = false;
     Changes changes_;
     std::vector<std::string> topics_, foreign_;
-    wire::Entity participant_, publisher_, subscriber_, waitset_;
+    wire::Participant participant_;
+    wire::Entity publisher_, subscriber_, waitset_;
     std::map<std::string, std::unique_ptr<Track>> tracks_;
     std::unique_ptr<recording::Peek> frames_, statuses_;
 

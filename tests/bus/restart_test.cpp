@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "idl/domain.h"
 #include "server.h"
 
 using namespace plab;
@@ -89,13 +90,13 @@ std::string names_in(const link::Snapshot& snapshot)
     return out + std::to_string(snapshot.types.size());
 }
 
-/// The lease after which readers give up what a dead participant wrote, shortened.
+/// The lease after which readers give up what a dead participant wrote, shortened. On loopback, like everybody here.
 std::vector<std::string> with_lease(int seconds)
 {
     const char* uri = std::getenv("CYCLONEDDS_URI");
-    const std::string more =
-        "<CycloneDDS><Domain><Discovery><LeaseDuration>" + std::to_string(seconds) + "s</LeaseDuration></Discovery></Domain></CycloneDDS>";
-    return {"CYCLONEDDS_URI=" + (uri != nullptr ? uri + ("," + more) : more)};
+    const std::string own = uri != nullptr && *uri != 0 ? uri : wire::configuration_of({});
+    return {"CYCLONEDDS_URI=" + own + ",<CycloneDDS><Domain><Discovery><LeaseDuration>" + std::to_string(seconds) +
+            "s</LeaseDuration></Discovery></Domain></CycloneDDS>"};
 }
 
 }  // namespace

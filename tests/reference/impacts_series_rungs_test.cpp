@@ -160,8 +160,8 @@ TEST_CASE("C8: Newton's cradle by every rung: k in, k out; with gaps of 1e-6 and
     constexpr Bound<4> table[] = {
         {"*", "Impulse", {1e-15, 1e-15, 1e-15, 1e-15}},
         {"located", "Rows", {1e-15, 1e-15, 2e-15, 2e-15}},
-        {"at ends", "Rows/Direct", {0.81, 1.2, 0.81, 1e-15}, {0.79, 1.1, 0.79, 0}},
-        {"at ends", "Rows/SequentialImpulse", {0.81, 1.2, 0.81, 4.5e-7}, {0.79, 1.1, 0.79, 0}},
+        {"at ends", "Rows/Direct", {0.81, 1.2, 0.81, 1e-15}, {0.74, 1.1, 0.79, 0}},
+        {"at ends", "Rows/SequentialImpulse", {0.81, 1.2, 0.81, 4.5e-7}, {0.74, 1.1, 0.79, 0}},
         {"None", "Rows/SoftStep", {0.58, 0.75, 0.58, 0.75}, {0.5, 0.7, 0.5, 0.7}},
         {"Speculative", "Rows/SoftStep", {0.58, 0.49, 0.58, 0.49}, {0.5, 0.4, 0.5, 0.4}},
     };
@@ -184,7 +184,7 @@ TEST_CASE("C8: Newton's cradle without gaps: each response keeps to its declared
         {"None", "Rows/SoftStep", {0.3, 0.13, 0.75}, {0.29, 0.11, 0.7}},
         {"Speculative", "Rows/SoftStep", {0.48, 0.12, 0.46}, {0.47, 0.11, 0.45}},
         {"*", "Penalty", {4e-10, 5e-10, 4e-11}},
-        {"*", "HuntCrossley", {1.1e-9, 1.3e-9, 2.5e-8}},
+        {"*", "HuntCrossley", {1.9e-9, 1.3e-9, 2.5e-8}},
     };
     check_rungs(every_rung(), table,
                 [](const Rung& rung)
@@ -258,7 +258,7 @@ TEST_CASE("C13: a rack breaks as symmetric as it stands, whatever the ids: touch
         {"Speculative", "Rows/SequentialImpulse", {0.6, 1, 1e-15, 0.02}, {0.05, 0.05, 0, 2e-3}},
         {"None", "Rows/SoftStep", {1.5, 3, 1e-15, 0.08}, {0.1, 0.1, 0, 0.01}},
         {"Speculative", "Rows/SoftStep", {0.8, 0.8, 1e-15, 0.9}, {0.1, 0.1, 0, 0.1}},
-        {"*", "Penalty", {1e-15, 1e-15, 1e-15, 8e-12}},
+        {"*", "Penalty", {1e-15, 1e-15, 2.4e-15, 8e-12}},
         {"*", "HuntCrossley", {2e-15, 2e-15, 4e-15, 1.2e-8}},
     };
     check_rungs(every_rung(), table, [](const Rung& rung) { return rack_error(rung, 0); });

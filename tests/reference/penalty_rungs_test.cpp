@@ -42,7 +42,7 @@ const SolverRow kRows[] = {
     {{"RotationSplitting"}, 4, 5e-12, 1.2e-11, 9e-10}, {{"Exact"}, 4, 5e-12, 1.2e-11, 9e-10},
     {{"RungeKutta4"}, 4, 6e-11, 1.5e-9, 6e-8},         {{"Exponential"}, 0, 4e-14, 4e-14, 9e-8},
     {{"DormandPrince54"}, 0, 2.2e-12, 2e-12, 1.5e-8},  {{"Radau5"}, 0, 1.2e-12, 1e-12, 1.5e-8},
-    {{"Automatic"}, 0, 6e-11, 1.5e-9, 1e-8},
+    {{"Automatic"}, 0, 6e-11, 1.5e-9, 1.4e-8},
 };
 }  // namespace
 

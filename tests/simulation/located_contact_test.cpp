@@ -113,6 +113,41 @@ TEST_CASE("what falls along a wall, touching it, falls freely: compounds, boxes,
                 });
 }
 
+TEST_CASE("a stack that is let go stands in its first step after one event, and who stands beside another is not held by it")
+{
+    constexpr int kHigh = 40;
+    const auto cubes_at = [](const std::vector<Vec3>& places, const char* resolution)
+    {
+        std::string cubes, who;
+        for (std::size_t i = 0; i < places.size(); ++i)
+            cubes += box("c" + std::to_string(i), {0.5, 0.5, 0.5}, at(places[i], {})), who += "c" + std::to_string(i) + " ";
+        return "<component id=\"plane\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"plane\"/>" + cubes +
+               gravity(who) + contact(resolution, "Impulse", who + "ground", 0.3, 0.5);
+    };
+    for (const char* resolution : {"LocalRoot", "ConservativeAdvancement"})
+    {
+        CAPTURE(std::string(resolution));
+        std::vector<Vec3> tower;
+        for (int i = 0; i < kHigh; ++i) tower.push_back({0, 0, i + 0.5});
+        Scene s(cubes_at(tower, resolution));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true;
+        s.step();
+        CHECK(s.simulation().stepper().report().events == 1);
+        CHECK(s.simulation().stepper().report().trials < 20 * kHigh);
+        // Each on the one below, or on the ground; four points, of which the first tells of the pair.
+        CHECK(s.count("contact.begin") == kHigh);
+        CHECK(s.count("contact.rest") == kHigh);
+
+        Scene row(cubes_at({{0, 0, 0.5}, {1, 0, 0.5}, {2, 0, 0.5}}, resolution));
+        REQUIRE_MESSAGE(row.loaded(), row.error());
+        row.keep_events = true;
+        row.step();
+        CHECK(row.count("contact.begin") == 3);
+        CHECK(row.count("contact.rest") == 3);
+    }
+}
+
 TEST_CASE("a heap of falling bodies: each step's work is bounded, the state stays finite, and repeats bit for bit")
 {
     constexpr int kBodies = 64;

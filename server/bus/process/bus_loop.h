@@ -14,6 +14,7 @@
 #include "bus/process/outbox.h"
 #include "bus/process/presence.h"
 #include "bus/process/stream.h"
+#include "idl/domain.h"
 #include "wire/samples.h"
 
 namespace plab::bus
@@ -64,7 +65,8 @@ private:
     bool is_over_ = false;
 
     // Before all that is made of them; and the listeners ring until the participant is gone.
-    wire::Entity participant_, publisher_, subscriber_;
+    wire::Participant participant_;
+    wire::Entity publisher_, subscriber_;
     Stream<plab_v2_Frame, wire::FrameSample, publish::Frame> states_;
     Stream<plab_v2_Collisions, wire::CollisionsSample, publish::Batch<publish::CollisionRecord>> collisions_;
     Stream<plab_v2_Events, wire::EventsSample, publish::Batch<publish::EventRecord>> events_;

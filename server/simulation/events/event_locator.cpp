@@ -10,7 +10,6 @@ namespace
 {
 /// Events this share of the step apart happen at one time where a body takes part in both.
 constexpr double kSameTime = 1e-13;
-/// Share of the smaller body's radius.
 
 }  // namespace
 
@@ -168,10 +167,48 @@ void EventLocator::scope_of(const Candidate& candidate, bool local)
     if (rests) close_over_resting_pairs();
 }
 
+/// m/s^2: by how much the present event changes what forces do to a body.
+Vec3 EventLocator::relief_of(Ref body) const
+{
+    const auto found = std::find_if(relieved_.begin(), relieved_.end(), [&](const Relieved& r) { return r.body == body.index; });
+    return found == relieved_.end() ? Vec3{} : found->acceleration;
+}
+
+/// Chooses an event. Where its pair is pressed together, one of them stops: what stands on that one is looked at again, as if it had
+/// been stopped already. So a stack that is let go stands after one event, not after one for each body.
+void EventLocator::take(std::uint32_t slot)
+{
+    chosen_.push_back(slot);
+    if (!candidates_[slot].pressed) return;
+    const Bodies& bodies = s_->world_.host().bodies;
+    const Ref a = candidates_[slot].a, b = candidates_[slot].b;
+    const auto stands = [&](Ref r) { return !bodies.dynamic(r.index) || relief_of(r) != Vec3{}; };
+    if (stands(a) == stands(b)) return;
+    const Ref stopped = stands(a) ? b : a;
+    relieved_.push_back({stopped.index, stopped == b ? candidates_[slot].relief : -candidates_[slot].relief});
+    const double until = candidates_[slot].time + kSameTime * s_->frame_.step;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < touching_.size(); ++i)
+    {
+        const Touching t = touching_[i];
+        if ((t.a != stopped && t.b != stopped) || t.time > until)
+        {
+            touching_[kept++] = t;
+            continue;
+        }
+        const std::uint32_t again = new_slot();
+        Candidate& c = candidates_[again];
+        c.detector = t.detector, c.a = t.a, c.b = t.b, c.time = t.time, c.version = t.version, c.certified = true;
+        push(again);
+    }
+    touching_.resize(kept);
+}
+
 /// Takes the first event, and with it whatever happens at the same time to the same bodies.
 void EventLocator::gather(std::uint32_t first)
 {
-    chosen_.assign(1, first);
+    chosen_.clear(), relieved_.clear();
+    take(first);
     const Candidate& c = candidates_[first];
     if (!c.certified || !s_->detectors_[c.detector].responds || c.stuck) return;
     const double until = c.time + kSameTime * s_->frame_.step;
@@ -203,13 +240,14 @@ void EventLocator::gather(std::uint32_t first)
             set_aside_.push_back(slot);
         else
         {
-            chosen_.push_back(slot);
+            take(slot);
             // Who was passed over may know the new one.
             for (const std::uint32_t s : set_aside_) push(s);
             set_aside_.clear();
         }
     }
     for (const std::uint32_t s : set_aside_) push(s);
+    relieved_.clear();
 }
 
 /// Answers the chosen event.
@@ -336,7 +374,7 @@ void EventLocator::run(std::vector<FoundContact>& found)
     all_certify_ = std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     touches_by_force_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_force; });
     begin_budget();
-    queue_.clear(), free_.clear();
+    queue_.clear(), free_.clear(), touching_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
     versions_.assign(s_->groups_.all.size(), 0);
     note_resting_groups();

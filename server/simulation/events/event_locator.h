@@ -35,6 +35,8 @@ private:
         bool nothing = false;                ///< located: they do not meet
         bool stuck = false;                  ///< overlaps where the piece begins: there is nothing to bracket
         bool at_end = false;                 ///< no event location: answered where the step ends
+        bool pressed = false;                ///< located: it touches without closing, and is pressed together
+        Vec3 relief;                         ///< m/s^2, where it is pressed: by how much b, held, falls less towards a
         double ignored = 0;                  ///< m: overlaps up to this are what it slides along
         double bracket = 0;                  ///< s between the last clear and the first overlapping trial
         double time = 0;                     ///< s since the start of the step, on the clear side; a bound until located
@@ -67,6 +69,20 @@ private:
         Vec3 point_a, point_b;
         bool exact = false;  ///< the gap is that of the shapes, and the points are the nearest ones
     };
+    /// A pair that touched at `time`, and that nothing pressed together then.
+    struct Touching
+    {
+        std::uint32_t detector;
+        Ref a, b;
+        double time;
+        std::uint64_t version;
+    };
+    /// What is known of the acceleration of a body that the present event stops, beyond forces.
+    struct Relieved
+    {
+        std::uint32_t body;
+        Vec3 acceleration;
+    };
     /// A pair of one detector, by number.
     struct PairKey
     {
@@ -87,6 +103,8 @@ private:
     void scope_of(const Candidate& candidate, bool local);
     void close_over_resting_pairs();
     void gather(std::uint32_t first);
+    void take(std::uint32_t slot);
+    Vec3 relief_of(Ref body) const;
     void process();
     void look_again(std::vector<FoundContact>& found);
     void note_resting_groups();
@@ -129,7 +147,7 @@ private:
     bool meets(Candidate& candidate);
     bool answered_at(const Candidate& candidate, double time) const;
     Look look_at(const Candidate& candidate, double time);
-    bool presses(const Candidate& candidate, const Look& look);
+    bool presses(Candidate& candidate, const Look& look);
     void scope_of_pair(const Candidate& candidate);
     static Vec3 turn_between(const Look& first, const Look& then);
     bool settle_in_bracket(Candidate& candidate, const Look& clear, const Look& over, bool certify);
@@ -183,6 +201,8 @@ private:
     std::vector<PairKey> live_;          ///< pairs in the queue, sorted
     std::vector<ShapeGap> shape_gaps_;   ///< of the last look, where a body has several shapes
     std::vector<FoundContact> pressed_;  ///< one contact
+    std::vector<Touching> touching_;
+    std::vector<Relieved> relieved_;  ///< by pairs that are chosen; empty outside gather()
     DisjointSets left_islands_;
     bool any_certifies_ = false, all_certify_ = false;
 

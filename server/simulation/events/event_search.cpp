@@ -224,15 +224,26 @@ bool EventLocator::answered_at(const Candidate& candidate, double time) const
 }
 
 /// Whether forces press together what touches and moves along: so that it would sink in by more than rounding. Once: what presses rests.
-bool EventLocator::presses(const Candidate& candidate, const Look& look)
+bool EventLocator::presses(Candidate& candidate, const Look& look)
 {
     if (answered_at(candidate, look.time)) return false;
+    const double left = s_->frame_.step - look.time;
     pressed_.assign(1, {});
     Contact& c = pressed_.front().contact;
     c.a = candidate.a, c.b = candidate.b, c.normal = look.query.normal, c.point = (look.query.point_a + look.query.point_b) * 0.5;
-    rate_of_approach(pressed_, look.time);
-    const double left = s_->frame_.step - look.time;
-    return -0.5 * c.normal_acceleration * left * left > look.slack;
+    const auto held = [&](Ref r) { return s_->groups_.of(r) != kNoIndex && rests_[s_->groups_.of(r)] != 0; };
+    if (held(c.a) || held(c.b))
+    {
+        // Who stands does not fall as forces alone would make it; where the step ends is known.
+        const double before = s_->normal_velocity(c);
+        advance_groups_to(s_->frame_.step);
+        c.normal_acceleration = (s_->normal_velocity(c) - before) / left;
+    }
+    else
+        rate_of_approach(pressed_, look.time);
+    c.normal_acceleration += dot(relief_of(c.b) - relief_of(c.a), c.normal);
+    candidate.relief = c.normal * -c.normal_acceleration;
+    return candidate.pressed = -0.5 * c.normal_acceleration * left * left > look.slack;
 }
 
 bool EventLocator::meets(Candidate& candidate)
@@ -253,9 +264,15 @@ bool EventLocator::meets(Candidate& candidate)
         const bool touches = look.query.gap <= look.touch, closes = look.rate < -kStill * look.speed;
         if (touches && (!responds || (closes && !(left > 0 && -look.rate * left <= look.slack)))) return true;
         if (!(left > 0)) return false;
+        // What touches one that is stopped now may be stopped with it.
+        if (touches && !relieved_.empty() && !(look.rate > kStill * look.speed) && presses(candidate, look)) return true;
         // Sliding along one another, for the rest of the step, is no event.
         double clear = clear_for(candidate, look, turn, touches ? look.slack : 0.0, trial.closing);
-        if (look.time + clear >= step) return false;
+        if (look.time + clear >= step)
+        {
+            if (touches && responds) touching_.push_back({candidate.detector, candidate.a, candidate.b, look.time, candidate.version});
+            return false;
+        }
         // What parts comes back at a gap of 0, not a rounding error later: there it is bracketed.
         if (touches) clear = clear_for(candidate, look, turn, 0.0, trial.closing);
         // Closing, and nearer than times can be told apart.

@@ -31,10 +31,7 @@ double EventLocator::speeds_at(Ref a, const Vec3& point_a, Ref b, const Vec3& po
     return length(bodies.velocity_at(a.index, point_a)) + length(bodies.velocity_at(b.index, point_b));
 }
 
-double EventLocator::smaller_radius(Ref a, Ref b) const
-{
-    return s_->smaller_radius(a, b);
-}
+double EventLocator::smaller_radius(Ref a, Ref b) const { return s_->smaller_radius(a, b); }
 
 /// m: overlaps up to this, and sinking so far in a step, are rounding of where the two are and how they move.
 double EventLocator::slack_of(Ref a, Ref b, double speed) const

@@ -43,7 +43,8 @@ plab_v2_FieldInfo field(const char* name, const char* unit, const char* fallback
 
 struct FakeServer::Ends
 {
-    wire::Entity participant, publisher, subscriber;
+    wire::Participant participant;
+    wire::Entity publisher, subscriber;
     wire::Writer<plab_v2_Server> server;
     wire::Writer<plab_v2_Scene> scene;
     wire::Writer<plab_v2_SceneObject> objects;

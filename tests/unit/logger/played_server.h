@@ -113,7 +113,8 @@ private:
     std::string name_;
     std::int64_t started_ns_ = 0, step_ = 0;
     std::uint64_t run_ = 1, next_event_ = 1, next_collision_ = 1;
-    wire::Entity participant_, publisher_;
+    wire::Participant participant_;
+    wire::Entity publisher_;
     wire::Writer<plab_v2_Server> server_;
     wire::Writer<plab_v2_Events> events_;
     wire::Writer<plab_v2_Collisions> collisions_;

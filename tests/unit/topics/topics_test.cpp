@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    wire::Entity participant_;
+    wire::Participant participant_;
 };
 
 /// Writes `sample` every `period` until the end of its scope.
