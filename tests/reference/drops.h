@@ -57,6 +57,7 @@ struct Fall
 {
     double start = 0, highest = 0, last = 0;  ///< J
     double lifted = 0;                        ///< J, largest rise in a step
+    double gained = 0;                        ///< J: most that it had above the start and what the contacts say that they lifted
     double gain() const { return highest / start; }
 };
 
@@ -73,6 +74,9 @@ inline Fall play(const Drop& d, const Way& way)
         const double now = mechanical_energy(s);
         out.highest = std::max(out.highest, std::isfinite(now) ? now : HUGE_VAL);
         out.lifted = std::max(out.lifted, now - out.last);
+        double lift = 0;
+        for (const simulation::ContactEnergy& e : s.simulation().stepper().contact_energy()) lift += e.lifted;
+        out.gained = std::max(out.gained, std::isfinite(now) ? now - out.start - lift : HUGE_VAL);
         out.last = now;
     }
     return out;
@@ -107,7 +111,7 @@ inline Drop any_drop(std::uint64_t& random)
     return d;
 }
 
-/// J: what parting overlap may lift in a fall. A step takes a body g h^2 deep at most where nothing meets it, a few times.
+/// J: what may be gained in a fall where it is not exact: the work of gravity on the way of a step, a few times.
 inline double allowance(const Drop& d) { return 10 * std::pow(9.81 * d.h, 2); }
 
 inline void check_drops(std::uint64_t random, int count)
@@ -119,11 +123,13 @@ inline void check_drops(std::uint64_t random, int count)
         {
             const Fall f = play(d, way);
             CAPTURE(i);
-            CAPTURE(way.resolution);
-            CAPTURE(way.manager);
+            CAPTURE(std::string(way.resolution));
+            CAPTURE(std::string(way.manager));
             CAPTURE(d.h);
             CAPTURE(f.start);
-            CHECK(f.highest - f.start <= 1e-9 * f.start + allowance(d));
+            // SoftStep has the contacts of the step's begin in its sub-steps.
+            const bool exact = way.manager != std::string("SoftStep");
+            CHECK(f.gained <= 1e-9 * f.start + (exact ? 0.0 : allowance(d)));
         }
     }
 }

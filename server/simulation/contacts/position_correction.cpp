@@ -32,8 +32,36 @@ void Stepper::part(std::size_t begin, std::size_t end)
         }
     a.apply(bodies, ia), b.apply(bodies, ib);
     const std::uint32_t response = detectors_[found_[begin].detector].response;
-    if (response == kNoIndex || resting_force_.size() != bodies.size()) return;
-    contact_energy_[response].lifted -= dot(resting_force_[ia], a.shift) + dot(resting_force_[ib], b.shift);
+    if (response == kNoIndex) return;
+    const Contact& c = found_[begin].contact;
+    contact_energy_[response].lifted -= dot(force_on(c.a), a.shift) + dot(force_on(c.b), b.shift);
+}
+
+void Stepper::note_forces(const GroupSystem& system)
+{
+    const Bodies& bodies = world_.host().bodies;
+    known_force_.resize(bodies.size());
+    for (std::size_t i = 0; i < system.bodies().size(); ++i)
+    {
+        const std::uint32_t b = system.bodies()[i];
+        known_force_[b] = {system.acceleration(i) * bodies.mass[b], serial_};
+    }
+}
+
+/// N, of this step; what has just met others has not been advanced with them yet.
+Vec3 Stepper::force_on(Ref body)
+{
+    if (!world_.host().bodies.dynamic(body.index)) return {};
+    known_force_.resize(world_.host().bodies.size());
+    if (known_force_[body.index].serial != serial_)
+    {
+        const std::uint32_t group = groups_.of(body);
+        GroupSystem& system = system_for(std::span(&group, 1), {});
+        system.begin(frame_.step, frame_.step, {}, nullptr);
+        system.evaluate_here();
+        note_forces(system);
+    }
+    return known_force_[body.index].force;
 }
 
 void Stepper::correct_positions()

@@ -78,12 +78,7 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
     if (!led && meets_any(system, h)) arrest(h, book), system.join();
 
     moved_.kick(system, bodies, members_, h);
-    if (!trial)
-    {
-        resting_force_.resize(bodies.size());
-        for (const std::uint32_t i : members_)
-            resting_force_[system.bodies()[i]] = system.acceleration(i) * bodies.mass[system.bodies()[i]];
-    }
+    if (!trial) note_forces(system);
     respond(touching_, ImpactMode::Rest, h, book);
     if (!trial) keep_impulses(touching_, from, h);
     system.join();  // an impulse knows nothing of joints

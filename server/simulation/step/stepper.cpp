@@ -37,6 +37,7 @@ void Stepper::emit(Event event)
 void Stepper::step(Tick tick, double start_time, double dt)
 {
     meter_.start();
+    ++serial_;
     events_.clear();
     report_ = {};
     reactions_.clear();

@@ -257,6 +257,8 @@ private:
         return x.detector == y.detector && x.contact.a == y.contact.a && x.contact.b == y.contact.b;
     }
     void correct_positions();
+    void note_forces(const GroupSystem& system);
+    Vec3 force_on(Ref body);
 
     // contact_force_swap.cpp
     struct Eased
@@ -328,7 +330,14 @@ private:
     std::vector<std::uint32_t> members_, places_;
     MidwayContacts midway_{*this};
     KickedBodies moved_;
-    std::vector<Vec3> resting_force_;  ///< N, by body: of the step, where Response/Impulse advances it
+    /// What acts on a body besides contacts, N, as known in a step.
+    struct KnownForce
+    {
+        Vec3 force;
+        std::uint64_t serial = 0;  ///< of the step
+    };
+    std::uint64_t serial_ = 0;             ///< counts calls of step(), of whatever tick
+    std::vector<KnownForce> known_force_;  ///< by body, where Response/Impulse advances it or parts it from others
 
     std::vector<Event> events_;
     std::vector<ParameterChange> changes_;
