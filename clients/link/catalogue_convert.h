@@ -1,7 +1,8 @@
 /// Samples of the catalogue's topics as plain structs: texts and sequences are copied out of DDS's memory.
 #pragma once
 
-#include "link/catalogue.h"
+#include "idl/topics.h"
+#include "link/catalogue_data.h"
 
 namespace plab::link
 {

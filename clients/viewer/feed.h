@@ -1,7 +1,8 @@
 /// Moments one after the other, or why there are no more.
 #pragma once
 
-#include "viewer/run.h"
+#include "viewer/options.h"
+#include "viewer/outcome.h"
 #include "viewer/source.h"
 
 namespace plab::view

@@ -60,11 +60,6 @@ struct FileIndex
     void sort_chunks();
 };
 
-/// By the summary if there is a whole one, else by a scan. An error: this is no recording, or cannot be read at all.
-/// In a file without a summary, which channels a chunk holds is told by records that no CRC covers: recover() does not
-/// rely on them, readers do.
-Result<FileIndex> read_index(const Source& source, const Limits& limits);
-
 /// Magic and header, and where the next record begins.
 struct FileStart
 {

@@ -4,6 +4,7 @@
 
 #include "idl/recording/metadata.h"
 #include "idl/recording/parse.h"
+#include "idl/recording/read_index.h"
 
 namespace plab::recording
 {

@@ -1,8 +1,8 @@
 /// Closed forms for the pairs of shapes that have one; right to rounding.
 #pragma once
 
-#include "narrow.h"
 #include "solid.h"
+#include "touches.h"
 
 namespace plab::detection
 {

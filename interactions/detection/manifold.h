@@ -1,8 +1,8 @@
 /// Points of contact of two solids, from the parts of their surfaces that face one another.
 #pragma once
 
-#include "narrow.h"
 #include "solid.h"
+#include "touches.h"
 
 namespace plab::detection
 {

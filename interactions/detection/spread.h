@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "narrow.h"
+#include "touches.h"
 
 namespace plab::detection
 {

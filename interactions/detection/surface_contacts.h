@@ -4,8 +4,8 @@
 #pragma once
 
 #include "manifold.h"
-#include "narrow.h"
 #include "solid.h"
+#include "touches.h"
 
 namespace plab::detection
 {

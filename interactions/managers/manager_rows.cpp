@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "advance_island.h"
 #include "plab/number_text.h"
 
 namespace plab::managers

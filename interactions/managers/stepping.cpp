@@ -5,7 +5,6 @@
 
 #include "plab/body_turn.h"
 #include "plab/rotation.h"
-#include "slip_end.h"
 
 namespace plab::managers
 {
@@ -224,43 +223,6 @@ void move(const Island& island, const Verdict& found, double h)
         island.motion->move_mean(h);
     else
         island.motion->move(h);
-}
-
-Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory)
-{
-    Problem& problem = memory.problem;
-    problem.load(island, bodies, shafts);
-    auto& guess = memory.impulses;
-    guess.clear(), memory.line_impulses.clear();
-    for (const Point& p : problem.points) guess.push_back(p.impulse);
-    for (const Line& line : problem.lines) memory.line_impulses.push_back(line.impulse);
-    Verdict out = answer_impacts(island, bodies, shafts, method, memory);
-    memory.slips.clear();
-    for (const Point& p : problem.points) memory.slips.push_back(problem.slip(p));
-    for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
-    for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
-
-    const bool looks_for_ends = !problem.points.empty() && problem.points.size() <= choices.slip_ends_up_to;
-    if (looks_for_ends)
-        out.join(SlipEnds(island, bodies, shafts, method, choices.slop, memory).advance());
-    else
-    {
-        island.motion->kick(island.h);
-        problem.read_speeds(bodies, shafts);
-        set_targets(problem, island, island.h, choices.slop, memory.passing);
-        problem.apply_impulses();
-        const Verdict found = method.find_impulses(problem);
-        out.join(found);
-        problem.write_speeds(bodies, shafts);
-        move(island, found, island.h);
-        store_impulses(problem, island);
-    }
-    for (std::size_t i = 0; i < memory.impacts.size(); ++i)
-        if (island.contacts[i].approach > 0) island.contacts[i].impulse += to_world(problem.points[i], memory.impacts[i]);
-    const Verdict moved = part_overlap(island, bodies, shafts, method, choices, memory);
-    out.iterations += moved.iterations;
-    out.fell_back = out.fell_back || moved.fell_back;
-    return out;
 }
 
 }  // namespace plab::managers

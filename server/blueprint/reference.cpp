@@ -2,6 +2,7 @@
 
 #include "blueprint/writer.h"
 #include "model/measured_costs.h"
+#include "model/names.h"
 #include "model/text.h"
 #include "model/type_summary.h"
 #include "model/values.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "blueprint/entry_text.h"
+#include "model/names.h"
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::blueprint
 {

@@ -6,6 +6,7 @@
 
 #include "blueprint/entry_text.h"
 #include "blueprint/xgl.h"
+#include "model/numbers.h"
 #include "model/values.h"
 
 namespace plab::blueprint

@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
+#include "model/numbers.h"
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::blueprint
 {

@@ -9,6 +9,8 @@
 
 #include "blueprint/reader.h"
 #include "model/compile.h"
+#include "model/names.h"
+#include "model/numbers.h"
 #include "model/values.h"
 
 namespace plab::control

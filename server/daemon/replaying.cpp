@@ -9,7 +9,7 @@
 #include "daemon/output.h"
 #include "daemon/recording.h"
 #include "daemon/trace.h"
-#include "model/values.h"
+#include "model/numbers.h"
 #include "program/interruption.h"
 #include "program/progress.h"
 #include "replay/replay.h"

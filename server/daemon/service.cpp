@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/runner.h"
+#include "daemon/ending.h"
 #include "publish/busy.h"
 #include "simulation/clock.h"
 #include "simulation/requests/request_words.h"

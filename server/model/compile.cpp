@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/compile_internal.h"
+#include "model/names.h"
 #include "model/text.h"
 #include "model/values.h"
 

@@ -2,20 +2,12 @@
 #pragma once
 
 #include "model/blueprint.h"
+#include "model/compile_limits.h"
 #include "model/scene.h"
 #include "model/type_registry.h"
 
 namespace plab::model
 {
-
-struct CompileLimits
-{
-    /// Of a scene, generated ones among them: 100,000 bodies take 0.5 GB. Where counts come in (<repeat>, files, requests)
-    /// this is what keeps a slip of the hand from filling the memory.
-    std::size_t components = 100'000;
-    std::string raised_by;     ///< what a user would write to raise it ("--max-components N"), for the message; may be empty
-    std::size_t errors = 100;  ///< reported at once; the rest are counted
-};
 
 /// Resolves types (loading plugins), ids, roles, groups, short forms, repeats and stage lists; checks every value.
 /// All errors are collected. `existing`: the scene that a fragment is added to; its ids can be referred to and not be

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "model/compile_internal.h"
+#include "model/names.h"
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::model::detail
 {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "model/compile_internal.h"
+#include "model/names.h"
 #include "model/text.h"
 #include "model/values.h"
 

@@ -11,7 +11,10 @@
 #include <unordered_set>
 #include <vector>
 
-#include "model/compile.h"
+#include "model/blueprint.h"
+#include "model/compile_limits.h"
+#include "model/scene.h"
+#include "model/type_registry.h"
 
 namespace plab::model::detail
 {

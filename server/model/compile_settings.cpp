@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "model/compile_internal.h"
+#include "model/names.h"
 #include "model/numbers.h"
 #include "model/text.h"
 #include "model/values.h"

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "model/compile_internal.h"
+#include "model/names.h"
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::model::detail
 {

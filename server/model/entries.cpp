@@ -2,7 +2,6 @@
 
 #include "model/numbers.h"
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::model
 {

@@ -1,9 +1,9 @@
 /// Values to text that reads back to the same bits.
 
-#include <charconv>
 #include <cmath>
 
 #include "model/entries.h"
+#include "model/numbers.h"
 #include "model/values.h"
 
 namespace plab::model
@@ -54,18 +54,6 @@ struct Formatter
 };
 
 }  // namespace
-
-std::string format_real(double value)
-{
-    if (std::isnan(value)) return "nan";
-    if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
-    const double size = std::fabs(value);
-    const bool plain = size == 0 || (size >= 1e-5 && size < 1e16);
-    char buffer[64];
-    const auto [end, ec] =
-        std::to_chars(buffer, buffer + sizeof buffer, value, plain ? std::chars_format::fixed : std::chars_format::scientific);
-    return ec == std::errc() ? std::string(buffer, end) : std::string();
-}
 
 std::string format_value(const Value& value) { return std::visit(Formatter{}, value); }
 

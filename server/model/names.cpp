@@ -1,10 +1,9 @@
-/// Near misses of names, and the paper's setter names.
+#include "model/names.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::model
 {

@@ -6,7 +6,6 @@
 
 #include "model/text.h"
 #include "model/units.h"
-#include "model/values.h"
 
 namespace plab::model
 {
@@ -97,6 +96,18 @@ Result<std::uint64_t> parse_unsigned(std::string_view word)
     if (!whole && parse_real(word) && whole.error().reason.find("range") == std::string::npos)
         return reason(quoted(word) + " is not a whole number of 0 or more");
     return whole;
+}
+
+std::string format_real(double value)
+{
+    if (std::isnan(value)) return "nan";
+    if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
+    const double size = std::fabs(value);
+    const bool plain = size == 0 || (size >= 1e-5 && size < 1e16);
+    char buffer[64];
+    const auto [end, ec] =
+        std::to_chars(buffer, buffer + sizeof buffer, value, plain ? std::chars_format::fixed : std::chars_format::scientific);
+    return ec == std::errc() ? std::string(buffer, end) : std::string();
 }
 
 }  // namespace plab::model

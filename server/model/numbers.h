@@ -1,7 +1,8 @@
-/// Single numbers as authors write them, whatever the process's locale says.
+/// Single numbers as authors write them, and back, whatever the process's locale says.
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "plab/result.h"
@@ -19,5 +20,8 @@ Result<double> parse_real(std::string_view word);
 /// A whole number of 64 bits.
 Result<std::int64_t> parse_integer(std::string_view word);
 Result<std::uint64_t> parse_unsigned(std::string_view word);
+
+/// The shortest decimal text that reads back as the same double.
+std::string format_real(double value);
 
 }  // namespace plab::model

@@ -2,6 +2,7 @@
 
 #include <unordered_set>
 
+#include "model/names.h"
 #include "model/numbers.h"
 #include "model/text.h"
 #include "model/values.h"

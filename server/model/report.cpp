@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "model/compile_internal.h"
-#include "model/values.h"
+#include "model/names.h"
 
 namespace plab::model::detail
 {

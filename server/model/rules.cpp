@@ -5,6 +5,8 @@
 #include <set>
 #include <span>
 
+#include "model/names.h"
+#include "model/numbers.h"
 #include "model/text.h"
 #include "model/values.h"
 #include "plab/limits.h"

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "model/measured_costs.h"
+#include "model/numbers.h"
 #include "model/values.h"
 
 namespace plab::model

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "model/names.h"
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::model
 {

@@ -3,7 +3,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "model/scene.h"
 #include "plab/schema.h"
@@ -24,18 +23,5 @@ std::string format_value(const Value& value);
 
 /// Parses "1/240", "0.001", "2 ms": exact where it can be. Must be positive and finite.
 Result<StepLength> parse_step_length(std::string_view text);
-
-/// The shortest decimal text that reads back as the same double.
-std::string format_real(double value);
-
-/// Up to `most` names near to `wanted` (edit distance, case and last part considered), nearest first.
-std::vector<std::string> nearest_names(std::string_view wanted, const std::vector<std::string>& known, std::size_t most = 3);
-/// ", did you mean 'a' or 'b'?" or nothing.
-std::string did_you_mean(std::string_view wanted, const std::vector<std::string>& known);
-
-/// "velocity_factor" from "SetVelocityFactor" or "VelocityFactor".
-std::string field_name_of_setter(std::string_view setter);
-/// "SetVelocityFactor" from "velocity_factor".
-std::string setter_of_field_name(std::string_view field);
 
 }  // namespace plab::model

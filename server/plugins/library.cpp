@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "model/values.h"
+#include "model/names.h"
 
 namespace plab::plugins
 {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "publish/entries.h"
 #include "publish/figures.h"
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "model/numbers.h"
 #include "model/values.h"
 #include "publish/states.h"
 #include "simulation/snapshot/format.h"

@@ -3,7 +3,9 @@
 
 #include <functional>
 
-#include "replay/replay.h"
+#include "record/run_log.h"
+#include "replay/mismatch.h"
+#include "simulation/simulation.h"
 
 namespace plab::replay
 {

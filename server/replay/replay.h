@@ -8,8 +8,8 @@
 
 #include "control/operations.h"
 #include "record/run_log.h"
+#include "replay/mismatch.h"
 #include "simulation/simulation.h"
-#include "simulation/snapshot/compare.h"
 
 namespace plab::replay
 {
@@ -23,23 +23,6 @@ struct ReplayOptions
     std::function<bool()> stop;         ///< asked between steps; true: the rest is not wanted
     std::function<void()> stepped;      ///< after each step
     std::function<void(double)> begun;  ///< a run begins at this time, s
-};
-
-/// The first place where a replay and its recording differ.
-struct Mismatch
-{
-    std::uint64_t run = 0;
-    Tick step = 0;
-    std::uint64_t recorded = 0, replayed = 0;  ///< hashes
-    /// What differs: from the recorded frame of that step or the next one that there is, and from the next snapshot, as far as there are
-    /// such.
-    std::vector<simulation::Difference> in_frame, in_snapshot;
-    Tick snapshot_step = -1;
-    Tick frame_step = -1;  ///< of the recorded frame; < 0: none comes before the snapshot
-    /// Components added, removed or exchanged until then: what that frame says, and what was made again.
-    std::uint64_t recorded_revision = 0, replayed_revision = 0;
-
-    std::string text() const;
 };
 
 /// What was made again of a run.

@@ -1,7 +1,7 @@
 /// What is noted while a recorded run steps.
 #pragma once
 
-#include "study/run.h"
+#include "study/run_record.h"
 
 namespace plab::study
 {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "model/names.h"
 #include "model/type_summary.h"
 #include "model/units.h"
-#include "model/values.h"
 
 namespace plab::study
 {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "plab/rotation.h"
 #include "study/exact/exact.h"
 

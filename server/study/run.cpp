@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "plab/number_text.h"
 #include "study/observe.h"
 

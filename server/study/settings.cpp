@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include "model/names.h"
 #include "model/text.h"
 #include "model/values.h"
 

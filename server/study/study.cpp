@@ -4,8 +4,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "model/names.h"
+#include "model/numbers.h"
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::study
 {

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "model/names.h"
+#include "model/numbers.h"
 #include "model/text.h"
 #include "model/units.h"
 #include "model/values.h"

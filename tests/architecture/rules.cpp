@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <regex>
+#include <sstream>
 
 #include "table.h"
 
@@ -89,6 +91,79 @@ std::string judge_own(const File& file, const Home& home, const std::string& inc
     return home.root + " may not include \"" + include + "\" (" + *path + ")";
 }
 
+/// What stands behind #include in a line; empty: it is no such line.
+std::string operand_of(const std::string& line)
+{
+    static const std::regex directive(R"(^\s*#\s*include\s*(.*)$)");
+    std::smatch match;
+    return std::regex_match(line, match, directive) ? match[1].str() : "";
+}
+
+/// A header and its source, as one.
+std::string unit_of(const std::string& path) { return path.substr(0, path.rfind('.')); }
+
+/// Which units each unit includes, in any of its files.
+std::map<std::string, std::set<std::string>> units_included(const std::vector<File>& files)
+{
+    const Paths known = paths_of(files);
+    std::map<std::string, std::set<std::string>> out;
+    for (const File& file : files)
+    {
+        const auto home = home_of(file.path);
+        if (!home || !is_source(file.path)) continue;
+        std::istringstream lines(file.text);
+        for (std::string line; std::getline(lines, line);)
+        {
+            const std::string operand = operand_of(line);
+            const std::size_t end = operand.find('"', 1);
+            if (!operand.starts_with('"') || end == std::string::npos) continue;
+            const auto path = resolve(file.path, *home, operand.substr(1, end - 1), known);
+            if (path && unit_of(*path) != unit_of(file.path)) out[unit_of(file.path)].insert(unit_of(*path));
+        }
+    }
+    return out;
+}
+
+/// Walks down from units that nobody has walked from; who stands on the way already closes a circle.
+class CircleSearch
+{
+public:
+    explicit CircleSearch(const std::map<std::string, std::set<std::string>>& included) : included_(included) {}
+    Complaints run()
+    {
+        for (const auto& [unit, others] : included_) visit(unit);
+        return std::move(found_);
+    }
+
+private:
+    void visit(const std::string& unit)
+    {
+        if (!seen_.insert(unit).second) return;
+        way_.push_back(unit);
+        if (const auto found = included_.find(unit); found != included_.end())
+            for (const std::string& other : found->second)
+            {
+                const auto begin = std::ranges::find(way_, other);
+                if (begin == way_.end())
+                    visit(other);
+                else
+                    tell(begin);
+            }
+        way_.pop_back();
+    }
+    void tell(std::vector<std::string>::const_iterator begin)
+    {
+        std::string text;
+        for (auto unit = begin; unit != way_.end(); ++unit) text += *unit + " -> ";
+        found_.push_back(text + *begin);
+    }
+
+    const std::map<std::string, std::set<std::string>>& included_;
+    std::set<std::string> seen_;
+    std::vector<std::string> way_;
+    Complaints found_;
+};
+
 template <class Judge>
 Complaints each_line(const File& file, Judge&& judge)
 {
@@ -143,26 +218,28 @@ Paths paths_of(const std::vector<File>& files)
 
 bool is_source(std::string_view path)
 {
-    const bool place = inside(path, "server") || inside(path, "interactions") || inside(path, "tests");
-    return place && (path.ends_with(".h") || path.ends_with(".cpp"));
+    static constexpr std::string_view kPlaces[] = {"server", "interactions", "idl", "clients", "tests"};
+    return std::ranges::any_of(kPlaces, [&](std::string_view place) { return inside(path, place); }) &&
+           (path.ends_with(".h") || path.ends_with(".cpp"));
 }
 
 Complaints check_includes(const File& file, const Paths& known)
 {
     const auto home = home_of(file.path);
     if (!home) return {file.path + ":1: stands in no layer of the table"};
-    static const std::regex directive(R"(^\s*#\s*include\s*(.*)$)");
     static const std::regex operand(R"(^([<"])([^>"]+)[>"].*$)");
     return each_line(file,
                      [&](const std::string& line) -> std::string
                      {
                          std::smatch match;
-                         if (!std::regex_match(line, match, directive)) return {};
-                         const std::string rest = match[1];
+                         const std::string rest = operand_of(line);
+                         if (rest.empty()) return {};
                          if (!std::regex_match(rest, match, operand)) return "an include that names no file: " + rest;
                          return match[1] == "<" ? judge_system(file, *home, match[2]) : judge_own(file, *home, match[2], known);
                      });
 }
+
+Complaints check_circles(const std::vector<File>& files) { return CircleSearch(units_included(files)).run(); }
 
 Complaints check_length(const File& file, int limit)
 {

@@ -24,6 +24,8 @@ Paths paths_of(const std::vector<File>& files);
 bool is_source(std::string_view path);
 
 Complaints check_includes(const File& file, const Paths& known);
+/// Files that include one another in a circle, a header and its source taken as one: "a -> b -> a".
+Complaints check_circles(const std::vector<File>& files);
 Complaints check_length(const File& file, int limit);
 Complaints check_leftovers(const File& file);
 Complaints check_machine_paths(const File& file);

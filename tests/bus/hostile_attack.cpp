@@ -29,6 +29,17 @@ link::Session session_in(std::uint32_t domain, const std::string& server)
     return session.take();
 }
 
+/// For a failure: whether the run goes on, and what was said last.
+std::string state_of(Server& server)
+{
+    const std::size_t before = server.process().output().size();
+    std::this_thread::sleep_for(Milliseconds(300));
+    const std::string said = server.process().errors();
+    return "nobody answers; hashes in 0.3 s: " + std::to_string(server.process().output().size() - before) + " bytes; plab-bus ended " +
+           std::to_string(count(said, "is started again")) +
+           " times; last words: " + said.substr(said.size() - std::min<std::size_t>(said.size(), 3000));
+}
+
 /// What a client says when it joins: all topics, with their types.
 std::vector<Packet> captured(const link::Session& session)
 {
@@ -70,7 +81,7 @@ void attack(std::uint64_t packets, std::uint64_t seed, unsigned pause_us)
         if (!caller) continue;
         if (auto answer = caller->call({{{"pause"}}, {}, {}}, Seconds(5))) reply = answer.take();
     }
-    REQUIRE(reply.has_value());
+    if (!reply) FAIL(state_of(server));
     CHECK(reply->done());
     CHECK(server.end() == 0);
     const std::size_t deaths = count(server.process().errors(), "is started again");

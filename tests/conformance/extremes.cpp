@@ -13,6 +13,7 @@
 #include <limits>
 #include <sstream>
 
+#include "model/numbers.h"
 #include "model/values.h"
 
 namespace plab::test

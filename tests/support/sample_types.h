@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "model/names.h"
 #include "model/type_registry.h"
-#include "model/values.h"
 
 namespace plab::test
 {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lua/call.h"
+#include "lua/limits.h"
 #include "plab/result.h"
 
 namespace plab::scripts
@@ -16,12 +17,6 @@ namespace plab::scripts
 std::string manual();
 
 struct Session;
-
-struct Limits
-{
-    std::int64_t instructions = 0;  ///< per call
-    std::size_t memory = 0;         ///< bytes
-};
 
 /// Why a call was ended.
 struct Failure

@@ -8,7 +8,7 @@
 
 #include "lua/arena.h"
 #include "lua/call.h"
-#include "lua/machine.h"
+#include "lua/limits.h"
 #include "lua/meter.h"
 
 namespace plab::scripts

@@ -17,23 +17,10 @@
 #pragma once
 
 #include "error_control.h"
-#include "jacobian.h"
+#include "radau5_stages.h"
 
 namespace plab::solvers
 {
-
-/// Vectors and matrices of one advance, kept warm.
-struct Radau5Memory
-{
-    std::vector<double> y, f0, units, sizes, scale, error, filtered, work, slope, other, wide;
-    std::vector<double> z[3], w[3], f[3], polynomial[3];
-    std::vector<Complex> pair;
-    SquareMatrix<double> jacobian;
-    Factors<double> real;
-    Factors<Complex> complex;
-
-    void fit(std::size_t n);
-};
 
 struct Radau5Counts : SubstepCounts
 {

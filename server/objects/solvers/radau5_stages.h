@@ -1,7 +1,25 @@
 /// The stages of one internal step of Radau5: simplified Newton iteration, prediction and error estimate.
 #pragma once
 
-#include "radau5.h"
+#include "jacobian.h"
+
+namespace plab::solvers
+{
+
+/// Vectors and matrices of one advance, kept warm.
+struct Radau5Memory
+{
+    std::vector<double> y, f0, units, sizes, scale, error, filtered, work, slope, other, wide;
+    std::vector<double> z[3], w[3], f[3], polynomial[3];
+    std::vector<Complex> pair;
+    SquareMatrix<double> jacobian;
+    Factors<double> real;
+    Factors<Complex> complex;
+
+    void fit(std::size_t n);
+};
+
+}  // namespace plab::solvers
 
 namespace plab::solvers::radau
 {

@@ -141,7 +141,6 @@ private:
     void locate(Candidate& candidate);
     void bracket(Candidate& candidate, Trial& trial);
     bool overlaps_at(Candidate& candidate, double time);
-    bool stands_from(Candidate& candidate, double begin);
     double begin_of_scope() const;
     void ask(const Candidate& candidate, Trial& trial);
     void search(Candidate& candidate);

@@ -70,26 +70,6 @@ void EventLocator::bracket(Candidate& candidate, Trial& trial)
     }
 }
 
-/// Whether all that overlaps at the end of the step touches at `begin`, where everybody is, and does not close: then it is pressed
-/// together, and nothing is to be found by halving. Takes the contacts from there.
-bool EventLocator::stands_from(Candidate& candidate, double begin)
-{
-    const double margin = overlap_tolerance(candidate.a, candidate.b), left = s_->frame_.step - begin;
-    const StandingPair pair{candidate.a, candidate.b, at_end_.front().contact.normal * -margin};
-    seen_.clear();
-    s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
-    const auto stands = [&](const FoundContact& at_end)
-    {
-        const auto same = [&](const FoundContact& f) { return f.contact.feature == at_end.contact.feature; };
-        const auto found = std::find_if(seen_.begin(), seen_.end(), same);
-        return found != seen_.end() && std::fabs(s_->normal_velocity(found->contact)) * left <= margin;
-    };
-    if (!std::all_of(at_end_.begin(), at_end_.end(), stands)) return false;
-    sort_contacts(seen_, s_->world_);
-    candidate.contacts = seen_;
-    return true;
-}
-
 void EventLocator::locate(Candidate& candidate)
 {
     candidate.located = true;
@@ -111,12 +91,7 @@ void EventLocator::locate(Candidate& candidate)
         overlaps = false;
         candidate.contacts = at_end_;
     }
-    if (!overlaps && stands_from(candidate, trial.begin))
-    {
-        candidate.stuck = true;
-        candidate.time = trial.begin;
-    }
-    else if (!overlaps)
+    if (!overlaps)
     {
         bracket(candidate, trial);
         candidate.time = trial.begin;

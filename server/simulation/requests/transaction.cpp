@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/compile.h"
+#include "model/names.h"
 #include "model/values.h"
 #include "simulation/requests/field_change.h"
 #include "simulation/snapshot/history.h"

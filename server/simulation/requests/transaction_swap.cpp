@@ -1,6 +1,7 @@
 // Swaps: what a new component takes over from the old one, and its taking the place.
 #include <algorithm>
 
+#include "model/names.h"
 #include "model/values.h"
 #include "simulation/requests/field_change.h"
 #include "simulation/requests/transaction.h"

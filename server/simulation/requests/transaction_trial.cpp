@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "simulation/clock.h"
 #include "simulation/requests/request_words.h"
 #include "simulation/requests/transaction.h"

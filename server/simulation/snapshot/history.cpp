@@ -4,7 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "model/values.h"
+#include "model/names.h"
+#include "model/numbers.h"
 #include "simulation/simulation.h"
 #include "simulation/watch/divergence_watch.h"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "study/exact/facts.h"
 
 namespace plab::study

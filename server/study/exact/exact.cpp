@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "model/names.h"
 #include "model/numbers.h"
 #include "model/text.h"
-#include "model/values.h"
 
 namespace plab::study
 {

@@ -1,7 +1,7 @@
 // One object on one linear spring: written in a script, declared between two points, along a slider or about an axle.
 #include <cmath>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "study/exact/damped.h"
 #include "study/exact/facts.h"
 

@@ -1,7 +1,7 @@
 // Pendulums: a shaft with the moment of its weight, and a body that hangs on a hinge or a ball.
 #include <cmath>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "plab/rotation.h"
 #include "study/exact/facts.h"
 #include "study/exact/pendulum_law.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "study/exact/facts.h"
 
 namespace plab::study

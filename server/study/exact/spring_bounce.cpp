@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "study/exact/damped.h"
 #include "study/exact/facts.h"
 

@@ -1,7 +1,7 @@
 /// Near misses and setter names.
 #include <doctest/doctest.h>
 
-#include "model/values.h"
+#include "model/names.h"
 
 using namespace plab::model;
 

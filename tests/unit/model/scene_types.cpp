@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "model/values.h"
+#include "model/names.h"
 
 namespace plab::test
 {

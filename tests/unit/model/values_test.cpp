@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "model/numbers.h"
 #include "model/values.h"
 
 using namespace plab;

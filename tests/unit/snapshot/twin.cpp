@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "model/values.h"
+#include "model/numbers.h"
 #include "simulation/snapshot/format.h"
 
 namespace plab::test

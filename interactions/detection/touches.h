@@ -1,0 +1,56 @@
+/// What the narrow phase finds: points of contact of two shapes, or the nearest points.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "plab/vector.h"
+
+namespace plab::detection
+{
+
+/// One point of contact; normal from the first shape to the second.
+struct Touch
+{
+    Vec3 point;                 ///< m, half way between the two surfaces
+    Vec3 normal;                ///< unit
+    double depth = 0;           ///< m; < 0: a gap within the margin that was asked for
+    std::uint32_t feature = 0;  ///< which corner or edge, < kFeatures; stable while the same ones touch
+};
+
+inline constexpr std::uint32_t kFeatures = 1u << 20;
+
+/// Up to kCapacity points between two shapes.
+class Touches
+{
+public:
+    static constexpr std::size_t kCapacity = 16;
+    /// m: points with a gap up to this are kept too.
+    explicit Touches(double margin = 0) : margin_(margin) {}
+    void clear() { count_ = 0; }
+    void clear(double margin) { count_ = 0, margin_ = margin; }
+    double margin() const { return margin_; }
+    /// Keeps points that overlap, as far as there is room.
+    void add(const Touch& touch)
+    {
+        if (touch.depth > -margin_ && count_ < kCapacity) touches_[count_++] = touch;
+    }
+    std::span<Touch> all() { return {touches_.data(), count_}; }
+    std::span<const Touch> all() const { return {touches_.data(), count_}; }
+
+private:
+    std::array<Touch, kCapacity> touches_{};
+    std::size_t count_ = 0;
+    double margin_ = 0;
+};
+
+/// The nearest points of two shapes.
+struct Separation
+{
+    double gap = 0;         ///< m; < 0: depth along `normal`
+    Vec3 point_a, point_b;  ///< m
+    Vec3 normal;            ///< unit, from a to b
+};
+
+}  // namespace plab::detection
