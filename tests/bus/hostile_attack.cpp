@@ -83,6 +83,12 @@ void attack(std::uint64_t packets, std::uint64_t seed, unsigned pause_us)
     }
     if (!reply) FAIL(state_of(server));
     CHECK(reply->done());
+    // What the packets left behind in DDS goes with the process that has it.
+    CHECK(server.process().wait_for("takes the place of this one", Milliseconds(10000)));
+    const link::Session later = session_in(domain, server.name());
+    auto caller = link::Caller::make(later, Seconds(5));
+    REQUIRE_MESSAGE(caller.ok(), state_of(server));
+    CHECK(ask(*caller, {"pause"}).done());
     CHECK(server.end() == 0);
     const std::size_t deaths = count(server.process().errors(), "is started again");
     MESSAGE(packets << " packets, plab-bus ended " << deaths << " times");

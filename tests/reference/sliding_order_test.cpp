@@ -13,7 +13,8 @@ namespace
 
 constexpr double kG = 9.81, kRadius = 0.1;
 
-/// The angle from the vertical of a ball whose centre goes round a circle of radius `length`: angle'' = rate sin angle, classical Runge-Kutta.
+/// The angle from the vertical of a ball whose centre goes round a circle of radius `length`: angle'' = rate sin angle, classical
+/// Runge-Kutta.
 struct Swing
 {
     double angle = 0, speed = 0;  // rad, rad/s
@@ -52,8 +53,8 @@ std::string touching(const std::string& response, double friction)
 
 const std::string kBowl = "<component id='bowl' type='Shape/Bowl' radius='1'/><component id='ground' type='State/Static' shape='bowl'/>";
 const std::string kDome = "<component id='dome' type='Shape/Sphere' radius='1'/><component id='ground' type='State/Static' shape='dome'/>";
-const std::array<std::string, 3> kResponses{"Response/Rows' response.manager='Manager/Direct", "Response/Rows' response.manager='Manager/SequentialImpulse",
-                                            "Response/Impulse"};
+const std::array<std::string, 3> kResponses{"Response/Rows' response.manager='Manager/Direct",
+                                            "Response/Rows' response.manager='Manager/SequentialImpulse", "Response/Impulse"};
 
 /// Halving the step quarters the error, but for what the first one is too coarse for.
 void check_order(const std::vector<double>& errors, double finest)

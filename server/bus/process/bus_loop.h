@@ -11,6 +11,7 @@
 #include "bus/channel/bell.h"
 #include "bus/channel/messages.h"
 #include "bus/process/catalogue.h"
+#include "bus/process/dds_log.h"
 #include "bus/process/outbox.h"
 #include "bus/process/presence.h"
 #include "bus/process/stream.h"
@@ -28,8 +29,13 @@ public:
     BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const Bell& server, int lifeline, const StartMessage& start);
     /// False if it cannot join; plabd is told why.
     bool join();
-    /// Until plabd says that this is the end. False if it has ended without a word: then nobody says goodbye.
-    bool run();
+    enum class End
+    {
+        Told,      ///< plabd said that this is the end: clients have heard it
+        Orphaned,  ///< plabd has ended without a word: nobody says goodbye
+        Worn,      ///< another process is to take this one's place, and clients are not to notice
+    };
+    End run();
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -45,6 +51,7 @@ private:
     void look_at_readers();
     void follow_scene();
     void each_second(Clock::time_point now);
+    void report_dds();
     std::vector<wire::Dropped> dropped() const;
     void say_goodbye();
     template <class Function>
@@ -62,8 +69,11 @@ private:
     std::set<std::string, std::less<>> words_;
     Trouble trouble_;
     std::atomic<bool> matched_{true}, arrived_{true};  ///< set by listeners of DDS, on its threads
-    bool is_over_ = false;
+    bool is_over_ = false, is_worn_ = false;
+    std::uint64_t complaints_ = 0;  ///< lines that DDS has said
+    int quiet_ = 0;                 ///< s since the last of them
 
+    DdsLog dds_log_;
     // Before all that is made of them; and the listeners ring until the participant is gone.
     wire::Participant participant_;
     wire::Entity publisher_, subscriber_;
