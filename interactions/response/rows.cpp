@@ -10,6 +10,8 @@ namespace
 
 constexpr double kTolerance = 0x1p-46;  // of the speeds
 constexpr int kMostSweeps = 20000;
+/// Contacts that an impact of very many may go through, sweep by sweep: what closes by then is told as the residual.
+constexpr std::int64_t kMostVisits = 1'000'000;
 
 struct Bounce
 {
@@ -37,7 +39,11 @@ double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bo
         const double least = closing > 0 && !rests(c, rebound, bounce) ? rebound : 0.0;
         work.cones.push_back({&work.points[work.order[k]], c.friction, least, {}});
     }
-    result = solve_cones(work.cones, bodies, tolerance, kMostSweeps);
+    const int before = result.sweeps;
+    const auto contacts_hit = static_cast<std::int64_t>(std::max<std::size_t>(1, work.cones.size()));
+    const auto most = static_cast<int>(std::clamp<std::int64_t>(kMostVisits / contacts_hit, 20, kMostSweeps));
+    result = solve_cones(work.cones, bodies, tolerance, most);
+    result.sweeps += before;
     double gain = 0, size = 0;
     for (std::size_t k = 0; k < work.cones.size(); ++k)
     {
@@ -110,7 +116,8 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
     for (int trial = 1; try_impact(work, contacts, bodies, bounce, share, tolerance, result) > 0 && share > 0; ++trial)
     {
         take_back(work, bodies);
-        share = trial < kTrials ? 0.5 * share : 0.0;
+        const bool may_try = static_cast<std::int64_t>(work.cones.size()) * result.sweeps < kMostVisits;
+        share = trial < kTrials && may_try ? 0.5 * share : 0.0;
     }
     for (std::size_t k = 0; k < work.order.size(); ++k)
     {

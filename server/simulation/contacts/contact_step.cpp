@@ -295,7 +295,9 @@ void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, doub
         meter_.leave();
         if (book.work) book_impact(response, contacts, mode, kinetic_energy(contacts) - before, book);
         report_.worst_residual = std::max(report_.worst_residual, impact.residual);
-        report_.swept_rows += 3 * impact_contacts_.size() * static_cast<std::size_t>(1 + impact.iterations);
+        // Where contacts slide their direction is searched for: as long as sweeps over several rows.
+        const std::size_t rows_each = detectors_[d].by_rows ? 10 : 3;
+        report_.swept_rows += rows_each * impact_contacts_.size() * static_cast<std::size_t>(1 + impact.iterations);
         std::size_t next = 0;
         for (FoundContact& f : contacts)
             if (f.detector == d) f.contact = impact_contacts_[next++];

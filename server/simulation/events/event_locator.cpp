@@ -36,10 +36,10 @@ std::uint32_t EventLocator::new_slot()
     return slot;
 }
 
-std::uint64_t EventLocator::version_of(const Candidate& c) const
+std::uint64_t EventLocator::version_of(Ref a, Ref b) const
 {
     std::uint64_t sum = 0;
-    for (const Ref r : {c.a, c.b})
+    for (const Ref r : {a, b})
         if (const std::uint32_t g = s_->groups_.of(r); g != kNoIndex) sum += versions_[g];
     return sum;
 }
@@ -167,68 +167,64 @@ void EventLocator::scope_of(const Candidate& candidate, bool local)
     if (rests) close_over_resting_pairs();
 }
 
-/// m/s^2: by how much the present event changes what forces do to a body.
-Vec3 EventLocator::relief_of(Ref body) const
-{
-    const auto found = std::find_if(relieved_.begin(), relieved_.end(), [&](const Relieved& r) { return r.body == body.index; });
-    return found == relieved_.end() ? Vec3{} : found->acceleration;
-}
-
 /// Chooses an event. Where its pair is pressed together, one of them stops: what stands on that one is looked at again, as if it had
 /// been stopped already. So a stack that is let go stands after one event, not after one for each body.
 void EventLocator::take(std::uint32_t slot)
 {
     chosen_.push_back(slot);
-    if (!candidates_[slot].pressed) return;
     const Bodies& bodies = s_->world_.host().bodies;
     const Ref a = candidates_[slot].a, b = candidates_[slot].b;
-    const auto stands = [&](Ref r) { return !bodies.dynamic(r.index) || relief_of(r) != Vec3{}; };
+    for (const Ref r : {a, b})
+        if (bodies.dynamic(r.index) && !std::exchange(met_[r.index].chosen, true)) met_bodies_.push_back(r.index);
+    // Rows answer an island as one anyway.
+    if (!candidates_[slot].pressed || s_->detectors_[candidates_[slot].detector].by_rows) return;
+    const auto stands = [&](Ref r) { return !bodies.dynamic(r.index) || met_[r.index].relief != Vec3{}; };
     if (stands(a) == stands(b)) return;
     const Ref stopped = stands(a) ? b : a;
-    relieved_.push_back({stopped.index, stopped == b ? candidates_[slot].relief : -candidates_[slot].relief});
-    const double until = candidates_[slot].time + kSameTime * s_->frame_.step;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < touching_.size(); ++i)
-    {
-        const Touching t = touching_[i];
-        if ((t.a != stopped && t.b != stopped) || t.time > until)
-        {
-            touching_[kept++] = t;
-            continue;
-        }
-        const std::uint32_t again = new_slot();
-        Candidate& c = candidates_[again];
-        c.detector = t.detector, c.a = t.a, c.b = t.b, c.time = t.time, c.version = t.version, c.certified = true;
-        push(again);
-    }
-    touching_.resize(kept);
+    met_[stopped.index].relief = stopped == b ? candidates_[slot].relief : -candidates_[slot].relief;
+    recall_touching(stopped, candidates_[slot].time + kSameTime * s_->frame_.step);
+}
+
+/// The pair of a body that touched without being pressed, up to a time, goes back into the queue. Several stay where they are: in a wall
+/// one event would grow to all of it, and an answer to very many pairs at once takes longer than answers to a few at a time.
+void EventLocator::recall_touching(Ref stopped, double until)
+{
+    std::erase_if(touching_, [&](const Touching& t) { return t.version != version_of(t.a, t.b); });
+    const auto meets = [&](const Touching& t) { return (t.a == stopped || t.b == stopped) && t.time <= until; };
+    const auto found = std::find_if(touching_.begin(), touching_.end(), meets);
+    if (found == touching_.end() || std::any_of(found + 1, touching_.end(), meets)) return;
+    const std::uint32_t again = new_slot();
+    Candidate& c = candidates_[again];
+    c.detector = found->detector, c.a = found->a, c.b = found->b, c.time = found->time, c.version = found->version, c.certified = true;
+    push(again);
+    touching_.erase(found);
 }
 
 /// Takes the first event, and with it whatever happens at the same time to the same bodies.
 void EventLocator::gather(std::uint32_t first)
 {
-    chosen_.clear(), relieved_.clear();
+    chosen_.clear();
+    met_.resize(s_->world_.host().bodies.size());
     take(first);
     const Candidate& c = candidates_[first];
-    if (!c.certified || !s_->detectors_[c.detector].responds || c.stuck) return;
-    const double until = c.time + kSameTime * s_->frame_.step;
-    const auto meets_chosen = [&](const Candidate& x)
+    if (c.certified && s_->detectors_[c.detector].responds && !c.stuck) gather_until(c.time + kSameTime * s_->frame_.step);
+    for (const std::uint32_t b : met_bodies_) met_[b] = {};
+    met_bodies_.clear();
+}
+
+void EventLocator::gather_until(double until)
+{
+    const auto meets_chosen = [&](std::uint32_t slot)
     {
-        return std::any_of(chosen_.begin(), chosen_.end(),
-                           [&](std::uint32_t slot)
-                           {
-                               const Candidate& y = candidates_[slot];
-                               const Bodies& bodies = s_->world_.host().bodies;
-                               const auto same = [&](Ref r, Ref q) { return r == q && bodies.dynamic(r.index); };
-                               return same(x.a, y.a) || same(x.a, y.b) || same(x.b, y.a) || same(x.b, y.b);
-                           });
+        const Candidate& x = candidates_[slot];
+        return met_[x.a.index].chosen || met_[x.b.index].chosen;
     };
     set_aside_.clear();
     std::uint32_t slot = 0;
     while (!budget_.is_spent() && !queue_.empty() && queue_.front().time <= until && pop(slot))
     {
         Candidate& x = candidates_[slot];
-        if (x.time > until || !x.certified || !s_->detectors_[x.detector].responds || !meets_chosen(x))
+        if (x.time > until || !x.certified || !s_->detectors_[x.detector].responds || !meets_chosen(slot))
         {
             set_aside_.push_back(slot);
             continue;
@@ -242,12 +238,13 @@ void EventLocator::gather(std::uint32_t first)
         {
             take(slot);
             // Who was passed over may know the new one.
-            for (const std::uint32_t s : set_aside_) push(s);
-            set_aside_.clear();
+            const auto stays = [&](std::uint32_t s) { return !meets_chosen(s); };
+            const auto known = std::stable_partition(set_aside_.begin(), set_aside_.end(), stays);
+            std::for_each(known, set_aside_.end(), [&](std::uint32_t s) { push(s); });
+            set_aside_.erase(known, set_aside_.end());
         }
     }
     for (const std::uint32_t s : set_aside_) push(s);
-    relieved_.clear();
 }
 
 /// Answers the chosen event.
@@ -284,8 +281,11 @@ void EventLocator::process()
     advance_scope(time, {&s_->work_, 1}, true);
     for (const std::uint32_t g : scope_) s_->segment_begin_[g] = time;
     s_->report_.rewinds += static_cast<int>(scope_.size());
+    const std::uint64_t swept = s_->report_.swept_rows;
     answer();
-    budget_.spend(static_cast<double>(impact_.size()));
+    // Response/Impulse goes through few contacts at a time, and has a bound of its own.
+    const double sweeps = detector.by_rows ? WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows - swept) : 0.0;
+    budget_.spend(static_cast<double>(impact_.size()) + sweeps);
     for (const std::uint32_t g : scope_) s_->save_segment(g);
     if (any_certifies_) start_pieces(time);
     if (time < s_->frame_.step) go_on(time);

@@ -77,11 +77,11 @@ private:
         double time;
         std::uint64_t version;
     };
-    /// What is known of the acceleration of a body that the present event stops, beyond forces.
-    struct Relieved
+    /// A body of the present event.
+    struct Met
     {
-        std::uint32_t body;
-        Vec3 acceleration;
+        bool chosen = false;
+        Vec3 relief;  ///< m/s^2: by how much the event changes what forces do to it, where it stops it
     };
     /// A pair of one detector, by number.
     struct PairKey
@@ -97,14 +97,16 @@ private:
     std::uint32_t new_slot();
     void push(std::uint32_t slot);
     bool pop(std::uint32_t& slot);
-    std::uint64_t version_of(const Candidate& c) const;
+    std::uint64_t version_of(Ref a, Ref b) const;
+    std::uint64_t version_of(const Candidate& c) const { return version_of(c.a, c.b); }
     void note_live();
     bool is_live(std::uint32_t detector, Ref a, Ref b) const;
     void scope_of(const Candidate& candidate, bool local);
     void close_over_resting_pairs();
     void gather(std::uint32_t first);
+    void gather_until(double until);
     void take(std::uint32_t slot);
-    Vec3 relief_of(Ref body) const;
+    void recall_touching(Ref stopped, double until);
     void process();
     void look_again(std::vector<FoundContact>& found);
     void note_resting_groups();
@@ -202,7 +204,8 @@ private:
     std::vector<ShapeGap> shape_gaps_;   ///< of the last look, where a body has several shapes
     std::vector<FoundContact> pressed_;  ///< one contact
     std::vector<Touching> touching_;
-    std::vector<Relieved> relieved_;  ///< by pairs that are chosen; empty outside gather()
+    std::vector<Met> met_;                   ///< by body; nobody is outside gather()
+    std::vector<std::uint32_t> met_bodies_;  ///< those that are
     DisjointSets left_islands_;
     bool any_certifies_ = false, all_certify_ = false;
 

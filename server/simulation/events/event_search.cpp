@@ -241,7 +241,8 @@ bool EventLocator::presses(Candidate& candidate, const Look& look)
     }
     else
         rate_of_approach(pressed_, look.time);
-    c.normal_acceleration += dot(relief_of(c.b) - relief_of(c.a), c.normal);
+    const auto relief = [&](Ref r) { return met_.empty() ? Vec3{} : met_[r.index].relief; };
+    c.normal_acceleration += dot(relief(c.b) - relief(c.a), c.normal);
     candidate.relief = c.normal * -c.normal_acceleration;
     return candidate.pressed = -0.5 * c.normal_acceleration * left * left > look.slack;
 }
@@ -265,7 +266,7 @@ bool EventLocator::meets(Candidate& candidate)
         if (touches && (!responds || (closes && !(left > 0 && -look.rate * left <= look.slack)))) return true;
         if (!(left > 0)) return false;
         // What touches one that is stopped now may be stopped with it.
-        if (touches && !relieved_.empty() && !(look.rate > kStill * look.speed) && presses(candidate, look)) return true;
+        if (touches && !met_bodies_.empty() && !(look.rate > kStill * look.speed) && presses(candidate, look)) return true;
         // Sliding along one another, for the rest of the step, is no event.
         double clear = clear_for(candidate, look, turn, touches ? look.slack : 0.0, trial.closing);
         if (look.time + clear >= step)
