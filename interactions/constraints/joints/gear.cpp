@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "plab/limits.h"
+#include "plab/number_text.h"
+
 namespace plab::constraints
 {
 namespace
@@ -148,6 +151,8 @@ Result<void> prepare_gear(Row row, GearRows& rows, const Bodies& bodies)
     const auto ratio = ratio_of({rows.velocity_factor[row], rows.driver_teeth[row], rows.driven_teeth[row], rows.mesh[row]});
     if (!ratio) return ratio.errors();
     rows.ratio[row] = *ratio;
+    const double radius = rows.driven_radius[row];
+    if (radius > 0 && radius < kLeastGiven) return reason("driven_radius must be 0 or at least " + number_text(kLeastGiven));
     if (!(rows.pressure_angle[row] < kRightAngle)) return reason("pressure_angle must be below 90 deg");
     if (!(std::fabs(rows.helix_angle[row]) < kRightAngle)) return reason("helix_angle must be within 90 deg to either side");
     if (auto placed = rows.driver_spin.place(row, rows.driver[row], base_of(rows, row, rows.driver[row]), bodies); !placed) return placed;
