@@ -1,8 +1,9 @@
-/// Sequence numbers of one topic: what is missing between two samples of one writer.
+/// Sequence numbers of one topic: what is missing between two samples.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <optional>
 
 namespace plab::link
 {
@@ -15,20 +16,21 @@ public:
         std::uint64_t first = 0, count = 0;
     };
 
-    /// A sample with `entries` numbers from `first` on. The first one of a writer misses nothing: what was before its
-    /// reader came is no loss. A server that was started again is another writer.
+    /// A sample with `entries` numbers from `first` on. The very first one misses nothing: what was before its reader came is no
+    /// loss. A new writer goes on where the last sample ended (plab-bus was started again), or begins anew (the server was).
     Missing note(std::uint64_t writer, std::uint64_t first, std::uint64_t entries)
     {
-        const auto [known, is_new] = next_.try_emplace(writer, first);
+        const auto known = next_.try_emplace(writer, reached_.value_or(first)).first;
         const std::uint64_t expected = known->second;
-        known->second = first + entries;
-        return is_new || first <= expected ? Missing{} : Missing{expected, first - expected};
+        known->second = first + entries, reached_ = first + entries;
+        return first <= expected ? Missing{} : Missing{expected, first - expected};
     }
     /// Nothing more comes from whoever wrote before.
-    void forget() { next_.clear(); }
+    void forget() { next_.clear(), reached_.reset(); }
 
 private:
     std::map<std::uint64_t, std::uint64_t> next_;  ///< by writer
+    std::optional<std::uint64_t> reached_;         ///< by the last sample, whoever wrote it
 };
 
 }  // namespace plab::link

@@ -82,7 +82,7 @@ Separation separation(const Collider& a, const Pose& X_a, const Collider& b, con
     if (!in_order(a, X_a, b, X_b))
     {
         const Separation s = separation(b, X_b, a, X_a);
-        return {s.gap, s.point_b, s.point_a, -s.normal};
+        return {s.gap, s.point_b, s.point_a, -s.normal, s.triangles};
     }
     if (is_surface(b.kind())) return separation_from_surface(a, X_a, b, X_b);
     const Solid A(a, X_a);

@@ -19,6 +19,14 @@ bool same_shapes(const RefList& now, std::span<const std::uint32_t> built)
 {
     return std::equal(now.begin(), now.end(), built.begin(), built.end(), [](const Ref& r, std::uint32_t s) { return r.index == s; });
 }
+
+/// Pairs of simple shapes that a pair counts for, as far as its hulls and triangles make it dearer than one.
+double further_pairs_of(const Collider& a, const Collider& b, std::size_t triangles)
+{
+    constexpr double kVertex = 1.0 / 64;
+    return kVertex * static_cast<double>(a.hull().vertices.size() + b.hull().vertices.size()) + static_cast<double>(triangles);
+}
+
 }  // namespace
 
 bool OdeScene::is_current(const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies,
@@ -192,6 +200,7 @@ void OdeScene::look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shif
     const Pose X_b = place(pb, (bodies.position[mb.body] - origin) + shift, bodies);
     touches_.clear(margin_);
     collide(ca, X_a, cb, X_b, touches_);
+    further_pairs_ += further_pairs_of(ca, cb, touches_.triangles()) + (parts_met_++ > 0 ? 1.0 : 0.0);
     for (Touch touch : touches_.all())
     {
         touch.point += origin;
@@ -216,6 +225,7 @@ void OdeScene::flush(const Member& a, const Member& b, double shift, ContactSink
         sink.add(c);
     }
     found_.clear();
+    parts_met_ = 0;
 }
 
 void OdeScene::measure(GapQuery& query, const Bodies& bodies) const
@@ -226,12 +236,14 @@ void OdeScene::measure(GapQuery& query, const Bodies& bodies) const
     if (ia == kNoIndex || ib == kNoIndex) return;
     const Member &a = members_[ia], &b = members_[ib];
     const Vec3 origin = bodies.position[a.body], p_OC = bodies.position[b.body] - origin;
+    std::size_t parts_met = 0;
     for (std::uint32_t p = a.first_part; p < a.end_part; ++p)
         for (std::uint32_t q = b.first_part; q < b.end_part; ++q)
         {
             const Collider &ca = colliders_[parts_[p].collider], &cb = colliders_[parts_[q].collider];
             if (!meets(ca.kind(), cb.kind())) continue;
             const Separation s = separation(ca, place(parts_[p], {}, bodies), cb, place(parts_[q], p_OC, bodies));
+            query.further_pairs += further_pairs_of(ca, cb, s.triangles) + (parts_met++ > 0 ? 1.0 : 0.0);
             if (!(s.gap < query.gap)) continue;
             query.gap = s.gap, query.normal = s.normal;
             query.point_a = origin + s.point_a, query.point_b = origin + s.point_b;
@@ -261,9 +273,16 @@ void OdeScene::report_near(const StepContext& context, ContactSink& sink)
 void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactSink& sink)
 {
     if (!sink.reach().empty()) return report_near(context, sink);
-    penetration_ = 0;
+    penetration_ = 0, further_pairs_ = 0;
     margin_ = sink.margin();
     collect_standing(context, sink);
+    look_at_standing(bodies, sink);
+    if (!sink.only_standing()) look_at_near(context, bodies, sink);
+    sink.took(further_pairs_);
+}
+
+void OdeScene::look_at_standing(const Bodies& bodies, ContactSink& sink)
+{
     for (std::size_t i = 0; i < standing_.size(); ++i)
     {
         const Standing& s = standing_[i];
@@ -273,8 +292,10 @@ void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactS
             for (std::uint32_t q = b.first_part; q < b.end_part; ++q) look(p, q, s.shift, bodies);
         flush(a, b, length(s.shift), sink);
     }
+}
 
-    if (sink.only_standing()) return;
+void OdeScene::look_at_near(const StepContext& context, const Bodies& bodies, ContactSink& sink)
+{
     const auto& near = broad_.find_pairs(margin_);
     pairs_ = near.size();
     const auto members = [&](const BroadPhase::Pair& p) { return BroadPhase::Pair{parts_[p.first].member, parts_[p.second].member}; };

@@ -70,6 +70,8 @@ private:
     bool is_standing(std::uint32_t a, std::uint32_t b) const;
     Pose place(const Part& part, const Vec3& p_OC, const Bodies& bodies) const;
     void look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies);
+    void look_at_standing(const Bodies& bodies, ContactSink& sink);
+    void look_at_near(const StepContext& context, const Bodies& bodies, ContactSink& sink);
     void flush(const Member& a, const Member& b, double shift, ContactSink& sink);
 
     // What it was made from.
@@ -92,6 +94,8 @@ private:
     std::vector<std::uint32_t> asked_;    // parts of the bodies that are advanced
     std::vector<BroadPhase::Pair> near_;  // members
     std::size_t pairs_ = 0;
+    std::size_t parts_met_ = 0;  // of the present pair of bodies
+    double further_pairs_ = 0;   // as ContactSink::took has it
     double penetration_ = 0;
     double margin_ = 0;  // m, of the present look
 };

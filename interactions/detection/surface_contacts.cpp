@@ -111,6 +111,7 @@ void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& su
     Gathering found(out.margin(), K.extent() + K.radius());
     meet(K, surface, found);
     const std::span<Touch> touches = found.take();
+    out.note_triangles(found.triangles());
     if (K.core() == Core::Point && surface.kind() == ColliderKind::Triangles) number_by_patch(touches, surface.triangles());
     for (Touch t : touches)
     {
@@ -125,7 +126,7 @@ Separation separation_from_surface(const Collider& a, const Pose& X_a, const Col
     Nearest nearest;
     meet(K, surface, nearest);
     const Meeting& m = nearest.best;
-    return {m.gap, X_surface * m.on_solid, X_surface * m.on_surface, rotate(X_surface.q, m.normal)};
+    return {m.gap, X_surface * m.on_solid, X_surface * m.on_surface, rotate(X_surface.q, m.normal), nearest.triangles()};
 }
 
 }  // namespace plab::detection

@@ -26,6 +26,11 @@ public:
     virtual ~MeetingSink() = default;
     virtual double limit() const = 0;  ///< m
     virtual void offer(const Meeting& meeting) = 0;
+    void note_triangle() { ++triangles_; }
+    std::size_t triangles() const { return triangles_; }  ///< gone through
+
+private:
+    std::size_t triangles_ = 0;
 };
 
 /// Bowls and bores. A ball meets the wall and the rim; of other solids the corners and round ends meet the wall, and edges

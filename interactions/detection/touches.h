@@ -28,29 +28,33 @@ public:
     static constexpr std::size_t kCapacity = 16;
     /// m: points with a gap up to this are kept too.
     explicit Touches(double margin = 0) : margin_(margin) {}
-    void clear() { count_ = 0; }
-    void clear(double margin) { count_ = 0, margin_ = margin; }
+    void clear() { count_ = 0, triangles_ = 0; }
+    void clear(double margin) { clear(), margin_ = margin; }
     double margin() const { return margin_; }
     /// Keeps points that overlap, as far as there is room.
     void add(const Touch& touch)
     {
         if (touch.depth > -margin_ && count_ < kCapacity) touches_[count_++] = touch;
     }
+    /// Triangles gone through to find them.
+    std::size_t triangles() const { return triangles_; }
+    void note_triangles(std::size_t more) { triangles_ += more; }
     std::span<Touch> all() { return {touches_.data(), count_}; }
     std::span<const Touch> all() const { return {touches_.data(), count_}; }
 
 private:
     std::array<Touch, kCapacity> touches_{};
-    std::size_t count_ = 0;
+    std::size_t count_ = 0, triangles_ = 0;
     double margin_ = 0;
 };
 
 /// The nearest points of two shapes.
 struct Separation
 {
-    double gap = 0;         ///< m; < 0: depth along `normal`
-    Vec3 point_a, point_b;  ///< m
-    Vec3 normal;            ///< unit, from a to b
+    double gap = 0;             ///< m; < 0: depth along `normal`
+    Vec3 point_a, point_b;      ///< m
+    Vec3 normal;                ///< unit, from a to b
+    std::size_t triangles = 0;  ///< gone through to find it
 };
 
 }  // namespace plab::detection

@@ -143,6 +143,7 @@ public:
         s_.visit_box(c_ - by, c_ + by,
                      [&](std::uint32_t t)
                      {
+                         out_.note_triangle();
                          if (t != nearest.triangle()) offer_least(t);
                      });
     }
@@ -309,7 +310,11 @@ void meet_triangles(const Solid& K, const Collider& collider, MeetingSink& out)
     const Surface& surface = collider.triangles();
     if (K.core() == Core::Point) return BallOnTriangles(surface, K.pose().p, K.radius(), out).run();
     SolidOnTriangles pair(surface, K, out);
-    const auto meet = [&](std::uint32_t t) { pair.meet(t); };
+    const auto meet = [&](std::uint32_t t)
+    {
+        out.note_triangle();
+        pair.meet(t);
+    };
     if (!std::isfinite(out.limit()))
         return surface.visit_near(
             K.center(), [&] { return out.limit() + K.extent() + K.radius(); }, meet);

@@ -44,8 +44,9 @@ private:
     Workspace& work_;
     Bodies& bodies_;
     std::span<Contact> contacts_;
-    double threshold_ = 0;    // m/s, closing speed that is none
-    std::int64_t spent_ = 0;  // impacts of single points and sweeps of the others
+    double threshold_ = 0;     // m/s, closing speed that is none
+    std::int64_t spent_ = 0;   // impacts of single points and sweeps of the others
+    std::int64_t visits_ = 0;  // contacts that these went through
 };
 
 void ImpactSequence::prepare()
@@ -161,7 +162,7 @@ void ImpactSequence::hit_point(std::uint32_t contact, double restitution)
     const ImpactResult r = solve_impact(point.K(), point.velocity(bodies_), contacts_[contact].friction, restitution);
     point.apply(bodies_, r.impulse, r.velocity.z);
     contacts_[contact].impulse += point.to_world(r.impulse);
-    ++spent_;
+    ++spent_, ++visits_;
 }
 
 void ImpactSequence::save_bodies()
@@ -208,7 +209,8 @@ double ImpactSequence::try_at_once(double share)
         work_.before.push_back(u);
         work_.cones.push_back({&work_.points[h.contact], contacts_[h.contact].friction, u.z < 0 ? -share * h.restitution * u.z : 0.0, {}});
     }
-    spent_ += solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps;
+    const int sweeps = solve_cones(work_.cones, bodies_, 0.1 * threshold_, settings_.max_iterations, settings_.interruption).sweeps;
+    spent_ += sweeps, visits_ += static_cast<std::int64_t>(work_.cones.size()) * sweeps;
     double gain = 0, size = 0;
     for (std::size_t k = 0; k < work_.cones.size(); ++k)
     {
@@ -253,6 +255,7 @@ void ImpactSequence::run(Impact& impact)
         contacts_[i].resting = closing <= still && (rests(contacts_[i], std::max(0.0, -closing)) || (plastic && -closing <= still));
     }
     impact.converged = impact.residual <= threshold_;
+    impact.visits = visits_;
 }
 }  // namespace
 

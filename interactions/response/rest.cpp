@@ -67,6 +67,7 @@ void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodie
     const ConeResult result = solve_without_gain(settings, work, bodies);
     for (std::size_t k = 0; k < work.order.size(); ++k)
         contacts[work.order[k]].impulse = work.cones[k].point->to_world(work.cones[k].impulse);
+    impact.visits = static_cast<std::int64_t>(work.cones.size()) * result.sweeps;
     impact.iterations = result.sweeps, impact.residual = result.residual, impact.converged = result.converged;
 }
 

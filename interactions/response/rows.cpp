@@ -9,7 +9,7 @@ namespace
 {
 
 constexpr double kTolerance = 0x1p-46;  // of the speeds
-constexpr int kMostSweeps = 20000;
+constexpr int kMostSweeps = 20000, kLeastSweeps = 20;
 /// Contacts that an impact of very many may go through, sweep by sweep: what closes by then is told as the residual.
 constexpr std::int64_t kMostVisits = 1'000'000;
 
@@ -27,9 +27,9 @@ bool rests(const Contact& c, double speed, const Bounce& bounce)
     return speed * speed <= 2 * pressing * height;
 }
 
-/// All contacts at once, with `share` of the restitution. Energy gained beyond rounding, J.
+/// All contacts at once, with `share` of the restitution. Energy gained beyond rounding, J. `visits` grows by what it took.
 double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bodies, const Bounce& bounce, double share, double tolerance,
-                  ConeResult& result)
+                  ConeResult& result, std::int64_t& visits)
 {
     work.cones.clear();
     for (std::size_t k = 0; k < work.order.size(); ++k)
@@ -39,11 +39,10 @@ double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bo
         const double least = closing > 0 && !rests(c, rebound, bounce) ? rebound : 0.0;
         work.cones.push_back({&work.points[work.order[k]], c.friction, least, {}});
     }
-    const int before = result.sweeps;
-    const auto contacts_hit = static_cast<std::int64_t>(std::max<std::size_t>(1, work.cones.size()));
-    const auto most = static_cast<int>(std::clamp<std::int64_t>(kMostVisits / contacts_hit, 20, kMostSweeps));
-    result = solve_cones(work.cones, bodies, tolerance, most);
-    result.sweeps += before;
+    const auto hit = static_cast<std::int64_t>(work.cones.size());
+    const std::int64_t most = std::clamp<std::int64_t>(kMostVisits / std::max<std::int64_t>(1, hit), kLeastSweeps, kMostSweeps);
+    result = solve_cones(work.cones, bodies, tolerance, static_cast<int>(most));
+    visits += hit * result.sweeps;
     double gain = 0, size = 0;
     for (std::size_t k = 0; k < work.cones.size(); ++k)
     {
@@ -113,11 +112,12 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
     // Newton's law with friction may give back more than there was; then less is given back, and nothing at last.
     ConeResult result;
     double share = 1;
-    for (int trial = 1; try_impact(work, contacts, bodies, bounce, share, tolerance, result) > 0 && share > 0; ++trial)
+    impact.iterations = 0, impact.visits = 0;
+    for (int trial = 1; try_impact(work, contacts, bodies, bounce, share, tolerance, result, impact.visits) > 0 && share > 0; ++trial)
     {
         take_back(work, bodies);
-        const bool may_try = static_cast<std::int64_t>(work.cones.size()) * result.sweeps < kMostVisits;
-        share = trial < kTrials && may_try ? 0.5 * share : 0.0;
+        impact.iterations += result.sweeps;
+        share = trial < kTrials && impact.visits < kMostVisits ? 0.5 * share : 0.0;
     }
     for (std::size_t k = 0; k < work.order.size(); ++k)
     {
@@ -128,7 +128,7 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
         c.slip = std::hypot(u.x, u.y);
         c.resting = rests(c, std::max(0.0, u.z), bounce);
     }
-    impact.iterations = result.sweeps, impact.residual = std::max(0.0, result.residual), impact.converged = result.converged;
+    impact.iterations += result.sweeps, impact.residual = std::max(0.0, result.residual), impact.converged = result.converged;
     if (rows.step[row] != context.tick) rows.residual[row] = 0, rows.iterations[row] = 0, rows.step[row] = context.tick;
     rows.residual[row] = std::max(rows.residual[row], impact.residual);
     rows.iterations[row] += impact.iterations;

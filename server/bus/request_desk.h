@@ -28,6 +28,8 @@ public:
     /// A request came: whatever plab-bus says of it, its form is looked at here. One that has its answer already, or is
     /// refused, gives that to next_answer().
     Received receive(RequestMessage&& message, std::int64_t now_ns);
+    /// So many answers wait to be fetched that nothing more is to be received before.
+    bool is_full() const { return at_once_.size() >= kMostAtOnce; }
     /// The next answer that is to go out. `strays` counts those of the step thread that nobody waited for.
     std::optional<AnswerMessage> next_answer(std::uint64_t& strays);
 
@@ -36,7 +38,8 @@ private:
     // As many as may wait at a time: neither ring can overflow.
     publish::Ring<publish::RequestText> requests_;
     publish::Ring<publish::Answer> answers_;
-    std::deque<AnswerMessage> at_once_;  ///< made here; no more than came in one pass
+    static constexpr std::size_t kMostAtOnce = 1024;
+    std::deque<AnswerMessage> at_once_;  ///< made here
 };
 
 }  // namespace plab::bus

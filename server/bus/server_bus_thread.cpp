@@ -18,7 +18,8 @@ constexpr int kMostMessages = 256;  ///< from plab-bus before the rest has its t
 constexpr milliseconds kSecond(1000);
 constexpr milliseconds kSettling(1000);  ///< readers have so long to find a new plab-bus before what they wanted is given up
 constexpr milliseconds kGoodbye(2000), kLastWords(1000), kHangUp(100), kBusyLook(500);
-constexpr milliseconds kFirstDelay(50), kLongestDelay(10000);
+/// The longest is below the lease after which readers take a participant for gone (10 s): the next one is there before.
+constexpr milliseconds kFirstDelay(50), kLongestDelay(5000);
 constexpr std::chrono::seconds kGoodLife(30);  ///< who lived so long is started again at once
 constexpr int kLongestSilence = 4;             ///< s; a deleted writer that a reader does not acknowledge holds plab-bus up for one
 constexpr milliseconds kStopped(100);          ///< between looks at one that was stopped
@@ -178,6 +179,8 @@ bool ServerBus::receive(Clock::time_point now)
     MessageReader::Message message;
     for (int i = 0; i < kMostMessages && !is_broken_; ++i)
     {
+        // Who asks and does not listen is not heard either; silence ends it.
+        if (desk_.is_full()) return false;
         const auto state = process_->reader().next(message);
         is_broken_ = state == MessageReader::State::Broken;
         if (state == MessageReader::State::Whole) handle(message, now);
@@ -224,7 +227,9 @@ void ServerBus::handle(const MessageReader::Message& message, Clock::time_point 
             return wake();
         case Up::Log:
             if (!decode(message, text)) break;
-            return log(one_line(text));
+            if (!log_limit_.may(now)) return;
+            if (const std::uint64_t n = log_limit_.left_out(); n > 0) text += " (and " + std::to_string(n) + " more lines)";
+            return log(one_line(std::move(text)));
         case Up::Alive:
             return;
     }
@@ -350,13 +355,10 @@ void ServerBus::say_goodbye()
 
 void ServerBus::log(const std::string& line)
 {
-    if (!log_limit_.may(Clock::now())) return;
-    std::string out = line;
-    if (const std::uint64_t n = log_limit_.left_out(); n > 0) out += " (and " + std::to_string(n) + " more lines)";
     if (options_.log != nullptr)
-        options_.log(options_.log_argument, out.c_str());
+        options_.log(options_.log_argument, line.c_str());
     else
-        (void)std::fprintf(stderr, "bus: %s\n", out.c_str());
+        (void)std::fprintf(stderr, "bus: %s\n", line.c_str());
 }
 
 }  // namespace plab::bus

@@ -180,6 +180,27 @@ TEST_CASE("a motor with a largest effort gives that until it has its speed, and 
     CHECK(near(weak.spin("rotor"), -3, 1e-12));
 }
 
+TEST_CASE("a body that lies on the only limit of its slider, at 0, lies still")
+{
+    for (const char* bounce : {"0", "0.5"})
+    {
+        Scene s(solver_is("RungeKutta4") + gravity() + body("bob", 1, {.004, .004, .004}, {0, 0, 0}) + manager() +
+                    joint("rail", "Slider", "", "bob", "axis='0 0 1'") +
+                    joint("stop", "Limit", "", "bob",
+                          "along='slide' axis='0 0 1' lower='0' manager='manager' restitution='" + std::string(bounce) + "'"),
+                dt(120));
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        double lowest = 0, highest = 0;
+        for (int i = 0; i < 120; ++i)
+        {
+            s.step();
+            lowest = std::fmin(lowest, s.vec("bob", "position").z), highest = std::fmax(highest, s.vec("bob", "position").z);
+        }
+        CHECK(lowest > -1e-9);
+        CHECK(highest < 1e-9);
+    }
+}
+
 TEST_CASE("limits and weak motors without a manager are refused with what would be right")
 {
     const Scene weak(shaft("rotor", 2) + "<component id='motor' type='Constraint/Motor' b='rotor' max_effort='4'/>");

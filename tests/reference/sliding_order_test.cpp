@@ -150,6 +150,73 @@ TEST_CASE("a ball rolls in a bowl: order 2")
     }
 }
 
+TEST_CASE("a ball slides off a dome: it is released in short steps, too")
+{
+    for (const std::string& response : kResponses)
+        for (const int n : {1920, 7680})
+        {
+            if (response.find("Sequential") != std::string::npos) continue;
+            CAPTURE(response);
+            CAPTURE(n);
+            CHECK(errors_on_dome(response, n).time < 2.0 / n);
+        }
+}
+
+TEST_CASE("who rocks on its edges is not released while it touches")
+{
+    for (const std::string& response : kResponses)
+    {
+        CAPTURE(response);
+        Scene s(
+            "<component id='plane' type='Shape/Plane'/><component id='ground' type='State/Static' shape='plane'/>"
+            "<component id='box' type='Shape/Box' half_extents='0.1 0.1 0.2'/><component id='ball' type='State/RigidBody' shape='box' "
+            "mass='1' position='0 0 0.2' angular_velocity='0 1 0' linear_velocity='0.2 0 0.1'/>"
+            "<component id='weight' type='Field/Gravity' between='ball'/>" +
+                touching(response, 1),
+            "dt='1/240'");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.keep_events = true, s.warnings_expected = true;
+        double highest = 0;
+        for (int i = 0; i < 60; ++i)
+        {
+            s.step();
+            highest = std::max(highest, s.vec("ball", "position").z);
+        }
+        CHECK(highest > 0.202);  // it stood on an edge
+        CHECK(s.count("contact.end") == 0);
+        CHECK(s.count("contact.release") == 0);
+    }
+}
+
+TEST_CASE("a bowl that moves as told takes along what slides in it, as one that stands does")
+{
+    const auto place = [](const std::string& response, double speed)
+    {
+        const auto of = [&](const char* id, const Vec3& at, double along)
+        {
+            return "<component id='" + std::string(id) + "' type='State/RigidBody' shape='form' mass='1' position='" + text(at) +
+                   "' linear_velocity='" + text(Vec3{speed, along, 0}) + "'/>";
+        };
+        Scene s(
+            "<component id='bowl' type='Shape/Bowl' radius='1'/><component id='form' type='Shape/Sphere' radius='0.1'/>"
+            "<component id='ground' type='State/Kinematic' shape='bowl' linear_velocity='" +
+                text(Vec3{speed, 0, 0}) + "'/>" + of("ball", {0, 0, -0.9}, 0) + of("rider", {0, 0, -0.7}, 0.05) +
+                "<component id='weight' type='Field/Gravity' between='ball rider'/>"
+                "<component id='contact' type='CDetection/ODE' between='ball rider ground' resolution='Resolution/None' response='" +
+                response + "' response.friction='0'/>",
+            "dt='1/240'");
+        REQUIRE_MESSAGE(s.loaded(), s.error());
+        s.warnings_expected = true;
+        s.run(0.25);
+        return s.vec("rider", "position") - s.vec("ground", "position");
+    };
+    for (const std::string& response : kResponses)
+    {
+        CAPTURE(response);
+        CHECK(distance(place(response, 10), place(response, 0)) < 1e-6);
+    }
+}
+
 TEST_CASE("a ball slides off a dome: where it leaves, order 2, and one release without a hop")
 {
     for (const std::string& response : kResponses)

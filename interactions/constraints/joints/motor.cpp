@@ -134,22 +134,32 @@ Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies)
 namespace
 {
 
-/// Rows come in before they could act: by this share of the way between the limits (or of the limit, where there is but one), and twice
-/// as early as the present speed would have it. What is not foreseen is met in the next step.
+/// Rows come in before they could act: by this share of the way between the limits, and twice as early as the present speed would have
+/// it. Where there is but one limit, or no way between them, by this share of 1 rad, or of the smaller body's radius of gyration. What
+/// is not foreseen is met in the next step.
 constexpr double kReach = 0x1p-9;
 
-double reach_of(const LimitRows& rows, Row row)
+double gyration(const Bodies& bodies, Ref r)
 {
-    const double lower = rows.lower[row], upper = rows.upper[row];
-    if (std::isfinite(lower) && std::isfinite(upper)) return kReach * (upper - lower);
-    return kReach * std::fabs(std::isfinite(lower) ? lower : std::isfinite(upper) ? upper : 0.0);
+    if (r.facet != Facet::Body || !bodies.dynamic(r.index)) return kInfinity;
+    const Mat3& inertia = bodies.inertia_B[r.index];
+    return std::sqrt(0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2)) * bodies.inverse_mass[r.index]);
 }
 
-void add_side(const LimitRows& rows, Row row, const StepContext& step, ConstraintRow side, double gap, double speed, RowSink& sink)
+double reach_of(const LimitRows& rows, Row row, const Bodies& bodies)
 {
-    if (gap > reach_of(rows, row) + 2 * step.dt * std::fmax(0.0, -speed)) return;
+    const double way = rows.upper[row] - rows.lower[row];
+    if (std::isfinite(way) && way > 0) return kReach * way;
+    if (rows.turns(row)) return kReach;
+    const double size = std::fmin(gyration(bodies, rows.a[row]), gyration(bodies, rows.b[row]));
+    return std::isfinite(size) ? kReach * size : 0.0;
+}
+
+void add_side(double reach, const StepContext& step, ConstraintRow side, double gap, double speed, double restitution, RowSink& sink)
+{
+    if (gap > reach + 2 * step.dt * std::fmax(0.0, -speed)) return;
     side.kind = RowKind::OneSided;
-    side.error = gap, side.lower = 0, side.restitution = rows.restitution[row];
+    side.error = gap, side.lower = 0, side.restitution = restitution;
     sink.add(side);
 }
 
@@ -168,11 +178,12 @@ void constrain_limit(const StepContext& step, Rows which, const LimitRows& rows,
         else
             c = look_at(rows, row, bodies, shafts, step.time);
         sink.begin(step.component_of_row[row]);
-        add_side(rows, row, step, c.row, c.x - rows.lower[row], c.speed, sink);
+        const double reach = reach_of(rows, row, bodies);
+        add_side(reach, step, c.row, c.x - rows.lower[row], c.speed, rows.restitution[row], sink);
         for (std::uint32_t k = 0; k < c.row.count; ++k)
             c.row.blocks[k].linear = -c.row.blocks[k].linear, c.row.blocks[k].angular = -c.row.blocks[k].angular;
         c.row.bias = -c.row.bias, c.row.feature = 1;
-        add_side(rows, row, step, c.row, rows.upper[row] - c.x, -c.speed, sink);
+        add_side(reach, step, c.row, rows.upper[row] - c.x, -c.speed, rows.restitution[row], sink);
     }
 }
 

@@ -1,5 +1,7 @@
 #include "joints/rolling.h"
 
+#include "plab/limits.h"
+
 namespace plab::constraints
 {
 namespace
@@ -94,7 +96,7 @@ void RollingRows::describe(Schema& s)
 {
     s.role(a, "a", {Facet::Body}, "whose plane it is; none: the world").optional().writes();
     s.role(b, "b", {Facet::Body}, "who rolls").writes();
-    s.param(semi_axes, "semi_axes", unit::metre, "half lengths of the ellipsoid; a ball: three times its radius").at_least(1e-100);
+    s.param(semi_axes, "semi_axes", unit::metre, "half lengths of the ellipsoid; a ball: three times its radius").at_least(kLeastGiven);
     s.param(centre, "centre", unit::metre, "of the ellipsoid, in the frame of b").or_else({});
     s.param(axes, "axes", unit::one, "attitude of the ellipsoid's axes in b").or_else(Quat{});
     s.param(on, "on", unit::one, "what of a it rolls on; on a sphere or a cylinder only a ball does")

@@ -15,9 +15,6 @@ namespace
 constexpr std::chrono::seconds kSecond(1);
 constexpr std::chrono::milliseconds kRetry(10), kGoodbye(200);
 constexpr int kMostMessages = 256;  ///< of plabd, before requests have their turn
-/// Complaints of DDS after which this process is worn, and seconds without any before it goes.
-constexpr std::uint64_t kWorn = 100;
-constexpr int kQuiet = 2;
 
 /// A listener of DDS sets a mark and rings.
 struct Mark
@@ -127,18 +124,17 @@ Result<void> BusLoop::enter()
     return presence_.open(participant_, publisher_, subscriber_);
 }
 
-BusLoop::End BusLoop::run()
+bool BusLoop::run()
 {
     while (!is_over_)
     {
         const Clock::time_point now = Clock::now();
         const bool more = pass(now);
         if (writer_.committed()) server_->ring();
-        if (is_worn_) return End::Worn;
-        if (!more && !is_over_ && !sleep(now)) return End::Orphaned;
+        if (!more && !is_over_ && !sleep(now)) return false;
     }
     say_goodbye();
-    return End::Told;
+    return true;
 }
 
 /// False if plabd has ended.
@@ -175,18 +171,13 @@ void BusLoop::each_second(Clock::time_point now)
     tell(Up::Alive);
 }
 
-/// Packets that nobody should send may leave something behind in DDS that keeps it from finding those who come later (one run of a
-/// hundred). When they have come to an end, a fresh process takes this one's place.
+/// One line a second, however many packets there are that nobody should send. What finds no room waits.
 void BusLoop::report_dds()
 {
+    if (!writer_.ready()) return;
     const DdsLog::Said said = dds_log_.take();
-    complaints_ += said.lines;
-    quiet_ = said.lines > 0 ? 0 : quiet_ + 1;
-    if (said.lines > 0)
-        trouble_.say("DDS complains: " + said.last + (said.lines > 1 ? " (and " + std::to_string(said.lines - 1) + " more)" : ""));
-    if (complaints_ < kWorn || quiet_ < kQuiet) return;
-    trouble_.say("after " + std::to_string(complaints_) + " complaints of DDS another process takes the place of this one");
-    is_worn_ = true;
+    if (said.lines == 0) return;
+    trouble_.say("DDS complains: " + said.last + (said.lines > 1 ? " (and " + std::to_string(said.lines - 1) + " more)" : ""));
 }
 
 bool BusLoop::receive()

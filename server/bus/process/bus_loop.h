@@ -29,13 +29,8 @@ public:
     BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const Bell& server, int lifeline, const StartMessage& start);
     /// False if it cannot join; plabd is told why.
     bool join();
-    enum class End
-    {
-        Told,      ///< plabd said that this is the end: clients have heard it
-        Orphaned,  ///< plabd has ended without a word: nobody says goodbye
-        Worn,      ///< another process is to take this one's place, and clients are not to notice
-    };
-    End run();
+    /// Until plabd says that this is the end. False if it has ended without a word: then nobody says goodbye.
+    bool run();
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -69,9 +64,7 @@ private:
     std::set<std::string, std::less<>> words_;
     Trouble trouble_;
     std::atomic<bool> matched_{true}, arrived_{true};  ///< set by listeners of DDS, on its threads
-    bool is_over_ = false, is_worn_ = false;
-    std::uint64_t complaints_ = 0;  ///< lines that DDS has said
-    int quiet_ = 0;                 ///< s since the last of them
+    bool is_over_ = false;
 
     DdsLog dds_log_;
     // Before all that is made of them; and the listeners ring until the participant is gone.

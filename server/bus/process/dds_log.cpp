@@ -41,6 +41,9 @@ void DdsLog::add(const char* text, std::size_t size)
     const std::lock_guard guard(mutex_);
     ++said_.lines;
     said_.last.assign(text, std::min(size, kLongest));
+    // It may name what came with a broken packet.
+    for (char& c : said_.last)
+        if (static_cast<unsigned char>(c) >= 0x80) c = '?';
 }
 
 }  // namespace plab::bus

@@ -1,4 +1,4 @@
-/// What DDS says: gathered, so that packets which nobody should send fill no log, and counted.
+/// What DDS says, gathered and counted, so that packets which nobody should send fill no log.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@ public:
     DdsLog(const DdsLog&) = delete;
     DdsLog& operator=(const DdsLog&) = delete;
 
-    /// From now on nothing goes to standard error but what is fatal.
+    /// From now on only what is fatal goes to standard error, too.
     void gather() { gathers_.store(true, std::memory_order_relaxed); }
     /// Since the last time: how many lines, and the last of them.
     struct Said

@@ -15,8 +15,6 @@ namespace
 
 using namespace plab::bus;
 
-constexpr int kExitWorn = 3;
-
 int run(const PipeMemory& memory, Bell& bell, const Bell& server)
 {
     // Written by plabd before it started this process.
@@ -32,16 +30,8 @@ int run(const PipeMemory& memory, Bell& bell, const Bell& server)
     // After those of DDS, which are to be woken at once. Batch: it does not push the step thread aside when it is woken on the same core.
     const sched_param priority{};
     (void)pthread_setschedparam(pthread_self(), SCHED_BATCH, &priority);
-    switch (loop.run())
-    {
-        case BusLoop::End::Told:
-            return 0;
-        case BusLoop::End::Orphaned:
-            _exit(1);
-        case BusLoop::End::Worn:
-            _exit(kExitWorn);  // what it wrote is not taken back: the next one goes on
-    }
-    return 1;
+    if (!loop.run()) _exit(1);
+    return 0;
 }
 
 }  // namespace

@@ -60,6 +60,9 @@ public:
     virtual void near(Ref /*a*/, Ref /*b*/) {}
     /// normal from a to b; a and b in the order in which `precedes` says they stand.
     virtual void add(const Contact& contact) = 0;
+    /// What the look took beyond one pair of simple shapes for each pair of bodies, counted in such pairs: parts of a compound, triangles
+    /// gone through, a hull's vertices. The host bounds the work of a step by it.
+    virtual void took(double /*further_pairs*/) {}
     /// The order of two bodies by component id: pairs must be formed in it *before* a library computes contacts.
     virtual bool precedes(Ref a, Ref b) const = 0;
 };
@@ -69,9 +72,10 @@ struct GapQuery
 {
     Ref a, b;
     // out
-    double gap = 0;         ///< m; < 0: depth of the overlap
-    Vec3 point_a, point_b;  ///< W, m: the nearest points
-    Vec3 normal;            ///< W, unit, from a to b
+    double gap = 0;            ///< m; < 0: depth of the overlap
+    Vec3 point_a, point_b;     ///< W, m: the nearest points
+    Vec3 normal;               ///< W, unit, from a to b
+    double further_pairs = 0;  ///< what it took, as ContactSink::took has it
 };
 
 /// Phase::Locate: a step [0, h] is known to hold an event; the resolution picks the next time to try.
@@ -111,9 +115,10 @@ struct Impact
     ImpactMode mode = ImpactMode::Impact;
     double dt = 0;  ///< s, Rest only: the step over which gaps may close
     std::span<Contact> contacts;
-    int iterations = 0;     ///< out
-    double residual = 0;    ///< out: m/s, largest violation left in normal speed
-    bool converged = true;  ///< out
+    int iterations = 0;       ///< out
+    std::int64_t visits = 0;  ///< out: contacts gone through, those of each sweep anew: what the answer took
+    double residual = 0;      ///< out: m/s, largest violation left in normal speed
+    bool converged = true;    ///< out
 };
 
 }  // namespace plab

@@ -28,7 +28,8 @@ struct ConvexHull
 };
 
 /// Quickhull (Barber, Dobkin, Huhdanpaa, ACM TOMS 22, 1996): grows a tetrahedron until no point is outside. Faces that a
-/// new point lies in the plane of go with those that it sees, so no sliver is made of points on one line.
+/// new point lies in the plane of go with those that it sees, so no sliver is made of points on one line. Of many points
+/// only where there would be one: a flat rim of n points must not be covered anew n times.
 class Quickhull
 {
 public:
@@ -56,6 +57,9 @@ private:
     bool add_face(Index a, Index b, Index c);
     void assign(Index point, std::size_t first_face);
     bool collect_visible(std::size_t seed, Index eye);
+    bool collect_above(std::size_t seed, Index eye, double least);
+    bool leaves_sliver(Index eye) const;
+    void restore_visible();
     bool replace_visible(Index eye);
     /// The point with the largest value of `measure`; ties go to the first.
     template <class Measure>
@@ -115,8 +119,20 @@ inline void Quickhull::assign(Index point, std::size_t first_face)
     }
 }
 
-/// The connected patch of faces that `eye` sees or lies in the plane of, from the face `seed`.
+/// The patch of faces that make room for `eye`: those it sees, and as a rule those whose plane it lies in.
 inline bool Quickhull::collect_visible(std::size_t seed, Index eye)
+{
+    constexpr std::size_t kMany = 256;
+    if (points_.size() > kMany)
+    {
+        if (collect_above(seed, eye, tolerance_) && !leaves_sliver(eye)) return true;
+        restore_visible();
+    }
+    return collect_above(seed, eye, -tolerance_);
+}
+
+/// The connected patch of faces that `eye` lies more than `least` above, from the face `seed`.
+inline bool Quickhull::collect_above(std::size_t seed, Index eye, double least)
 {
     visible_.assign(1, seed);
     faces_[seed].alive = false;
@@ -127,12 +143,36 @@ inline bool Quickhull::collect_visible(std::size_t seed, Index eye)
         {
             const auto next = owner_.find({corner[(i + 1) % 3], corner[i]});
             if (next == owner_.end()) return false;
-            if (!faces_[next->second].alive || height(faces_[next->second], eye) <= -tolerance_) continue;
+            if (!faces_[next->second].alive || height(faces_[next->second], eye) <= least) continue;
             faces_[next->second].alive = false;
             visible_.push_back(next->second);
         }
     }
     return true;
+}
+
+/// Whether an edge of the visible patch's rim and `eye` lie nearly on a line.
+inline bool Quickhull::leaves_sliver(Index eye) const
+{
+    constexpr double kThin = 1e-8;  // height of the triangle, of its longest side: a face in the plane beside it then agrees to 1e-8
+    for (const std::size_t v : visible_)
+    {
+        const auto corner = faces_[v].corner;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const Index from = corner[i], to = corner[(i + 1) % 3];
+            if (!faces_[owner_.at({to, from})].alive) continue;
+            const Vec3 edge = points_[to] - points_[from], first = points_[eye] - points_[from], second = points_[eye] - points_[to];
+            const double longest = std::max({length_squared(edge), length_squared(first), length_squared(second)});
+            if (!(length(cross(edge, first)) > kThin * longest)) return true;
+        }
+    }
+    return false;
+}
+
+inline void Quickhull::restore_visible()
+{
+    for (const std::size_t v : visible_) faces_[v].alive = true;
 }
 
 /// Fills the hole that the visible patch leaves with a cone of faces to `eye`; its rim must be one closed line.

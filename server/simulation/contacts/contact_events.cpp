@@ -1,8 +1,8 @@
 // The ends of the contact pipeline in a step: locate, and what begins, persists
 // and ends.
 #include <algorithm>
-#include <array>
 #include <tuple>
+#include <utility>
 
 #include "simulation/contacts/island_step.h"
 #include "simulation/events/event_locator.h"
@@ -16,19 +16,38 @@ Event Stepper::contact_event(const char* kind, const PairState& pair, double tim
     return e;
 }
 
-/// A contact that `pressed` (N s) in the last step and not in this one: its force went through zero between the middles of both, where
-/// a pull would have had to take `parting` (m/s, beyond what closes the gap) away in this one. Linear in between: of order 2, and it may
-/// lie in the last step.
-void Stepper::tell_release(const PairState& pair, const Contact& c, double pressed, double parting, double from, double h)
+/// Whether a pair that pressed in the last step presses no more in this advance: `presses` (N s), and a pull would have had to take
+/// `parting` (m/s, beyond what closes the gap) away. Its force went through zero between the middles of both steps; linear in between:
+/// of order 2, and it may lie in the last step. It is told when the step is over: an advance that goes back may show that it holds on.
+bool Stepper::note_release(PairState& pair, const Contact& c, double presses, double parting, double from, double h)
 {
+    constexpr double kNothing = 0x1p-40;  // of the last step's impulse: what an iteration leaves
+    if (pair.pressed_tick != frame_.tick)
+        pair.pressed_before = pressed_with(pair), pair.pressed_tick = frame_.tick, pair.release = PairHead::kNoRelease;
+    const double pressed = pair.pressed_before;
+    if (!(pressed > 0)) return false;
+    if (presses > kNothing * pressed)
+    {
+        pair.release = PairHead::kNoRelease;
+        return false;
+    }
     const Bodies& bodies = world_.host().bodies;
-    const std::array<std::uint32_t, 2> both{c.a.index, c.b.index};
-    if (!(parting * h > kParts * least_gyration(bodies, both))) return;
     const double mobility = mobility_at(bodies, c.a.index, c.point, c.normal) + mobility_at(bodies, c.b.index, c.point, c.normal);
-    const double share = pressed * mobility / (pressed * mobility + parting);
-    Event e = contact_event("contact.release", pair, frame_.start_time + from + h * (share - 0.5));
+    const double taken = pressed * mobility;
+    if (pair.release != PairHead::kNoRelease || !(parting > kParts * taken)) return true;
+    Event e = contact_event("contact.release", pair, frame_.start_time + from + h * (taken / (taken + parting) - 0.5));
     e.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z};
-    emit(std::move(e));
+    pair.release = static_cast<std::uint32_t>(releases_.size());
+    releases_.push_back(std::move(e));
+    return true;
+}
+
+/// Of this pair, as noted. True if there is one.
+bool Stepper::tell_release(PairState& pair)
+{
+    if (pair.pressed_tick != frame_.tick || pair.release == PairHead::kNoRelease) return false;
+    emit(std::move(releases_[std::exchange(pair.release, PairHead::kNoRelease)]));
+    return true;
 }
 
 void Stepper::locate_events()
@@ -98,12 +117,13 @@ void Stepper::finish_contacts()
         for (at = begin; at < found_.size() && is_of_pair(found_[at], pair); ++at)
             touches = touches || found_[at].contact.depth > (pair.resting ? -standing_margin(pair) : 0.0);
         const bool was_held = pressed(pair);
+        const bool released = tell_release(pair);
         update_pair(pair, begin, at);
         const bool ahead = held_->keeps_ahead(pair, touches, std::span(found_).subspan(begin, at - begin), time);
         if (!touches && !ahead)
         {
             // What pressed in its last step, and is gone at its end, was released in between.
-            if (was_held) emit(contact_event("contact.release", pair, time));
+            if (was_held && !released) emit(contact_event("contact.release", pair, time));
             if (!pair.ahead) emit(contact_event("contact.end", pair, time));
             continue;
         }

@@ -79,6 +79,7 @@ void Stepper::detect(const Detector& detector, std::uint32_t index, std::span<co
     const CostScope scope(meter_, meter_.of_component(detector.component));
     meter_.ran(detector.table, Phase::Detect);
     const auto done = detector.command->run(call, table.rows());
+    report_.further_pairs += sink.further_pairs();
     if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
 }
 
@@ -111,8 +112,8 @@ void Stepper::detect_all(std::vector<FoundContact>& out)
     sort_contacts(out, world_);
 }
 
-/// Contacts of pairs that stand as soon as they touch: with the gaps that count as touching, or may close within the step. A
-/// function of poses (and speeds, where it speculates) alone, whatever was known before.
+/// Contacts of pairs that stand as soon as they touch: with the gaps that count as touching, or may close within the step, and, of pairs
+/// that pressed, those that curves open.
 void Stepper::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
 {
     const Detector& detector = detectors_[index];
@@ -295,9 +296,7 @@ void Stepper::respond(std::vector<FoundContact>& contacts, ImpactMode mode, doub
         meter_.leave();
         if (book.work) book_impact(response, contacts, mode, kinetic_energy(contacts) - before, book);
         report_.worst_residual = std::max(report_.worst_residual, impact.residual);
-        // Where contacts slide their direction is searched for: as long as sweeps over several rows.
-        const std::size_t rows_each = detectors_[d].by_rows ? 10 : 3;
-        report_.swept_rows += rows_each * impact_contacts_.size() * static_cast<std::size_t>(1 + impact.iterations);
+        report_.swept_rows += 3 * (impact_contacts_.size() + static_cast<std::size_t>(impact.visits));
         std::size_t next = 0;
         for (FoundContact& f : contacts)
             if (f.detector == d) f.contact = impact_contacts_[next++];

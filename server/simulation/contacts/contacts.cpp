@@ -69,6 +69,15 @@ KnownContact& ContactCache::contact_of(PairState& pair, std::uint32_t feature)
     return pair.contacts[place];
 }
 
+const KnownContact* ContactCache::find_contact(std::uint32_t detector, Ref a, Ref b, std::uint32_t feature, const world::World& world)
+{
+    const PairState* pair = find(detector, a, b, world);
+    if (!pair) return nullptr;
+    const auto end = pair->contacts.begin() + pair->count;
+    const auto found = std::find_if(pair->contacts.begin(), end, [&](const KnownContact& k) { return k.feature == feature; });
+    return found == end ? nullptr : &*found;
+}
+
 void ContactCache::refresh(const world::World& world, const std::vector<Detector>& detectors)
 {
     const auto gone = [&](const PairState& p)
@@ -237,12 +246,14 @@ std::vector<Detector> find_detectors(const world::World& world, const Schedule& 
     return out;
 }
 
-bool pressed(const PairState& pair)
+double pressed_with(const PairState& pair)
 {
     double sum = 0;
     for (std::uint32_t k = 0; k < pair.count; ++k) sum += dot(pair.contacts[k].impulse, pair.normal);
-    return pair.resting && sum > 0;
+    return sum;
 }
+
+bool pressed(const PairState& pair) { return pair.resting && pressed_with(pair) > 0; }
 
 double mobility_at(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n)
 {

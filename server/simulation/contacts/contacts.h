@@ -80,8 +80,12 @@ struct PairHead
     BounceHistory bounces;
     std::uint32_t impacts = 0;  ///< in the step `impacts_tick`; not hashed: a step begins with none
     Tick impacts_tick = -1;
-    Tick paradox_tick = -2;  ///< last step in which pressing harder would have
-                             ///< closed it faster; not hashed either
+    Tick paradox_tick = -2;     ///< last step in which pressing harder would have
+                                ///< closed it faster; not hashed either
+    double pressed_before = 0;  ///< N s, in the step before `pressed_tick`; not hashed: a step looks itself
+    Tick pressed_tick = -1;
+    static constexpr std::uint32_t kNoRelease = UINT32_MAX;
+    std::uint32_t release = kNoRelease;  ///< among those noted in the step `pressed_tick`
 };
 
 struct PairState : PairHead
@@ -104,6 +108,8 @@ public:
     const std::vector<PairState>& pairs() const { return pairs_; }
     /// The id under which a feature of the pair is known; a new one if it is new.
     KnownContact& contact_of(PairState& pair, std::uint32_t feature);
+    /// Null where that is not known.
+    const KnownContact* find_contact(std::uint32_t detector, Ref a, Ref b, std::uint32_t feature, const world::World& world);
     /// Drops pairs whose detector or bodies are gone and sorts the rest anew,
     /// after a structural change.
     void refresh(const world::World& world, const std::vector<Detector>& detectors);
@@ -150,10 +156,13 @@ public:
     double margin() const override { return margin_; }
     void add(const Contact& contact) override { out_->push_back({contact, detector_}); }
     bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
+    void took(double further_pairs) override { further_pairs_ += further_pairs; }
+    double further_pairs() const { return further_pairs_; }
 
 private:
     const world::World* world_;
     std::vector<FoundContact>* out_;
+    double further_pairs_ = 0;
     std::uint32_t detector_ = 0;
     std::span<const StandingPair> standing_;
     bool only_standing_ = false;
@@ -188,6 +197,8 @@ private:
 /// state.
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world);
 
+/// N s: what the contacts of a pair took along their normal in the last advance.
+double pressed_with(const PairState& pair);
 /// Whether a standing pair held something in the last step; what did not bounces, or passes by.
 bool pressed(const PairState& pair);
 
@@ -202,7 +213,7 @@ double least_gyration(const Bodies& bodies, std::span<const std::uint32_t> some)
 inline constexpr double kOverlapShare = 1e-8;
 /// Slower than this share of a body's radius of gyration a step nothing meets.
 inline constexpr double kNoApproach = 0x1p-34;
-/// Faster than this share a step what pressed parts, and does not tremble.
+/// Share of the speed that a contact took in the last step: what parts faster than that is released, and does not tremble.
 inline constexpr double kParts = 0x1p-24;
 /// A standing pair is looked at as if it were this share of its smaller body's
 /// radius closer: corners that are about to touch are contacts too, with their

@@ -196,27 +196,22 @@ void HeldIslands::keep(const Isle& isle)
     }
 }
 
-/// Pairs that pressed in the last step, and whose points all part.
-void HeldIslands::tell_releases(Isle& isle, double from, double h) const
+/// Looks for pairs that pressed in the last step, and whose points all part.
+void HeldIslands::note_releases(Isle& isle, double from, double h) const
 {
-    constexpr double kNothing = 0x1p-40;  // of the last step's impulse: what an iteration leaves
-
     for (std::size_t i = 0, end = 0; i < isle.contacts.size(); i = end)
     {
         PairState& pair = *pair_of_contact_[isle.places[i]];
-        double pressed = 0, presses = 0, parting = HUGE_VAL;
-        bool impact = false;
+        double presses = 0, parting = HUGE_VAL;
         for (end = i; end < isle.contacts.size() && pair_of_contact_[isle.places[end]] == &pair; ++end)
         {
             const Contact& c = isle.contacts[end];
-            pressed += dot(s_->cache_.contact_of(pair, c.feature).impulse, c.normal);
             const double gap = std::max(0.0, -touching_[isle.places[end]].contact.depth);
             parting = std::min(parting, isle.motion.parting(end) - c.turning + gap / h);
-            presses += dot(c.impulse, c.normal), impact = impact || c.approach > 0;
+            presses += c.approach > 0 ? HUGE_VAL : dot(c.impulse, c.normal);  // who is hit is held
         }
-        if (impact || !(pressed > 0) || presses > kNothing * pressed) continue;
+        if (!s_->note_release(pair, isle.contacts[i], presses, parting, from, h)) continue;
         for (std::size_t k = i; k < end; ++k) isle.contacts[k].impulse = {};
-        s_->tell_release(pair, isle.contacts[i], pressed, parting, from, h);
     }
 }
 

@@ -176,15 +176,15 @@ void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> gro
     s_->finish_advance(system, system.all_finite(), to, trial);
 }
 
-/// Islands in which somebody goes along a curve are led half a step ahead, with their forces. Not where somebody meets: impacts are at the
-/// start of the step, and along the normals of then.
+/// Islands in which somebody goes along a curve are led half a step ahead, with their forces. Not where somebody meets, or moves as told:
+/// impacts are at the start of the step, and along the normals of then.
 void HeldIslands::lead(std::span<Isle*> isles, GroupSystem& system, double h)
 {
-    const auto meets = [](const Contact& c) { return c.approach > 0; };
+    const auto stays = [this](const Contact& c) { return c.approach > 0 || midway_.is_driven(c); };
     led_places_.clear();
     for (Isle* isle : isles)
     {
-        isle->turns = isle->turns && std::none_of(isle->contacts.begin(), isle->contacts.end(), meets);
+        isle->turns = isle->turns && std::none_of(isle->contacts.begin(), isle->contacts.end(), stays);
         if (!isle->turns) continue;
         midway_.lead(system, isle->members, h);
         led_places_.insert(led_places_.end(), isle->places.begin(), isle->places.end());
@@ -244,7 +244,7 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     s_->report_.swept_rows += rows * (static_cast<std::size_t>(1 + island.iterations) + rows / kFactored);
     if (trial) return;
     s_->report_.worst_residual = std::max(s_->report_.worst_residual, island.residual);
-    tell_releases(isle, from, to - from);
+    note_releases(isle, from, to - from);
     keep(isle);
     tell_impacts(isle, island.time);
 }

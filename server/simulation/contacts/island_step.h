@@ -145,7 +145,7 @@ private:
     void keep(const Isle& isle);
     void tell_begin(const PairState& pair, const Contact& contact, double time) const;
     void tell_impacts(const Isle& isle, double time);
-    void tell_releases(Isle& isle, double from, double h) const;
+    void note_releases(Isle& isle, double from, double h) const;
     void look_for_yielding_rows();
     static void report_rows(const Isle& isle, GroupSystem& system, double h, WorkBook book);
     double mobility_of(std::uint32_t root) const;

@@ -35,12 +35,16 @@ bool is_round(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
 
 }  // namespace
 
+bool MidwayContacts::is_driven(const Contact& c) const
+{
+    const Bodies& bodies = s_->world_.host().bodies;
+    return bodies.motion[c.a.index] == Motion::Kinematic || bodies.motion[c.b.index] == Motion::Kinematic;
+}
+
 bool MidwayContacts::turns(const Contact& c, double h) const
 {
     const world::HostTables& host = s_->world_.host();
     const Bodies& bodies = host.bodies;
-    for (const Ref r : {c.a, c.b})
-        if (bodies.motion[r.index] == Motion::Kinematic) return false;
     const Vec3 v = bodies.velocity[c.b.index] - bodies.velocity[c.a.index];
     const double along = length(v - c.normal * dot(v, c.normal));
     if (!(along * h > kNoWay * s_->smaller_radius(c.a, c.b))) return false;
@@ -83,7 +87,13 @@ void MidwayContacts::look(std::span<const std::uint32_t> places, const std::vect
         s_->detect(s_->detectors_[detector], detector, standing_, true, midway_, margin);
     }
     sort_contacts(midway_, s_->world_);
-    for (FoundContact& f : midway_) f.contact.depth -= s_->known_contact(f).rest_depth;
+    for (FoundContact& f : midway_)
+    {
+        const Contact& c = f.contact;
+        const std::uint32_t detector = s_->detectors_[f.detector].component;
+        if (const KnownContact* known = s_->cache_.find_contact(detector, c.a, c.b, c.feature, s_->world_))
+            f.contact.depth -= known->rest_depth;
+    }
 }
 
 void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h)

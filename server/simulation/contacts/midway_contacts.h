@@ -11,7 +11,7 @@
 /// so a body that starts along the curve ends along it, keeps its speed, and its gap, to third order in h a step: the midpoint rule on the
 /// curve, of order 2. Where that asks for an impulse that pulls, there is none: the body leaves the curve, at the right time to order 2.
 /// Attitudes are led for forces, and not for contacts: what turns with its curve (a capsule that tumbles) gets order 1 as before. Forces
-/// that depend on speeds are taken with v0. Joints would not hold half way: islands with joints are not led.
+/// that depend on speeds are taken with v0. Joints would not hold half way, and who moves as told is not led: nor are islands with such.
 ///
 /// Source: the midpoint rule for constrained motion, Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), VII.1.
 #pragma once
@@ -33,6 +33,8 @@ public:
 
     /// Whether two round bodies move along one another so far in h (s) that their normal turns.
     bool turns(const Contact& contact, double h) const;
+    /// Whether a body of it moves as told. It is not led, so nobody of its island may be.
+    bool is_driven(const Contact& contact) const;
     /// After system.begin(), for each island: its members (indices into system.bodies()) are half a step ahead in the evaluation that
     /// follows.
     void lead(GroupSystem& system, std::span<const std::uint32_t> members, double h);

@@ -95,7 +95,9 @@ void Stepper::advance_island(std::span<const std::uint32_t> island, std::span<co
 bool Stepper::lead_touching(GroupSystem& system, double h)
 {
     const auto turns = [&](const FoundContact& f) { return midway_.turns(f.contact, h); };
+    const auto is_driven = [&](const FoundContact& f) { return midway_.is_driven(f.contact); };
     if (system.rows() || std::none_of(touching_.begin(), touching_.end(), turns)) return false;
+    if (std::any_of(touching_.begin(), touching_.end(), is_driven)) return false;
     system.evaluate(0, 0);
     if (meets_any(system, h)) return false;
     midway_.lead(system, members_, h);
@@ -124,16 +126,25 @@ void Stepper::book_rest(double work, WorkBook book)
 
 void Stepper::keep_impulses(const std::vector<FoundContact>& contacts, double from, double h)
 {
-    for (const FoundContact& f : contacts)
-        if (PairState* pair = cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, world_))
+    for (std::size_t i = 0, end = 0; i < contacts.size(); i = end)
+    {
+        const Contact& first = contacts[i].contact;
+        PairState* const pair = cache_.find(detectors_[contacts[i].detector].component, first.a, first.b, world_);
+        double presses = 0, parting = HUGE_VAL;
+        for (end = i; end < contacts.size() && same_pair(contacts[end], contacts[i]); ++end)
         {
-            const Contact& c = f.contact;
-            const double pressed = dot(cache_.contact_of(*pair, c.feature).impulse, c.normal);
-            if (pressed > 0 && c.impulse == Vec3{})
-                tell_release(*pair, c, pressed, normal_velocity(c) - c.turning + std::max(0.0, -c.depth) / h, from, h);
-            cache_.contact_of(*pair, f.contact.feature).impulse = f.contact.impulse;
-            pair->normal = f.contact.normal;
+            const Contact& c = contacts[end].contact;
+            presses += dot(c.impulse, c.normal);
+            parting = std::min(parting, normal_velocity(c) - c.turning + std::max(0.0, -c.depth) / h);
         }
+        if (!pair) continue;
+        note_release(*pair, first, presses, parting, from, h);
+        for (std::size_t k = i; k < end; ++k)
+        {
+            cache_.contact_of(*pair, contacts[k].contact.feature).impulse = contacts[k].contact.impulse;
+            pair->normal = contacts[k].contact.normal;
+        }
+    }
 }
 
 }  // namespace plab::simulation

@@ -169,7 +169,7 @@ void EventLocator::scope_of(const Candidate& candidate, bool local)
 
 /// Chooses an event. Where its pair is pressed together, one of them stops: what stands on that one is looked at again, as if it had
 /// been stopped already. So a stack that is let go stands after one event, not after one for each body.
-void EventLocator::take(std::uint32_t slot)
+void EventLocator::take(std::uint32_t slot, double until)
 {
     chosen_.push_back(slot);
     const Bodies& bodies = s_->world_.host().bodies;
@@ -182,7 +182,7 @@ void EventLocator::take(std::uint32_t slot)
     if (stands(a) == stands(b)) return;
     const Ref stopped = stands(a) ? b : a;
     met_[stopped.index].relief = stopped == b ? candidates_[slot].relief : -candidates_[slot].relief;
-    recall_touching(stopped, candidates_[slot].time + kSameTime * s_->frame_.step);
+    recall_touching(stopped, until);
 }
 
 /// The pair of a body that touched without being pressed, up to a time, goes back into the queue. Several stay where they are: in a wall
@@ -204,10 +204,10 @@ void EventLocator::recall_touching(Ref stopped, double until)
 void EventLocator::gather(std::uint32_t first)
 {
     chosen_.clear();
-    met_.resize(s_->world_.host().bodies.size());
-    take(first);
+    const double until = candidates_[first].time + kSameTime * s_->frame_.step;
+    take(first, until);
     const Candidate& c = candidates_[first];
-    if (c.certified && s_->detectors_[c.detector].responds && !c.stuck) gather_until(c.time + kSameTime * s_->frame_.step);
+    if (c.certified && s_->detectors_[c.detector].responds && !c.stuck) gather_until(until);
     for (const std::uint32_t b : met_bodies_) met_[b] = {};
     met_bodies_.clear();
 }
@@ -236,10 +236,10 @@ void EventLocator::gather_until(double until)
             set_aside_.push_back(slot);
         else
         {
-            take(slot);
+            take(slot, until);
             // Who was passed over may know the new one.
             const auto stays = [&](std::uint32_t s) { return !meets_chosen(s); };
-            const auto known = std::stable_partition(set_aside_.begin(), set_aside_.end(), stays);
+            const auto known = std::partition(set_aside_.begin(), set_aside_.end(), stays);
             std::for_each(known, set_aside_.end(), [&](std::uint32_t s) { push(s); });
             set_aside_.erase(known, set_aside_.end());
         }
@@ -283,9 +283,7 @@ void EventLocator::process()
     s_->report_.rewinds += static_cast<int>(scope_.size());
     const std::uint64_t swept = s_->report_.swept_rows;
     answer();
-    // Response/Impulse goes through few contacts at a time, and has a bound of its own.
-    const double sweeps = detector.by_rows ? WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows - swept) : 0.0;
-    budget_.spend(static_cast<double>(impact_.size()) + sweeps);
+    budget_.spend(static_cast<double>(impact_.size()) + WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows - swept));
     for (const std::uint32_t g : scope_) s_->save_segment(g);
     if (any_certifies_) start_pieces(time);
     if (time < s_->frame_.step) go_on(time);
@@ -298,16 +296,19 @@ void EventLocator::look_again(std::vector<FoundContact>& found)
     // Only pairs with a member that went back can have changed; the rest of what was known stands.
     if (any_certifies_) find_near(true);
     if (all_certify_) return;
+    const double before = s_->report_.further_pairs;
     s_->detect_all(found);
-    budget_.spend(WorkBudget::kListedPair * static_cast<double>(s_->groups_.all.size() + found.size()));
+    budget_.spend(WorkBudget::kListedPair * static_cast<double>(s_->groups_.all.size() + found.size()) +
+                  WorkBudget::kFurtherPair * (s_->report_.further_pairs - before));
     collect(found);
 }
 
-/// What the step takes without locating: groups, pairs that are known, and what rows took so far.
+/// What the step takes without locating: groups, pairs that are known, and what rows and looks took so far.
 void EventLocator::begin_budget()
 {
     const double plain = static_cast<double>(s_->groups_.all.size() + s_->cache_.pairs().size()) +
-                         WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows);
+                         WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows) +
+                         WorkBudget::kFurtherPair * s_->report_.further_pairs;
     double multiple = 0;
     for (const Detector& d : s_->detectors_)
         if (d.locates) multiple = std::max(multiple, s_->number_of(d.resolution, "max_work"));
@@ -377,6 +378,7 @@ void EventLocator::run(std::vector<FoundContact>& found)
     queue_.clear(), free_.clear(), touching_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
     versions_.assign(s_->groups_.all.size(), 0);
+    met_.assign(s_->world_.host().bodies.size(), {});
     note_resting_groups();
     if (any_certifies_) begin_courses(), find_near(false);
     if (!all_certify_) s_->detect_all(found), collect(found);

@@ -105,7 +105,7 @@ private:
     void close_over_resting_pairs();
     void gather(std::uint32_t first);
     void gather_until(double until);
-    void take(std::uint32_t slot);
+    void take(std::uint32_t slot, double until);
     void recall_touching(Ref stopped, double until);
     void process();
     void look_again(std::vector<FoundContact>& found);

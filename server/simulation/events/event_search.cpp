@@ -34,10 +34,11 @@ bool EventLocator::overlaps_at(Candidate& candidate, double time)
 {
     advance_scope(time, {}, true);
     ++s_->report_.trials;
-    budget_.spend(1);
     const StandingPair pair{candidate.a, candidate.b, {}};
     seen_.clear();
+    const double before = s_->report_.further_pairs;
     s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
+    budget_.spend(1 + WorkBudget::kFurtherPair * (s_->report_.further_pairs - before));
     std::erase_if(seen_, [&](const FoundContact& f) { return f.contact.depth <= candidate.ignored; });
     if (seen_.empty()) return false;
     sort_contacts(seen_, s_->world_);
@@ -235,14 +236,23 @@ bool EventLocator::presses(Candidate& candidate, const Look& look)
     if (held(c.a) || held(c.b))
     {
         // Who stands does not fall as forces alone would make it; where the step ends is known.
-        const double before = s_->normal_velocity(c);
+        const Bodies& bodies = s_->world_.host().bodies;
+        const Vec3 arm_a = c.point - bodies.position[c.a.index], arm_b = c.point - bodies.position[c.b.index];
+        // Arms go along with their bodies, and do not turn: a rolling ball's point turns away, its gap does not open.
+        const auto rate = [&]
+        {
+            const Vec3 a = bodies.velocity[c.a.index] + cross(bodies.angular_velocity[c.a.index], arm_a);
+            const Vec3 b = bodies.velocity[c.b.index] + cross(bodies.angular_velocity[c.b.index], arm_b);
+            return dot(b - a, c.normal);
+        };
+        const double before = rate();
         advance_groups_to(s_->frame_.step);
-        c.normal_acceleration = (s_->normal_velocity(c) - before) / left;
+        c.normal_acceleration = (rate() - before) / left;
+        advance_groups_to(look.time);
     }
     else
         rate_of_approach(pressed_, look.time);
-    const auto relief = [&](Ref r) { return met_.empty() ? Vec3{} : met_[r.index].relief; };
-    c.normal_acceleration += dot(relief(c.b) - relief(c.a), c.normal);
+    c.normal_acceleration += dot(met_[c.b.index].relief - met_[c.a.index].relief, c.normal);
     candidate.relief = c.normal * -c.normal_acceleration;
     return candidate.pressed = -0.5 * c.normal_acceleration * left * left > look.slack;
 }

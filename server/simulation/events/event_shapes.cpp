@@ -155,7 +155,7 @@ GapQuery EventLocator::measure(const Candidate& candidate, double time)
     call.context = &context, call.rows = Rows(&detector.row, 1);
     call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.gap = &query;
     (void)detector.gap->run(call, table.rows());
-    budget_.spend(1);
+    budget_.spend(1 + WorkBudget::kFurtherPair * query.further_pairs);
     list_shape_gaps(candidate, query);
     if (shape_gaps_.empty() || !slides(candidate, shape_gaps_.front(), time)) return query;
     const ShapeGap* next = nullptr;

@@ -20,6 +20,9 @@ public:
     /// One group or known pair of the scene, gone through to find out what stands on what, in units.
     static constexpr double kGoneThrough = 1.0 / 64;
 
+    /// One pair of shapes beyond the first of a pair of bodies, a triangle too, in units.
+    static constexpr double kFurtherPair = 1.0 / 4;
+
     /// `plain`: units that the step takes without locating.
     void begin(double plain, double multiple) { spent_ = 0, allowed_ = kBase + multiple * plain; }
     void spend(double units) { spent_ += units; }

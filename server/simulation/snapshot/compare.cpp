@@ -232,6 +232,7 @@ Portrait rest_of(const SnapshotContent& s)
                 facts.push_back({"made by contacts", Weight::Ledger, s.ledger.contact_energy[i].made}),
                     facts.push_back({"lifted", Weight::Ledger, s.ledger.contact_energy[i].lifted});
             if (i < s.watch.start_work.size()) facts.push_back({"work when counting began", Weight::Ledger, s.watch.start_work[i]});
+            if (i < s.watch.start_made.size()) facts.push_back({"energy made when counting began", Weight::Ledger, s.watch.start_made[i]});
             if (c.facet == Facet::Body && c.host_index < s.watch.way.size())
                 facts.push_back({"speed that growth is told from", Weight::Ledger, s.watch.way[c.host_index].reference});
         });

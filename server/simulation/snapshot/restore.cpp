@@ -47,7 +47,8 @@ DivergenceMemory rearranged(const DivergenceMemory& old, const world::Renumberin
     const auto body = [&](std::uint32_t i) { return now.body(i); };
     const auto shaft = [&](std::uint32_t i) { return now.shaft(i); };
     DivergenceMemory out = old;
-    out.start_work = rearranged(old.start_work, components, component), out.passive = rearranged(old.passive, components, component);
+    out.start_work = rearranged(old.start_work, components, component), out.start_made = rearranged(old.start_made, components, component);
+    out.passive = rearranged(old.passive, components, component);
     out.way = rearranged(old.way, bodies, body), out.spin = rearranged(old.spin, bodies, body);
     out.bodies_told = rearranged(old.bodies_told, bodies, body);
     out.turn = rearranged(old.turn, shafts, shaft), out.shafts_told = rearranged(old.shafts_told, shafts, shaft);

@@ -38,7 +38,7 @@ void Stepper::step(Tick tick, double start_time, double dt)
 {
     meter_.start();
     ++serial_;
-    events_.clear();
+    events_.clear(), releases_.clear();
     report_ = {};
     reactions_.clear();
     if (!schedule_.of(Phase::Constrain).empty()) row_reports_.clear(world_.components().size());

@@ -26,6 +26,7 @@ struct StepReport
     int rewinds = 0;  ///< groups rewound
     int resting_pairs = 0;
     std::uint64_t swept_rows = 0;   ///< rows of contacts and joints times sweeps (or pivots) over them, trials included
+    double further_pairs = 0;       ///< of shapes, beyond one for each pair of bodies, that looks for contacts went through
     std::uint64_t evaluations = 0;  ///< of forces, summed over the systems that solvers advanced, trials included
     double worst_residual = 0;      ///< m/s, left over by contact responses
     double deepest = 0;             ///< m, overlap left at the end of the step
@@ -250,7 +251,8 @@ private:
     void bend_touching(double h);
     void book_rest(double work, WorkBook book);
     void book_impact(std::uint32_t response, const std::vector<FoundContact>& contacts, ImpactMode mode, double work, WorkBook book);
-    void tell_release(const PairState& pair, const Contact& contact, double pressed, double parting, double from, double h);
+    bool note_release(PairState& pair, const Contact& contact, double presses, double parting, double from, double h);
+    bool tell_release(PairState& pair);
     void keep_impulses(const std::vector<FoundContact>& contacts, double from, double h);
     static bool same_pair(const FoundContact& x, const FoundContact& y)
     {
@@ -339,7 +341,7 @@ private:
     std::uint64_t serial_ = 0;             ///< counts calls of step(), of whatever tick
     std::vector<KnownForce> known_force_;  ///< by body, where Response/Impulse advances it or parts it from others
 
-    std::vector<Event> events_;
+    std::vector<Event> events_, releases_;  ///< releases: noted, and told when the step is over
     std::vector<ParameterChange> changes_;
     ApplyChanges apply_changes_ = nullptr;
     void* changes_owner_ = nullptr;

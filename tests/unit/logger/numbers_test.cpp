@@ -4,7 +4,7 @@
 
 using plab::link::Sequence;
 
-TEST_CASE("a jump is missing entries, of that writer alone")
+TEST_CASE("a jump is missing entries")
 {
     Sequence numbers;
     CHECK(numbers.note(1, 100, 3).count == 0);  // before the reader came: no loss
@@ -15,4 +15,17 @@ TEST_CASE("a jump is missing entries, of that writer alone")
     CHECK(numbers.note(2, 1, 1).count == 0);  // a server that was started again
     CHECK(numbers.note(2, 3, 1).count == 1);
     CHECK(numbers.note(1, 117, 1).count == 0);
+}
+
+TEST_CASE("a writer that takes another's place goes on where that one ended: what was lost between them is missing")
+{
+    Sequence numbers;
+    CHECK(numbers.note(1, 100, 3).count == 0);
+    const auto missing = numbers.note(2, 115, 1);
+    CHECK(missing.first == 103);
+    CHECK(missing.count == 12);
+    CHECK(numbers.note(2, 116, 1).count == 0);
+    CHECK(numbers.note(3, 117, 2).count == 0);
+    numbers.forget();
+    CHECK(numbers.note(4, 500, 1).count == 0);
 }

@@ -154,6 +154,43 @@ TEST_CASE("hulls of grids and of points that are nearly in planes: closed, and t
     }
 }
 
+TEST_CASE("the hull of two flat rims of many points: every point is a corner, and the work grows with their number")
+{
+    // A gear of 500 teeth stands on 1000 points; the outline between teeth lies on lines. Volume: that of the prism over the polygon.
+    const auto rims = [](int n, int between)
+    {
+        std::vector<Vec3> out;
+        const double step = 2 * std::numbers::pi / n;
+        for (int i = 0; i < n; ++i)
+            for (int k = 0; k <= between; ++k)
+            {
+                const Vec3 from{std::cos(step * i), std::sin(step * i), 0}, to{std::cos(step * (i + 1)), std::sin(step * (i + 1)), 0};
+                const Vec3 p = from + (to - from) * (static_cast<double>(k) / (between + 1));
+                for (const double z : {-0.1, 0.1}) out.push_back({p.x, p.y, z});
+            }
+        return out;
+    };
+    for (const auto& [n, between] : {std::pair{100, 0}, {1000, 0}, {4000, 0}, {150, 3}})
+    {
+        CAPTURE(n);
+        const auto hull = make_convex_hull(rims(n, between));
+        REQUIRE(hull.ok());
+        const auto corners = static_cast<std::size_t>(2 * n);
+        CHECK(hull->vertices.size() >= corners);
+        CHECK(hull->vertices.size() <= corners * static_cast<std::size_t>(1 + between));
+        CHECK(hull->vertices.size() + hull->faces.size() == 2 + 3 * hull->faces.size() / 2);  // Euler
+        double above = 0, volume = 0;
+        for (std::size_t f = 0; f < hull->faces.size(); ++f)
+        {
+            for (const Vec3& p : hull->vertices) above = std::fmax(above, dot(hull->normals[f], p) - hull->offsets[f]);
+            const auto& [a, b, c] = hull->faces[f];
+            volume += dot(hull->vertices[a], cross(hull->vertices[b], hull->vertices[c])) / 6;
+        }
+        CHECK(above < 2e-9);
+        CHECK(volume == doctest::Approx(0.1 * n * std::sin(2 * std::numbers::pi / n)).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("a compound is the sum of its parts about their common centre")
 {
     Shapes host = make_shapes(3);
