@@ -36,25 +36,25 @@ Exit print_state(Context& c, const std::function<std::string(const link::ServerI
     return Exit::Done;
 }
 
-void add_plain(CLI::App& app, Context& context, const CommandText& text)
+void add_plain(const Command& app, Context& context, const CommandText& text)
 {
     auto timing = std::make_shared<Timing>();
     add_timing(add_command(app, context, text, [timing, verb = text.name](Context& c) { return send(c, {{verb}}, *timing); }), *timing);
 }
 
-void add_step(CLI::App& app, Context& context)
+void add_step(const Command& app, Context& context)
 {
     auto count = std::make_shared<std::int64_t>(1);
-    CLI::App& command = add_command(
+    const Command command = add_command(
         app, context,
         {"step", "let a paused server make some steps", "  plabctl pause && plabctl step\n  plabctl step 100 && plabctl wait --step 700\n"},
         [count](Context& c) {
             return send(c, {{"step", "", std::to_string(*count)}});
         });
-    command.add_option("count", *count, "steps, default 1")->check(link::check_count)->type_name("N");
+    command.add_option("count", *count, "steps, default 1").check(link::check_count).type_name("N");
 }
 
-void add_rate(CLI::App& app, Context& context)
+void add_rate(const Command& app, Context& context)
 {
     auto rate = std::make_shared<std::string>();
     const auto text = [](const link::ServerInfo& s)
@@ -70,17 +70,17 @@ void add_rate(CLI::App& app, Context& context)
                 {"paused", s.paused},
                 {"slipped", s.slipped}};
     };
-    CLI::App& command = add_command(app, context,
-                                    {"rate", "set the pace, or print it",
-                                     "  plabctl rate real\n  plabctl rate 0.1     slow motion\n"
-                                     "  plabctl rate max\n  plabctl rate         what it is\n"},
-                                    [rate, text, json](Context& c) {
-                                        return rate->empty() ? print_state(c, text, json) : send(c, {{"rate", "", *rate}});
-                                    });
-    command.add_option("rate", *rate, "real, max, or a factor of real time")->type_name("RATE");
+    const Command command = add_command(app, context,
+                                        {"rate", "set the pace, or print it",
+                                         "  plabctl rate real\n  plabctl rate 0.1     slow motion\n"
+                                         "  plabctl rate max\n  plabctl rate         what it is\n"},
+                                        [rate, text, json](Context& c) {
+                                            return rate->empty() ? print_state(c, text, json) : send(c, {{"rate", "", *rate}});
+                                        });
+    command.add_option("rate", *rate, "real, max, or a factor of real time").type_name("RATE");
 }
 
-void add_dt(CLI::App& app, Context& context)
+void add_dt(const Command& app, Context& context)
 {
     struct Options
     {
@@ -90,41 +90,41 @@ void add_dt(CLI::App& app, Context& context)
     auto o = std::make_shared<Options>();
     const auto text = [](const link::ServerInfo& s) { return "dt " + exact_number(s.dt) + " s (1/" + number(1 / s.dt) + ")"; };
     const auto json = [](const link::ServerInfo& s) -> Json { return {{"server", s.name}, {"dt", s.dt}}; };
-    CLI::App& command = add_command(app, context, {"dt", "set the step length, or print it", "  plabctl dt 1/480\n  plabctl dt\n"},
-                                    [o, text, json](Context& c) {
-                                        return o->dt.empty() ? print_state(c, text, json) : send(c, {{"dt", "", o->dt}}, o->timing);
-                                    });
-    command.add_option("dt", o->dt, "seconds, as a number or a fraction")->type_name("DT");
+    const Command command = add_command(app, context, {"dt", "set the step length, or print it", "  plabctl dt 1/480\n  plabctl dt\n"},
+                                        [o, text, json](Context& c) {
+                                            return o->dt.empty() ? print_state(c, text, json) : send(c, {{"dt", "", o->dt}}, o->timing);
+                                        });
+    command.add_option("dt", o->dt, "seconds, as a number or a fraction").type_name("DT");
     add_timing(command, o->timing);
 }
 
-void add_load(CLI::App& app, Context& context)
+void add_load(const Command& app, Context& context)
 {
     auto file = std::make_shared<std::string>();
-    CLI::App& command = add_command(app, context,
-                                    {"load", "load another scene in place of this one; a new run begins",
-                                     "  plabctl load scenes/fan_and_balloons.xml\n  cat scene.xml | plabctl load -\n"},
-                                    [file](Context& c)
-                                    {
-                                        auto text = read_text(*file);
-                                        if (!text) return c.fail(Exit::Failed, text.errors());
-                                        const std::string name = *file == "-" ? "standard input" : *file;
-                                        return send(c, {{"load", "", name, text.take()}});
-                                    });
-    command.add_option("file", *file, "blueprint; - is standard input")->required()->type_name("FILE");
+    const Command command = add_command(app, context,
+                                        {"load", "load another scene in place of this one; a new run begins",
+                                         "  plabctl load scenes/fan_and_balloons.xml\n  cat scene.xml | plabctl load -\n"},
+                                        [file](Context& c)
+                                        {
+                                            auto text = read_text(*file);
+                                            if (!text) return c.fail(Exit::Failed, text.errors());
+                                            const std::string name = *file == "-" ? "standard input" : *file;
+                                            return send(c, {{"load", "", name, text.take()}});
+                                        });
+    command.add_option("file", *file, "blueprint; - is standard input").required().type_name("FILE");
 }
 
-void add_cancel(CLI::App& app, Context& context)
+void add_cancel(const Command& app, Context& context)
 {
     auto name = std::make_shared<std::string>();
-    CLI::App& command = add_command(app, context,
-                                    {"cancel", "take back a request that waits",
-                                     "  plabctl cancel 3f9c01d2a4b5e6f70819a2b3c4d5e6f7:1\n"
-                                     "The name is what a time-out of plabctl tells.\n"},
-                                    [name](Context& c) {
-                                        return send(c, {{"cancel", "", *name}});
-                                    });
-    command.add_option("request", *name, "as the time-out named it: client and number")->required()->type_name("CLIENT:NUMBER");
+    const Command command = add_command(app, context,
+                                        {"cancel", "take back a request that waits",
+                                         "  plabctl cancel 3f9c01d2a4b5e6f70819a2b3c4d5e6f7:1\n"
+                                         "The name is what a time-out of plabctl tells.\n"},
+                                        [name](Context& c) {
+                                            return send(c, {{"cancel", "", *name}});
+                                        });
+    command.add_option("request", *name, "as the time-out named it: client and number").required().type_name("CLIENT:NUMBER");
 }
 
 Exit run_shutdown(Context& c)
@@ -147,7 +147,7 @@ Exit run_shutdown(Context& c)
 
 }  // namespace
 
-void add_clock_commands(CLI::App& app, Context& context)
+void add_clock_commands(const Command& app, Context& context)
 {
     add_plain(app, context, {"pause", "stop the clock", "  plabctl pause\n  plabctl pause --at 1000\n"});
     add_plain(app, context, {"resume", "let the clock run on", "  plabctl resume\n"});

@@ -36,13 +36,9 @@ Exit Context::fail(Exit code, const Errors& errors) const
     return out;
 }
 
-CLI::App& add_command(CLI::App& app, Context& context, const CommandText& text, Context::Action run)
+Command add_command(const Command& app, Context& context, const CommandText& text, Context::Action run)
 {
-    CLI::App* const command = app.add_subcommand(text.name, text.doc);
-    command->fallthrough();  // global options may stand behind the command
-    command->footer("Examples:\n" + text.examples);
-    command->callback([&context, run = std::move(run)] { context.action = run; });
-    return *command;
+    return app.add_command(text.name, text.doc, "Examples:\n" + text.examples, [&context, run = std::move(run)] { context.action = run; });
 }
 
 }  // namespace plab::control

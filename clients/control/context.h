@@ -1,16 +1,16 @@
 /// What every command of plabctl works with: settings, the session, the console, the exit code.
 ///
-///   void add_pause_command(CLI::App& app, Context& context)
+///   void add_pause_command(const Command& app, Context& context)
 ///   {
 ///       add_command(app, context, {"pause", "stop the clock", "plabctl pause"}, [](Context& c) { return run_pause(c); });
 ///   }
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "control/command_line.h"
 #include "control/console.h"
 #include "link/session.h"
 #include "program/progress.h"
@@ -84,6 +84,6 @@ struct CommandText
 };
 
 /// A sub-command whose action is `run`.
-CLI::App& add_command(CLI::App& app, Context& context, const CommandText& text, Context::Action run);
+Command add_command(const Command& app, Context& context, const CommandText& text, Context::Action run);
 
 }  // namespace plab::control

@@ -290,7 +290,7 @@ Exit run_types(Context& c, const TypesOptions& o)
 
 }  // namespace
 
-void add_list_commands(CLI::App& app, Context& context)
+void add_list_commands(const Command& app, Context& context)
 {
     add_command(app, context, {"servers", "list the servers of the domain", "  plabctl servers\n  plabctl servers --domain 7 --json\n"},
                 run_servers);
@@ -303,13 +303,13 @@ void add_list_commands(CLI::App& app, Context& context)
                  "  plabctl interactions\n  plabctl interactions --server lab --json\n"},
                 run_interactions);
     auto o = std::make_shared<TypesOptions>();
-    CLI::App& types = add_command(app, context,
-                                  {"types", "list types that can be added or swapped in",
-                                   "  plabctl types\n  plabctl types solver\n  plabctl types --for contact.response\n"},
-                                  [o](Context& c) { return run_types(c, *o); });
-    types.add_option("pattern", o->pattern, "part of a type's or family's name")->type_name("TEXT");
-    CLI::Option* const family = types.add_option("--family", o->family, "of this family only")->type_name("FAMILY");
-    types.add_option("--for", o->replaces, "what can take the place of this component")->type_name("ID")->excludes(family);
+    const Command types = add_command(app, context,
+                                      {"types", "list types that can be added or swapped in",
+                                       "  plabctl types\n  plabctl types solver\n  plabctl types --for contact.response\n"},
+                                      [o](Context& c) { return run_types(c, *o); });
+    types.add_option("pattern", o->pattern, "part of a type's or family's name").type_name("TEXT");
+    const Option family = types.add_option("--family", o->family, "of this family only").type_name("FAMILY");
+    types.add_option("--for", o->replaces, "what can take the place of this component").type_name("ID").excludes(family);
 }
 
 }  // namespace plab::control

@@ -1,4 +1,5 @@
 /// plabctl: asks a running plabd, and tells it what to do.
+#include <CLI/CLI.hpp>
 #include <sstream>
 
 #include "control/commands.h"
@@ -104,18 +105,19 @@ int main(int argc, char** argv)
     auto environment = plab::link::options_from_environment();
     if (environment) context.settings.link = *environment;
     add_global_options(app, context.settings);
-    add_list_commands(app, context);
-    add_show_command(app, context);
-    add_watch_command(app, context);
-    add_scene_commands(app, context);
-    add_clock_commands(app, context);
-    add_past_commands(app, context);
-    add_wait_command(app, context);
-    add_topics_command(app, context);
-    add_recording_commands(app, context);
-    add_recording_views(app, context);
-    add_record_command(app, context);
-    add_play_command(app, context);
+    const Command commands(app);
+    add_list_commands(commands, context);
+    add_show_command(commands, context);
+    add_watch_command(commands, context);
+    add_scene_commands(commands, context);
+    add_clock_commands(commands, context);
+    add_past_commands(commands, context);
+    add_wait_command(commands, context);
+    add_topics_command(commands, context);
+    add_recording_commands(commands, context);
+    add_recording_views(commands, context);
+    add_record_command(commands, context);
+    add_play_command(commands, context);
     try
     {
         app.parse(argc, argv);

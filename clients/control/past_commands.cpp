@@ -94,16 +94,16 @@ Exit run_snapshot(Context& c, const SnapshotOptions& o)
     return write_file(c, *snapshot, o.file);
 }
 
-void add_snapshot(CLI::App& app, Context& context)
+void add_snapshot(const Command& app, Context& context)
 {
     auto o = std::make_shared<SnapshotOptions>();
-    CLI::App& command = add_command(app, context,
-                                    {"snapshot", "keep the present state under a name, on the server",
-                                     "  plabctl snapshot before\n  plabctl snapshot s600 --at 600\n"
-                                     "  plabctl snapshot before -o before.snapshot && plabd --load before.snapshot\n"},
-                                    [o](Context& c) { return run_snapshot(c, *o); });
-    command.add_option("name", o->name, "its name; one of that name is replaced")->required()->type_name("NAME");
-    command.add_option("-o,--out", o->file, "write it to a file, too")->type_name("FILE");
+    const Command command = add_command(app, context,
+                                        {"snapshot", "keep the present state under a name, on the server",
+                                         "  plabctl snapshot before\n  plabctl snapshot s600 --at 600\n"
+                                         "  plabctl snapshot before -o before.snapshot && plabd --load before.snapshot\n"},
+                                        [o](Context& c) { return run_snapshot(c, *o); });
+    command.add_option("name", o->name, "its name; one of that name is replaced").required().type_name("NAME");
+    command.add_option("-o,--out", o->file, "write it to a file, too").type_name("FILE");
     add_timing(command, o->timing);
 }
 
@@ -147,27 +147,27 @@ std::string not_a_time(const std::string& text)
     return "'" + text + "' is negative: --to wants a time of the run, --by how far back; both in s, 0 or more";
 }
 
-void add_rewind(CLI::App& app, Context& context)
+void add_rewind(const Command& app, Context& context)
 {
     struct Options
     {
         std::string to, by;
     };
     auto o = std::make_shared<Options>();
-    CLI::App& command = add_command(app, context,
-                                    {"rewind", "go back to an earlier time of this run; what came later is given up",
-                                     "  plabctl rewind --to 3\n  plabctl rewind --by 0.5\n"},
-                                    [o](Context& c)
-                                    {
-                                        if (o->to.empty() == o->by.empty())
-                                            return c.fail(Exit::Usage, "rewind wants --to TIME or --by TIME");
-                                        return send(c, {{"rewind", "", o->to.empty() ? "back " + o->by : o->to}});
-                                    });
-    command.add_option("--to", o->to, "simulated time, s")->check(&not_a_time, "")->type_name("TIME");
-    command.add_option("--by", o->by, "how far back, s")->check(&not_a_time, "")->type_name("TIME");
+    const Command command = add_command(app, context,
+                                        {"rewind", "go back to an earlier time of this run; what came later is given up",
+                                         "  plabctl rewind --to 3\n  plabctl rewind --by 0.5\n"},
+                                        [o](Context& c)
+                                        {
+                                            if (o->to.empty() == o->by.empty())
+                                                return c.fail(Exit::Usage, "rewind wants --to TIME or --by TIME");
+                                            return send(c, {{"rewind", "", o->to.empty() ? "back " + o->by : o->to}});
+                                        });
+    command.add_option("--to", o->to, "simulated time, s").check(&not_a_time).type_name("TIME");
+    command.add_option("--by", o->by, "how far back, s").check(&not_a_time).type_name("TIME");
 }
 
-void add_named(CLI::App& app, Context& context, const CommandText& text)
+void add_named(const Command& app, Context& context, const CommandText& text)
 {
     struct Options
     {
@@ -175,11 +175,11 @@ void add_named(CLI::App& app, Context& context, const CommandText& text)
         Timing timing;
     };
     auto o = std::make_shared<Options>();
-    CLI::App& command = add_command(app, context, text,
-                                    [o, verb = text.name](Context& c) {
-                                        return send(c, {{verb, o->name}}, o->timing);
-                                    });
-    command.add_option("name", o->name, "the snapshot")->required()->type_name("NAME");
+    const Command command = add_command(app, context, text,
+                                        [o, verb = text.name](Context& c) {
+                                            return send(c, {{verb, o->name}}, o->timing);
+                                        });
+    command.add_option("name", o->name, "the snapshot").required().type_name("NAME");
     add_timing(command, o->timing);
 }
 
@@ -237,26 +237,23 @@ Exit run_branch(Context& c, BranchOptions o)
     return await_server(c, *process, o);
 }
 
-void add_branch(CLI::App& app, Context& context)
+void add_branch(const Command& app, Context& context)
 {
     auto o = std::make_shared<BranchOptions>();
-    CLI::App& command = add_command(app, context,
-                                    {"branch", "a second server goes on from the present state, under its own name",
-                                     "  plabctl branch b && plabctl --server b swap contact.response --to Response/None\n"
-                                     "  plabctl branch slow --paused\n  plabctl --server b shutdown\n"},
-                                    [o](Context& c) { return run_branch(c, *o); });
-    command.add_option("name", o->name, "of the new server")->required()->type_name("NAME");
+    const Command command = add_command(app, context,
+                                        {"branch", "a second server goes on from the present state, under its own name",
+                                         "  plabctl branch b && plabctl --server b swap contact.response --to Response/None\n"
+                                         "  plabctl branch slow --paused\n  plabctl --server b shutdown\n"},
+                                        [o](Context& c) { return run_branch(c, *o); });
+    command.add_option("name", o->name, "of the new server").required().type_name("NAME");
     command.add_flag("--paused", o->paused, "it waits before its first step");
-    command.add_option("--log", o->log, "where its log goes; default: plabd-NAME.log")->type_name("FILE");
-    command.add_option("--plabd", o->arguments, "one more argument for plabd (may be repeated)")
-        ->take_all()
-        ->allow_extra_args(false)
-        ->type_name("ARGUMENT");
+    command.add_option("--log", o->log, "where its log goes; default: plabd-NAME.log").type_name("FILE");
+    command.add_option("--plabd", o->arguments, "one more argument for plabd (may be repeated)").repeated().type_name("ARGUMENT");
 }
 
 // ---- shadow ---------------------------------------------------------------------------------------------------------
 
-void add_shadow(CLI::App& app, Context& context)
+void add_shadow(const Command& app, Context& context)
 {
     struct Options
     {
@@ -279,18 +276,19 @@ void add_shadow(CLI::App& app, Context& context)
         if (c.stopped()) return Exit::Interrupted;
         return *code == 0 ? Exit::Done : Exit::Failed;
     };
-    CLI::App& command = add_command(app, context,
-                                    {"shadow", "what a swap would do: the scene's future with it beside the one without, on this machine",
-                                     "  plabctl shadow contact.response --with Response/None --for 2\n"},
-                                    run);
-    command.add_option("id", o->id, "the component")->required()->type_name("ID");
-    command.add_option("--with", o->type, "the other type")->required()->type_name("TYPE");
-    command.add_option("--for", o->seconds, "simulated seconds, default 1")->check(link::check_positive)->type_name("SECONDS");
+    const Command command =
+        add_command(app, context,
+                    {"shadow", "what a swap would do: the scene's future with it beside the one without, on this machine",
+                     "  plabctl shadow contact.response --with Response/None --for 2\n"},
+                    run);
+    command.add_option("id", o->id, "the component").required().type_name("ID");
+    command.add_option("--with", o->type, "the other type").required().type_name("TYPE");
+    command.add_option("--for", o->seconds, "simulated seconds, default 1").check(link::check_positive).type_name("SECONDS");
 }
 
 }  // namespace
 
-void add_past_commands(CLI::App& app, Context& context)
+void add_past_commands(const Command& app, Context& context)
 {
     add_snapshot(app, context);
     add_command(app, context, {"snapshots", "the snapshots that the server keeps, and how far it can be rewound", "  plabctl snapshots\n"},

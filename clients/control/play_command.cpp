@@ -136,21 +136,19 @@ Exit run_play(Context& c, playback::Options options)
 
 }  // namespace
 
-void add_play_command(CLI::App& app, Context& context)
+void add_play_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<playback::Options>();
-    CLI::App& command = add_command(app, context, {"play", "send a recording on the bus, as its server did", kExamples},
-                                    [o](Context& c) { return run_play(c, *o); });
-    command.add_option("file", o->file, "a recording")->required()->type_name("FILE");
-    command.add_option("--rate", o->rate, "seconds of the recording in a second; default: 1")->check(check_rate)->type_name("R");
-    command.add_option("--from", o->from, "begin there, on the recording's time line")
-        ->check(link::check_not_negative)
-        ->type_name("SECONDS");
-    command.add_option("--to", o->to, "end there")->check(link::check_not_negative)->type_name("SECONDS");
+    const Command command = add_command(app, context, {"play", "send a recording on the bus, as its server did", kExamples},
+                                        [o](Context& c) { return run_play(c, *o); });
+    command.add_option("file", o->file, "a recording").required().type_name("FILE");
+    command.add_option("--rate", o->rate, "seconds of the recording in a second; default: 1").check(check_rate).type_name("R");
+    command.add_option("--from", o->from, "begin there, on the recording's time line").check(link::check_not_negative).type_name("SECONDS");
+    command.add_option("--to", o->to, "end there").check(link::check_not_negative).type_name("SECONDS");
     command.add_flag("--loop", o->loop, "begin again at the end, as a new run");
     command.add_flag("--pause", o->paused, "stand still at the beginning");
-    command.add_option("--name", o->name, "of the server that is played; default: the recorded one's")->type_name("NAME");
-    command.add_option("--readers", o->readers, "begin when so many read the states")->check(link::check_whole)->type_name("N");
+    command.add_option("--name", o->name, "of the server that is played; default: the recorded one's").type_name("NAME");
+    command.add_option("--readers", o->readers, "begin when so many read the states").check(link::check_whole).type_name("N");
 }
 
 }  // namespace plab::control

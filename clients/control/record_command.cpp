@@ -163,21 +163,20 @@ Exit run_record(Context& c, RecordOptions o)
 
 }  // namespace
 
-void add_record_command(CLI::App& app, Context& context)
+void add_record_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<RecordOptions>();
-    CLI::App& command = add_command(app, context, {"record", "write what a server sends into a file, until it ends or Ctrl-C", kExamples},
-                                    [o](Context& c) { return run_record(c, *o); });
-    command.add_option("-o,--output", o->recorder.tape.file, "default: SERVER_DATE_TIME.mcap")->type_name("FILE.mcap");
+    const Command command =
+        add_command(app, context, {"record", "write what a server sends into a file, until it ends or Ctrl-C", kExamples},
+                    [o](Context& c) { return run_record(c, *o); });
+    command.add_option("-o,--output", o->recorder.tape.file, "default: SERVER_DATE_TIME.mcap").type_name("FILE.mcap");
     command.add_flag("--overwrite", o->recorder.tape.overwrite, "replace a file that is there");
-    command.add_option("--topics", o->recorder.topics, "only these; default: all but plab/images")->type_name("TOPIC ..");
-    command.add_option("--until", o->recorder.until, "end at this simulated time")->check(link::check_not_negative)->type_name("SECONDS");
-    command.add_option("--compression", o->compression, "none, lz4 or zstd")
-        ->check(CLI::IsMember({"none", "lz4", "zstd"}))
-        ->capture_default_str();
+    command.add_option("--topics", o->recorder.topics, "only these; default: all but plab/images").type_name("TOPIC ..");
+    command.add_option("--until", o->recorder.until, "end at this simulated time").check(link::check_not_negative).type_name("SECONDS");
+    command.add_option("--compression", o->compression, "none, lz4 or zstd").one_of({"none", "lz4", "zstd"}).show_default();
     command.add_option("--state-rate", o->recorder.state_rate, "frames per simulated second at the most; default: all that come")
-        ->check(link::check_positive)
-        ->type_name("HZ");
+        .check(link::check_positive)
+        .type_name("HZ");
 }
 
 }  // namespace plab::control

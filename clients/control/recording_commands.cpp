@@ -94,13 +94,16 @@ Exit run_recover(Context& c, const RecoverArguments& o)
 
 }  // namespace
 
-void add_file(CLI::App& command, std::string& file) { command.add_option("file", file, "recording (MCAP)")->required()->type_name("FILE"); }
+void add_file(const Command& command, std::string& file)
+{
+    command.add_option("file", file, "recording (MCAP)").required().type_name("FILE");
+}
 
-void add_span(CLI::App& command, recordings::Span& span)
+void add_span(const Command& command, recordings::Span& span)
 {
     constexpr const char* kLine = ": simulated seconds since the recording began, which go on over a reset";
-    command.add_option("--from", span.from, std::string("from here on") + kLine)->check(link::check_not_negative)->type_name("SECONDS");
-    command.add_option("--to", span.to, "up to here")->check(link::check_not_negative)->type_name("SECONDS");
+    command.add_option("--from", span.from, std::string("from here on") + kLine).check(link::check_not_negative).type_name("SECONDS");
+    command.add_option("--to", span.to, "up to here").check(link::check_not_negative).type_name("SECONDS");
 }
 
 /// Trouble that did not keep the rest from being read.
@@ -112,7 +115,7 @@ Exit warn(const Context& c, const recordings::Troubles& troubles)
     return troubles.count == 0 ? Exit::Done : Exit::Failed;
 }
 
-void add_recording_commands(CLI::App& app, Context& context)
+void add_recording_commands(const Command& app, Context& context)
 {
     auto info = std::make_shared<std::string>();
     add_file(add_command(app, context,
@@ -122,30 +125,29 @@ void add_recording_commands(CLI::App& app, Context& context)
              *info);
 
     auto e = std::make_shared<ExportArguments>();
-    CLI::App& exported = add_command(app, context,
-                                     {"export", "a recording as tables (CSV) or lines of JSON",
-                                      "  plabctl export run.mcap --csv > states.csv                a row per object and frame\n"
-                                      "  plabctl export run.mcap --csv --topic events --from 2 --to 3\n"
-                                      "  plabctl export run.mcap --csv -o tables/                  a file for each topic that has a table\n"
-                                      "  plabctl export run.mcap --json -o run.jsonl               everything, a message on each line\n"},
-                                     [e](Context& c) { return run_export(c, *e); });
+    const Command exported =
+        add_command(app, context,
+                    {"export", "a recording as tables (CSV) or lines of JSON",
+                     "  plabctl export run.mcap --csv > states.csv                a row per object and frame\n"
+                     "  plabctl export run.mcap --csv --topic events --from 2 --to 3\n"
+                     "  plabctl export run.mcap --csv -o tables/                  a file for each topic that has a table\n"
+                     "  plabctl export run.mcap --json -o run.jsonl               everything, a message on each line\n"},
+                    [e](Context& c) { return run_export(c, *e); });
     add_file(exported, e->file);
     exported.add_flag("--csv", e->csv, "tables; their columns name the unit");
-    exported.add_option("--topic", e->options.topics, "this topic (may be repeated): states, events, ..")
-        ->allow_extra_args(false)
-        ->type_name("TOPIC");
-    exported.add_option("-o,--output", e->options.out, "file, or for tables a folder (it is there, or ends with '/')")->type_name("PATH");
+    exported.add_option("--topic", e->options.topics, "this topic (may be repeated): states, events, ..").repeated().type_name("TOPIC");
+    exported.add_option("-o,--output", e->options.out, "file, or for tables a folder (it is there, or ends with '/')").type_name("PATH");
     add_span(exported, e->options.span);
 
     auto r = std::make_shared<RecoverArguments>();
-    CLI::App& recover = add_command(app, context,
-                                    {"recover", "save what is good of a recording that was cut or damaged",
-                                     "  plabctl recover run.mcap                  to run.recovered.mcap\n"
-                                     "  plabctl recover run.mcap -o good.mcap || echo \"exit code $?\"\n"
-                                     "Exit codes: 0 whole, 5 something is lost, 1 nothing is usable.\n"},
-                                    [r](Context& c) { return run_recover(c, *r); });
+    const Command recover = add_command(app, context,
+                                        {"recover", "save what is good of a recording that was cut or damaged",
+                                         "  plabctl recover run.mcap                  to run.recovered.mcap\n"
+                                         "  plabctl recover run.mcap -o good.mcap || echo \"exit code $?\"\n"
+                                         "Exit codes: 0 whole, 5 something is lost, 1 nothing is usable.\n"},
+                                        [r](Context& c) { return run_recover(c, *r); });
     add_file(recover, r->file);
-    recover.add_option("-o,--output", r->out, "new file; must not be there yet")->type_name("FILE");
+    recover.add_option("-o,--output", r->out, "new file; must not be there yet").type_name("FILE");
 }
 
 }  // namespace plab::control

@@ -7,9 +7,9 @@
 namespace plab::control
 {
 
-void add_file(CLI::App& command, std::string& file);
+void add_file(const Command& command, std::string& file);
 /// --from and --to.
-void add_span(CLI::App& command, recordings::Span& span);
+void add_span(const Command& command, recordings::Span& span);
 /// Says what could not be read. Failed if there is anything: what was asked for is not complete.
 Exit warn(const Context& context, const recordings::Troubles& troubles);
 

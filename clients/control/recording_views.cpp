@@ -174,25 +174,25 @@ Exit run_log(const Context& c, LogArguments o)
     return written ? warn(c, *written) : c.fail(Exit::Failed, written.errors());
 }
 
-void add_diff(CLI::App& app, Context& context)
+void add_diff(const Command& app, Context& context)
 {
     auto o = std::make_shared<DiffArguments>();
-    CLI::App& command =
+    const Command command =
         add_command(app, context,
                     {"diff", "where two recordings differ first, and how the difference grows",
                      "  plabctl diff a.mcap b.mcap\n  plabctl diff a.mcap b.mcap --plot growth.svg\n"
                      "Steps that both have are compared: state hashes, then states. Exit code 0: no difference, 1: there is one, or one\n"
                      "of them has more runs.\n"},
                     [o](Context& c) { return run_diff(c, *o); });
-    command.add_option("a", o->a, "recording")->required()->type_name("FILE");
-    command.add_option("b", o->b, "recording that it is compared with")->required()->type_name("FILE");
-    command.add_option("--plot", o->plot, "draw the growth of the difference into this .svg or .png")->type_name("FILE");
+    command.add_option("a", o->a, "recording").required().type_name("FILE");
+    command.add_option("b", o->b, "recording that it is compared with").required().type_name("FILE");
+    command.add_option("--plot", o->plot, "draw the growth of the difference into this .svg or .png").type_name("FILE");
 }
 
-void add_plot(CLI::App& app, Context& context)
+void add_plot(const Command& app, Context& context)
 {
     auto o = std::make_shared<PlotArguments>();
-    CLI::App& command =
+    const Command command =
         add_command(app, context,
                     {"plot", "draw quantities of a recording over time, with its swaps and events",
                      "  plabctl plot run.mcap --quantity red.position.z -o height.svg\n"
@@ -204,55 +204,53 @@ void add_plot(CLI::App& app, Context& context)
                     [o](Context& c) { return run_plot(c, *o); });
     add_file(command, o->file);
     command.add_option("-q,--quantity", o->quantities, "ID.QUANTITY (may be repeated); a panel for each unit")
-        ->required()
-        ->allow_extra_args(false)
-        ->type_name("NAME");
-    command.add_option("-o,--output", o->out, "picture: .svg or .png")->required()->type_name("FILE");
+        .required()
+        .repeated()
+        .type_name("NAME");
+    command.add_option("-o,--output", o->out, "picture: .svg or .png").required().type_name("FILE");
     command.add_flag("--no-events{false}", o->has_events, "mark warnings and failures only, not every event");
     command.add_flag("--log", o->has_log_scale, "logarithmic values; what is not positive is left out");
     add_span(command, o->span);
 }
 
-void add_report(CLI::App& app, Context& context)
+void add_report(const Command& app, Context& context)
 {
     auto o = std::make_shared<ReportArguments>();
-    CLI::App& command = add_command(app, context,
-                                    {"report", "a recording as one HTML page: energy, momentum, cost and error, swaps, events",
-                                     "  plabctl report run.mcap -o report.html\n"},
-                                    [o](Context& c) { return run_report(c, *o); });
+    const Command command = add_command(app, context,
+                                        {"report", "a recording as one HTML page: energy, momentum, cost and error, swaps, events",
+                                         "  plabctl report run.mcap -o report.html\n"},
+                                        [o](Context& c) { return run_report(c, *o); });
     add_file(command, o->file);
-    command.add_option("-o,--output", o->out, "page to write; '-' for standard output")->required()->type_name("FILE");
+    command.add_option("-o,--output", o->out, "page to write; '-' for standard output").required().type_name("FILE");
 }
 
-void add_log(CLI::App& app, Context& context)
+void add_log(const Command& app, Context& context)
 {
     auto o = std::make_shared<LogArguments>();
     o->lines.filter.events = o->lines.filter.collisions = false;  // flags
-    CLI::App& command =
+    const Command command =
         add_command(app, context,
                     {"log", "events and collisions as lines, of a recording or as they happen",
                      "  plabctl log run.mcap --severity warning\n  plabctl log run.mcap --collisions --object red --from 2 --to 3\n"
                      "  plabctl log run.mcap --json | jq 'select(.kind == \"script.print\")'\n"
                      "  plabctl log                               what happens in a server, until Ctrl-C (as plab-log)\n"},
                     [o](Context& c) { return run_log(c, *o); });
-    command.add_option("file", o->file, "recording (MCAP); without it a server is followed")->type_name("FILE");
+    command.add_option("file", o->file, "recording (MCAP); without it a server is followed").type_name("FILE");
     command.add_flag("--events", o->lines.filter.events, "events only");
     command.add_flag("--collisions", o->lines.filter.collisions, "collisions only");
     command.add_option("--kind", o->lines.filter.kinds, "kinds that begin so (may be repeated): collision.impact, script.")
-        ->allow_extra_args(false)
-        ->type_name("KIND");
-    command.add_option("--object", o->lines.filter.objects, "what names this component (may be repeated)")
-        ->allow_extra_args(false)
-        ->type_name("ID");
+        .repeated()
+        .type_name("KIND");
+    command.add_option("--object", o->lines.filter.objects, "what names this component (may be repeated)").repeated().type_name("ID");
     command.add_option("--severity", o->severity, "least severity; collisions are info")
-        ->check(CLI::IsMember({"info", "warning", "failure"}))
-        ->type_name("WORD");
+        .one_of({"info", "warning", "failure"})
+        .type_name("WORD");
     add_span(command, o->lines.span);
 }
 
 }  // namespace
 
-void add_recording_views(CLI::App& app, Context& context)
+void add_recording_views(const Command& app, Context& context)
 {
     add_diff(app, context);
     add_plot(app, context);

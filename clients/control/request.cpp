@@ -13,10 +13,9 @@ namespace
 
 Exit refused(const Context& context, const link::Reply& reply)
 {
-    std::vector<std::string> reasons = reply.reasons;
-    if (reasons.empty()) reasons.push_back("the server gave no reason");
     context.console.say("plabctl: " + reply.outcome + " at step " + std::to_string(reply.step) + ":");
-    for (const std::string& why : reasons) context.console.say("  " + printable(why));
+    for (const std::string& why : reply.reasons) context.console.say("  " + printable(why));
+    if (reply.reasons.empty()) context.console.say("  the server gave no reason");
     return Exit::Refused;
 }
 
@@ -43,12 +42,12 @@ std::string fate_of_unanswered(const Context& context, const link::Caller& calle
 
 }  // namespace
 
-void add_timing(CLI::App& command, Timing& timing)
+void add_timing(const Command& command, Timing& timing)
 {
-    command.add_option("--at", timing.at, "take effect before this step; too late: refused")->check(link::check_whole)->type_name("STEP");
+    command.add_option("--at", timing.at, "take effect before this step; too late: refused").check(link::check_whole).type_name("STEP");
     command.add_option("--revision", timing.revision, "refuse unless the scene is at this revision")
-        ->check(link::check_whole)
-        ->type_name("N");
+        .check(link::check_whole)
+        .type_name("N");
 }
 
 Exit send(Context& context, std::vector<link::Operation> operations, const Timing& timing)

@@ -13,7 +13,7 @@ struct Timing
     std::optional<std::int64_t> at;
     std::optional<std::uint64_t> revision;
 };
-void add_timing(CLI::App& command, Timing& timing);
+void add_timing(const Command& command, Timing& timing);
 
 /// Connects unless `context` is connected, sends, waits for the reply and prints it.
 Exit send(Context& context, std::vector<link::Operation> operations, const Timing& timing = {});

@@ -24,7 +24,7 @@ Result<NameValue> split_at_equal(const std::string& text, const char* wanted)
 
 // ---- add, remove ----------------------------------------------------------------------------------------------------
 
-void add_add(CLI::App& app, Context& context)
+void add_add(const Command& app, Context& context)
 {
     struct Options
     {
@@ -32,22 +32,22 @@ void add_add(CLI::App& app, Context& context)
         Timing timing;
     };
     auto o = std::make_shared<Options>();
-    CLI::App& command = add_command(app, context,
-                                    {"add", "add components from a blueprint",
-                                     "  plabctl add ball.xml\n"
-                                     "  echo '<component id=\"wind\" type=\"Field/Airflow\" between=\"red\"/>' | plabctl add -\n"},
-                                    [o](Context& c)
-                                    {
-                                        auto text = read_text(o->file);
-                                        if (!text) return c.fail(Exit::Failed, text.errors());
-                                        const std::string name = o->file == "-" ? "standard input" : o->file;
-                                        return send(c, {{"add", "", name, text.take()}}, o->timing);
-                                    });
-    command.add_option("file", o->file, "XML: <plab> or one <component>; - is standard input")->required()->type_name("FILE");
+    const Command command = add_command(app, context,
+                                        {"add", "add components from a blueprint",
+                                         "  plabctl add ball.xml\n"
+                                         "  echo '<component id=\"wind\" type=\"Field/Airflow\" between=\"red\"/>' | plabctl add -\n"},
+                                        [o](Context& c)
+                                        {
+                                            auto text = read_text(o->file);
+                                            if (!text) return c.fail(Exit::Failed, text.errors());
+                                            const std::string name = o->file == "-" ? "standard input" : o->file;
+                                            return send(c, {{"add", "", name, text.take()}}, o->timing);
+                                        });
+    command.add_option("file", o->file, "XML: <plab> or one <component>; - is standard input").required().type_name("FILE");
     add_timing(command, o->timing);
 }
 
-void add_remove(CLI::App& app, Context& context)
+void add_remove(const Command& app, Context& context)
 {
     struct Options
     {
@@ -55,7 +55,7 @@ void add_remove(CLI::App& app, Context& context)
         Timing timing;
     };
     auto o = std::make_shared<Options>();
-    CLI::App& command = add_command(
+    const Command command = add_command(
         app, context,
         {"remove", "remove components; several go together or not at all", "  plabctl remove wind\n  plabctl remove contact red\n"},
         [o](Context& c)
@@ -64,7 +64,7 @@ void add_remove(CLI::App& app, Context& context)
             for (const std::string& id : o->ids) operations.push_back({"remove", id});
             return send(c, std::move(operations), o->timing);
         });
-    command.add_option("id", o->ids, "components; no other may refer to them")->required()->type_name("ID");
+    command.add_option("id", o->ids, "components; no other may refer to them").required().type_name("ID");
     add_timing(command, o->timing);
 }
 
@@ -100,34 +100,31 @@ Exit run_swap(Context& c, const SwapOptions& o)
     return send(c, std::move(operations), o.timing);
 }
 
-void add_swap(CLI::App& app, Context& context)
+void add_swap(const Command& app, Context& context)
 {
     auto o = std::make_shared<SwapOptions>();
-    CLI::App& command = add_command(app, context,
-                                    {"swap", "exchange components for others of their family, all or none",
-                                     "  plabctl swap contact.response --to Response/None\n"
-                                     "  plabctl swap contact.response --to Response/Impulse --param restitution=0.5\n"
-                                     "  plabctl swap gears --to Constraint/AngularVelocity/Impulse --at 2400 --json\n"
-                                     "  plabctl swap 'gears.*' clutch --to Constraint/AngularVelocity/Graph --trial 20 --or-refuse\n"
-                                     "What can be swapped in: plabctl types --for ID\n"},
-                                    [o](Context& c) { return run_swap(c, *o); });
+    const Command command = add_command(app, context,
+                                        {"swap", "exchange components for others of their family, all or none",
+                                         "  plabctl swap contact.response --to Response/None\n"
+                                         "  plabctl swap contact.response --to Response/Impulse --param restitution=0.5\n"
+                                         "  plabctl swap gears --to Constraint/AngularVelocity/Impulse --at 2400 --json\n"
+                                         "  plabctl swap 'gears.*' clutch --to Constraint/AngularVelocity/Graph --trial 20 --or-refuse\n"
+                                         "What can be swapped in: plabctl types --for ID\n"},
+                                        [o](Context& c) { return run_swap(c, *o); });
     command.add_option("id", o->ids, "components; * and ? stand for any text and any character: all of the new type's family that match")
-        ->required()
-        ->type_name("ID");
+        .required()
+        .type_name("ID");
     command
         .add_option(
             "--trial", o->trial,
             "how long the first step may be tried, in ms, or none; default: ten steps' mean cost, at least 5 ms. Beyond it the swap is "
             "carried out without the proof")
-        ->type_name("MS");
+        .type_name("MS");
     command.add_flag("--or-refuse", o->or_refuse, "refuse the swap if its trial takes longer");
     command.add_option("--allow-energy", o->energy, "by how much the first step may multiply the energy, or any; default: 100")
-        ->type_name("FACTOR");
-    command.add_option("--to", o->to, "the new type")->required()->type_name("TYPE");
-    command.add_option("--param", o->parameters, "a value of the new component (may be repeated)")
-        ->take_all()
-        ->allow_extra_args(false)
-        ->type_name("NAME=VALUE");
+        .type_name("FACTOR");
+    command.add_option("--to", o->to, "the new type").required().type_name("TYPE");
+    command.add_option("--param", o->parameters, "a value of the new component (may be repeated)").repeated().type_name("NAME=VALUE");
     add_timing(command, o->timing);
 }
 
@@ -193,22 +190,22 @@ Exit run_set(Context& c, const SetOptions& o)
     return send(c, std::move(operations), o.timing);
 }
 
-void add_set(CLI::App& app, Context& context)
+void add_set(const Command& app, Context& context)
 {
     auto o = std::make_shared<SetOptions>();
-    CLI::App& command = add_command(app, context,
-                                    {"set", "set parameters and states; all at one step boundary",
-                                     "  plabctl set red.mass=0.03\n"
-                                     "  plabctl set contact.response.restitution=0.5 motor.angular_velocity=20\n"
-                                     "  plabctl set 'red.position=1.4 0.3 1' --at 600\n"},
-                                    [o](Context& c) { return run_set(c, *o); });
-    command.add_option("assignment", o->assignments, "values in SI units")->required()->type_name("ID.NAME=VALUE");
+    const Command command = add_command(app, context,
+                                        {"set", "set parameters and states; all at one step boundary",
+                                         "  plabctl set red.mass=0.03\n"
+                                         "  plabctl set contact.response.restitution=0.5 motor.angular_velocity=20\n"
+                                         "  plabctl set 'red.position=1.4 0.3 1' --at 600\n"},
+                                        [o](Context& c) { return run_set(c, *o); });
+    command.add_option("assignment", o->assignments, "values in SI units").required().type_name("ID.NAME=VALUE");
     add_timing(command, o->timing);
 }
 
 // ---- push -----------------------------------------------------------------------------------------------------------
 
-void add_push(CLI::App& app, Context& context)
+void add_push(const Command& app, Context& context)
 {
     struct Options
     {
@@ -217,27 +214,27 @@ void add_push(CLI::App& app, Context& context)
         Timing timing;
     };
     auto o = std::make_shared<Options>();
-    CLI::App& command = add_command(app, context,
-                                    {"push", "give an object an impulse",
-                                     "  plabctl push red --impulse \"0.01 0 0\"\n"
-                                     "  plabctl push red --impulse \"0 0 0.02\" --point \"1.4 0.35 1\"\n"
-                                     "  plabctl push fan --impulse 0.1\n"},
-                                    [o](Context& c)
-                                    {
-                                        link::Operation push{"push", o->id};
-                                        push.values.emplace_back("impulse", o->impulse);
-                                        if (o->point) push.values.emplace_back("point", *o->point);
-                                        return send(c, {std::move(push)}, o->timing);
-                                    });
-    command.add_option("id", o->id, "a body or a shaft")->required()->type_name("ID");
-    command.add_option("--impulse", o->impulse, "\"x y z\" in N s; of a shaft one number in N m s")->required()->type_name("IMPULSE");
-    command.add_option("--point", o->point, "\"x y z\" in the world, m; default: the centre of mass")->type_name("POINT");
+    const Command command = add_command(app, context,
+                                        {"push", "give an object an impulse",
+                                         "  plabctl push red --impulse \"0.01 0 0\"\n"
+                                         "  plabctl push red --impulse \"0 0 0.02\" --point \"1.4 0.35 1\"\n"
+                                         "  plabctl push fan --impulse 0.1\n"},
+                                        [o](Context& c)
+                                        {
+                                            link::Operation push{"push", o->id};
+                                            push.values.emplace_back("impulse", o->impulse);
+                                            if (o->point) push.values.emplace_back("point", *o->point);
+                                            return send(c, {std::move(push)}, o->timing);
+                                        });
+    command.add_option("id", o->id, "a body or a shaft").required().type_name("ID");
+    command.add_option("--impulse", o->impulse, "\"x y z\" in N s; of a shaft one number in N m s").required().type_name("IMPULSE");
+    command.add_option("--point", o->point, "\"x y z\" in the world, m; default: the centre of mass").type_name("POINT");
     add_timing(command, o->timing);
 }
 
 }  // namespace
 
-void add_scene_commands(CLI::App& app, Context& context)
+void add_scene_commands(const Command& app, Context& context)
 {
     add_add(app, context);
     add_remove(app, context);

@@ -255,14 +255,14 @@ Exit run_show(Context& c, const std::string& id)
 
 }  // namespace
 
-void add_show_command(CLI::App& app, Context& context)
+void add_show_command(const Command& app, Context& context)
 {
     auto id = std::make_shared<std::string>();
-    CLI::App& command = add_command(app, context,
-                                    {"show", "print everything known of an object, shape, interaction or type",
-                                     "  plabctl show red\n  plabctl show contact.response\n  plabctl show Response/Impulse\n"},
-                                    [id](Context& c) { return run_show(c, *id); });
-    command.add_option("id", *id, "component or type")->required()->type_name("ID");
+    const Command command = add_command(app, context,
+                                        {"show", "print everything known of an object, shape, interaction or type",
+                                         "  plabctl show red\n  plabctl show contact.response\n  plabctl show Response/Impulse\n"},
+                                        [id](Context& c) { return run_show(c, *id); });
+    command.add_option("id", *id, "component or type").required().type_name("ID");
 }
 
 }  // namespace plab::control

@@ -109,14 +109,15 @@ Exit list_topics(Context& context, const TopicsArguments& arguments)
     return Exit::Done;
 }
 
-void add_topics_command(CLI::App& app, Context& context)
+void add_topics_command(const Command& app, Context& context)
 {
     const auto arguments = std::make_shared<TopicsArguments>();
-    CLI::App& command = add_command(app, context, {"topics", "what is on the bus, pLab's or not: list, rate, bandwidth, print", kExamples},
-                                    [arguments](Context& c) { return run_topics(c, *arguments); });
+    const Command command =
+        add_command(app, context, {"topics", "what is on the bus, pLab's or not: list, rate, bandwidth, print", kExamples},
+                    [arguments](Context& c) { return run_topics(c, *arguments); });
     command.add_option("what", arguments->what, "list, rate, bandwidth or print")
-        ->check(CLI::IsMember({"list", "rate", "bandwidth", "print"}))
-        ->capture_default_str();
+        .one_of({"list", "rate", "bandwidth", "print"})
+        .show_default();
     command.add_option("topic", arguments->topic, "name of the topic, as list shows it");
     command.add_option("--partition", arguments->partition, "only what is in this partition (of a server: its name)");
     command.add_flag("--full", arguments->full, "print: do not cut long lists short");

@@ -7,7 +7,7 @@
 namespace plab::control
 {
 
-void add_topics_command(CLI::App& app, Context& context);
+void add_topics_command(const Command& app, Context& context);
 
 struct TopicsArguments
 {

@@ -88,16 +88,16 @@ Exit run_wait(Context& c, const WaitOptions& o)
 
 }  // namespace
 
-void add_wait_command(CLI::App& app, Context& context)
+void add_wait_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<WaitOptions>();
-    CLI::App& command = add_command(app, context,
-                                    {"wait", "wait until the server is ready, or has come to a step or time",
-                                     "  plabd scene.xml --name lab & plabctl wait --server lab\n"
-                                     "  plabctl wait --step 1200\n  plabctl wait --time 5 --timeout 60\n"},
-                                    [o](Context& c) { return run_wait(c, *o); });
-    command.add_option("--step", o->step, "until this step is done; default time-out: 30 s")->check(link::check_whole)->type_name("N");
-    command.add_option("--time", o->time, "until this simulated time")->check(link::check_not_negative)->type_name("SECONDS");
+    const Command command = add_command(app, context,
+                                        {"wait", "wait until the server is ready, or has come to a step or time",
+                                         "  plabd scene.xml --name lab & plabctl wait --server lab\n"
+                                         "  plabctl wait --step 1200\n  plabctl wait --time 5 --timeout 60\n"},
+                                        [o](Context& c) { return run_wait(c, *o); });
+    command.add_option("--step", o->step, "until this step is done; default time-out: 30 s").check(link::check_whole).type_name("N");
+    command.add_option("--time", o->time, "until this simulated time").check(link::check_not_negative).type_name("SECONDS");
 }
 
 }  // namespace plab::control

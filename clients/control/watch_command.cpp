@@ -186,23 +186,20 @@ std::string check_stream(const std::string& text)
 
 }  // namespace
 
-void add_watch_command(CLI::App& app, Context& context)
+void add_watch_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<WatchOptions>();
-    CLI::App& command = add_command(app, context,
-                                    {"watch", "print states, collisions, events or metrics as they come",
-                                     "  plabctl watch events\n"
-                                     "  plabctl watch states --every 0.5 --only red -n 20\n"
-                                     "  plabctl watch collisions -d 60 --json > collisions.ndjson\n"},
-                                    [o](Context& c) { return run_watch(c, *o); });
-    command.add_option("stream", o->stream, "states, collisions, events or metrics")->required()->type_name("STREAM")->check(check_stream);
-    command.add_option("--only", o->only, "only what concerns this component (may be repeated)")
-        ->take_all()
-        ->allow_extra_args(false)
-        ->type_name("ID");
+    const Command command = add_command(app, context,
+                                        {"watch", "print states, collisions, events or metrics as they come",
+                                         "  plabctl watch events\n"
+                                         "  plabctl watch states --every 0.5 --only red -n 20\n"
+                                         "  plabctl watch collisions -d 60 --json > collisions.ndjson\n"},
+                                        [o](Context& c) { return run_watch(c, *o); });
+    command.add_option("stream", o->stream, "states, collisions, events or metrics").required().type_name("STREAM").check(check_stream);
+    command.add_option("--only", o->only, "only what concerns this component (may be repeated)").repeated().type_name("ID");
     command.add_option("--every", o->every, "of states and metrics: one in so much simulated time")
-        ->check(link::check_positive)
-        ->type_name("SECONDS");
+        .check(link::check_positive)
+        .type_name("SECONDS");
 }
 
 }  // namespace plab::control

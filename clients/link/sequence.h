@@ -20,9 +20,11 @@ public:
     /// loss. A new writer goes on where the last sample ended (plab-bus was started again), or begins anew (the server was).
     Missing note(std::uint64_t writer, std::uint64_t first, std::uint64_t entries)
     {
-        const auto known = next_.try_emplace(writer, reached_.value_or(first)).first;
+        const auto [known, is_new] = next_.try_emplace(writer, reached_.value_or(first));
         const std::uint64_t expected = known->second;
-        known->second = first + entries, reached_ = first + entries;
+        known->second = first + entries;
+        if (is_new) latest_ = writer;
+        if (writer == latest_) reached_ = first + entries;  // a late sample of the one before changes nothing
         return first <= expected ? Missing{} : Missing{expected, first - expected};
     }
     /// Nothing more comes from whoever wrote before.
@@ -30,7 +32,8 @@ public:
 
 private:
     std::map<std::uint64_t, std::uint64_t> next_;  ///< by writer
-    std::optional<std::uint64_t> reached_;         ///< by the last sample, whoever wrote it
+    std::uint64_t latest_ = 0;                     ///< the writer that came last
+    std::optional<std::uint64_t> reached_;         ///< by it
 };
 
 }  // namespace plab::link

@@ -74,6 +74,8 @@ void Logger::say_server(ServerChange change, const link::ServerInfo& info)
         write(order_.take_all());
     }
     if (change != ServerChange::Gone) run_ = info.run;
+    // Whoever is there next counts for itself.
+    if (change == ServerChange::Gone) event_numbers_.forget(), collision_numbers_.forget();
     output_.write(lines_->server(change, info));
 }
 

@@ -24,7 +24,8 @@ bool same_shapes(const RefList& now, std::span<const std::uint32_t> built)
 double further_pairs_of(const Collider& a, const Collider& b, std::size_t triangles)
 {
     constexpr double kVertex = 1.0 / 64;
-    return kVertex * static_cast<double>(a.hull().vertices.size() + b.hull().vertices.size()) + static_cast<double>(triangles);
+    const double vertices = kVertex * static_cast<double>(a.hull().vertices.size() + b.hull().vertices.size());
+    return vertices + static_cast<double>(triangles) * (1 + vertices);
 }
 
 }  // namespace

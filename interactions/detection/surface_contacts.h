@@ -26,7 +26,7 @@ public:
     virtual ~MeetingSink() = default;
     virtual double limit() const = 0;  ///< m
     virtual void offer(const Meeting& meeting) = 0;
-    void note_triangle() { ++triangles_; }
+    void note_triangles(std::size_t more) { triangles_ += more; }
     std::size_t triangles() const { return triangles_; }  ///< gone through
 
 private:

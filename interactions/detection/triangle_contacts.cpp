@@ -71,6 +71,7 @@ public:
             c_, [&] { return least; },
             [&](std::uint32_t t)
             {
+                ++visited_;
                 const TriangleFoot foot = foot_on(s_, s_.triangles()[t], c_);
                 const double distance = length(foot.p - c_);
                 if (distance < least || (distance == least && (nearest_ == Surface::kNone || t < nearest_)))
@@ -78,6 +79,7 @@ public:
             });
     }
     bool found() const { return nearest_ != Surface::kNone; }
+    std::size_t visited() const { return visited_; }  ///< triangles
     std::uint32_t triangle() const { return nearest_; }
     const Vec3& point() const { return foot_.p; }
     double distance() const { return length(c_ - foot_.p); }
@@ -113,6 +115,7 @@ private:
     const Surface& s_;
     Vec3 c_;
     std::uint32_t nearest_ = Surface::kNone;
+    std::size_t visited_ = 0;
     TriangleFoot foot_;
 };
 
@@ -125,6 +128,7 @@ public:
     void run()
     {
         const NearestPlace nearest(s_, c_, radius_ + out_.limit());
+        out_.note_triangles(nearest.visited());
         if (!nearest.found()) return;
         const double distance = nearest.distance();
         if (nearest.behind())
@@ -143,7 +147,7 @@ public:
         s_.visit_box(c_ - by, c_ + by,
                      [&](std::uint32_t t)
                      {
-                         out_.note_triangle();
+                         out_.note_triangles(1);
                          if (t != nearest.triangle()) offer_least(t);
                      });
     }
@@ -231,6 +235,7 @@ private:
     bool lies_behind(const Vec3& p, double depth) const
     {
         const NearestPlace nearest(s_, p, depth);
+        out_.note_triangles(nearest.visited());
         if (!nearest.found() || nearest.distance() >= depth * (1 - 1e-9)) return true;
         return nearest.behind() && depth <= std::max(kMuchNearer * nearest.distance(), kShallow * size_);
     }
@@ -312,7 +317,7 @@ void meet_triangles(const Solid& K, const Collider& collider, MeetingSink& out)
     SolidOnTriangles pair(surface, K, out);
     const auto meet = [&](std::uint32_t t)
     {
-        out.note_triangle();
+        out.note_triangles(1);
         pair.meet(t);
     };
     if (!std::isfinite(out.limit()))

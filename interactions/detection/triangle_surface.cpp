@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -60,20 +59,58 @@ void TriangleSurface::join(std::span<const Vec3> vertices, std::span<const std::
     }
 }
 
+namespace
+{
+
+/// For each half edge 3 t + i (from corner i of triangle t to the next one) the one that runs the other way, or kNone. False: an edge has
+/// more than two sides, or two that run the same way.
+bool pair_half_edges(std::span<const TriangleSurface::Triangle> triangles, std::size_t points, std::vector<Index>& partner)
+{
+    const auto ends = [&](Index half)
+    {
+        const auto& corner = triangles[half / 3].corner;
+        return std::pair{corner[half % 3], corner[(half + 1) % 3]};
+    };
+    const auto halves = static_cast<Index>(3 * triangles.size());
+    partner.assign(halves, TriangleSurface::kNone);
+    // Sorted by the lower end, and within that by the other: in time in proportion to the triangles.
+    std::vector<Index> begin(points + 1, 0), sorted(halves);
+    for (Index h = 0; h < halves; ++h) ++begin[std::min(ends(h).first, ends(h).second) + 1];
+    std::inclusive_scan(begin.begin(), begin.end(), begin.begin());
+    std::vector<Index> next(begin.begin(), begin.end() - 1);
+    for (Index h = 0; h < halves; ++h) sorted[next[std::min(ends(h).first, ends(h).second)]++] = h;
+    const auto upper = [&](Index h) { return std::max(ends(h).first, ends(h).second); };
+    for (std::size_t p = 0; p < points; ++p)
+    {
+        const auto first = sorted.begin() + begin[p], last = sorted.begin() + begin[p + 1];
+        std::sort(first, last, [&](Index g, Index h) { return upper(g) != upper(h) ? upper(g) < upper(h) : g < h; });
+        for (auto it = first; it != last; ++it)
+        {
+            if (it == first || upper(*it) != upper(*(it - 1))) continue;
+            Index &one = *(it - 1), &other = *it;
+            if (partner[one] != TriangleSurface::kNone || ends(one).first != ends(other).second) return false;
+            partner[one] = other, partner[other] = one;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+/// Numbers in the order in which triangles name them.
 bool TriangleSurface::find_edges()
 {
-    std::map<std::pair<Index, Index>, Index> known;  // by direction
+    std::vector<Index> partner;
+    if (!pair_half_edges(triangles_, points_.size(), partner)) return false;
     for (Index t = 0; t < triangles_.size(); ++t)
-        for (std::size_t i = 0; i < 3; ++i)
+        for (Index i = 0; i < 3; ++i)
         {
             Triangle& triangle = triangles_[t];
-            const Index a = triangle.corner[i], b = triangle.corner[(i + 1) % 3];
-            if (known.contains({a, b})) return false;
-            const auto other = known.find({b, a});
-            const Index e = other == known.end() ? static_cast<Index>(edges_.size()) : other->second;
-            if (other == known.end()) edges_.emplace_back().a = a, edges_.back().b = b;
-            known.emplace(std::pair{a, b}, e);
-            const std::size_t side = other == known.end() ? 0 : 1;
+            const Index half = 3 * t + i, other = partner[half];
+            const bool is_known = other != kNone && other < half;
+            const Index e = is_known ? triangles_[other / 3].edge[other % 3] : static_cast<Index>(edges_.size());
+            if (!is_known) edges_.emplace_back().a = triangle.corner[i], edges_.back().b = triangle.corner[(i + 1) % 3];
+            const std::size_t side = is_known ? 1 : 0;
             edges_[e].side[side] = t, edges_[e].inward[side] = triangle.inward[i];
             triangle.edge[i] = e;
         }
@@ -130,23 +167,37 @@ void TriangleSurface::find_patches()
     }
 }
 
-void TriangleSurface::bound(Node& node) const
-{
-    node.lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, node.upper = -node.lower;
-    for (Index i = node.first; i < node.first + node.count; ++i)
-        for (const Index corner : triangles_[order_[i]].corner)
-            for (int k = 0; k < 3; ++k)
-            {
-                node.lower[k] = std::min(node.lower[k], points_[corner][k]);
-                node.upper[k] = std::max(node.upper[k], points_[corner][k]);
-            }
-}
-
 /// Halves by number along the longest side of each box.
 void TriangleSurface::build_tree()
 {
+    struct Extent
+    {
+        Vec3 lower, upper;
+        Vec3 sum;  // of the corners: three times the middle
+    };
+    std::vector<Extent> extents(triangles_.size());
+    for (std::size_t t = 0; t < extents.size(); ++t)
+    {
+        Extent& e = extents[t];
+        const auto& c = triangles_[t].corner;
+        e.lower = e.upper = points_[c[0]], e.sum = points_[c[0]] + points_[c[1]] + points_[c[2]];
+        for (std::size_t i = 1; i < 3; ++i)
+            for (int k = 0; k < 3; ++k)
+                e.lower[k] = std::min(e.lower[k], points_[c[i]][k]), e.upper[k] = std::max(e.upper[k], points_[c[i]][k]);
+    }
+    const auto bound = [&](Node& node)
+    {
+        node.lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, node.upper = -node.lower;
+        for (Index i = node.first; i < node.first + node.count; ++i)
+        {
+            const Extent& e = extents[order_[i]];
+            for (int k = 0; k < 3; ++k)
+                node.lower[k] = std::min(node.lower[k], e.lower[k]), node.upper[k] = std::max(node.upper[k], e.upper[k]);
+        }
+    };
     order_.resize(triangles_.size());
     std::iota(order_.begin(), order_.end(), 0u);
+    nodes_.reserve(triangles_.size());
     nodes_.push_back({{}, {}, 0, static_cast<Index>(order_.size())});
     for (std::size_t n = 0; n < nodes_.size(); ++n)
     {
@@ -155,14 +206,13 @@ void TriangleSurface::build_tree()
         if (node.count <= kLeaf) continue;
         const Vec3 size = node.upper - node.lower;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-        const auto middle = [&](Index t)
+        const auto before = [&](Index s, Index t)
         {
-            const auto& c = triangles_[t].corner;
-            return points_[c[0]][axis] + points_[c[1]][axis] + points_[c[2]][axis];
+            const double ms = extents[s].sum[axis], mt = extents[t].sum[axis];
+            return ms != mt ? ms < mt : s < t;
         };
         const auto first = order_.begin() + node.first;
-        std::nth_element(first, first + node.count / 2, first + node.count,
-                         [&](Index s, Index t) { return middle(s) != middle(t) ? middle(s) < middle(t) : s < t; });
+        std::nth_element(first, first + node.count / 2, first + node.count, before);
         const Index left = static_cast<Index>(nodes_.size());
         nodes_[n].first = left, nodes_[n].count = 0;
         nodes_.push_back({{}, {}, node.first, node.count / 2});

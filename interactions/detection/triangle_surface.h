@@ -74,7 +74,6 @@ private:
     void find_corners();
     void find_patches();
     void build_tree();
-    void bound(Node& node) const;
     static double distance_squared(const Vec3& p, const Node& node);
 
     std::vector<Vec3> points_;

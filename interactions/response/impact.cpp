@@ -112,7 +112,7 @@ void ImpactSequence::choose(std::uint32_t fastest, double speed)
     auto& chosen = work_.together;
     chosen.assign(1, fastest);
     if (work_.patches.size() == 1) return;
-    for (std::size_t k = 0; k < chosen.size(); ++k)
+    for (std::size_t k = 0; k < chosen.size(); ++k, visits_ += static_cast<std::int64_t>(work_.patches.size()))
         for (std::uint32_t p = 0; p < work_.patches.size(); ++p)
         {
             const Patch& patch = work_.patches[p];
@@ -233,6 +233,7 @@ void ImpactSequence::run(Impact& impact)
     {
         std::uint32_t next = kNoIndex;
         double fastest = threshold_;
+        visits_ += static_cast<std::int64_t>(work_.order.size());
         for (std::uint32_t p = 0; p < work_.patches.size(); ++p)
             if (const double v = closing_speed(work_.patches[p]); v > fastest) fastest = v, next = p;
         if (next == kNoIndex) break;

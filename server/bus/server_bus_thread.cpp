@@ -179,8 +179,9 @@ bool ServerBus::receive(Clock::time_point now)
     MessageReader::Message message;
     for (int i = 0; i < kMostMessages && !is_broken_; ++i)
     {
-        // Who asks and does not listen is not heard either; silence ends it.
-        if (desk_.is_full()) return false;
+        // Who asks and does not listen is not heard either; silence ends it. What a new one says of itself is, since it gets the answers
+        // after that.
+        if (has_joined_ && desk_.is_full()) return false;
         const auto state = process_->reader().next(message);
         is_broken_ = state == MessageReader::State::Broken;
         if (state == MessageReader::State::Whole) handle(message, now);
@@ -228,8 +229,9 @@ void ServerBus::handle(const MessageReader::Message& message, Clock::time_point 
         case Up::Log:
             if (!decode(message, text)) break;
             if (!log_limit_.may(now)) return;
+            text = one_line(std::move(text));
             if (const std::uint64_t n = log_limit_.left_out(); n > 0) text += " (and " + std::to_string(n) + " more lines)";
-            return log(one_line(std::move(text)));
+            return log(text);
         case Up::Alive:
             return;
     }

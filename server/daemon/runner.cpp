@@ -13,7 +13,7 @@
 #include "daemon/pacer.h"
 #include "daemon/trace.h"
 #include "program/interruption.h"
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 
 namespace plab::daemon
 {

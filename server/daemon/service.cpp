@@ -7,7 +7,7 @@
 
 #include "daemon/ending.h"
 #include "publish/busy.h"
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 #include "simulation/requests/request_words.h"
 #include "simulation/snapshot/history.h"
 

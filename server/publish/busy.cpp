@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 #include "simulation/step/step_tree.h"
 
 namespace plab::publish

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "simulation/groups/progress.h"
+#include "simulation/systems/progress.h"
 
 namespace plab::publish
 {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "model/alike.h"
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 #include "simulation/requests/field_change.h"
 #include "simulation/requests/transaction.h"
 #include "simulation/snapshot/history.h"
@@ -179,7 +179,7 @@ bool Simulation::run_step()
     if (may_be_given_up) step_start_.save(*world_, *stepper_);
     const double start = time_at(tick_);
     stepper_->draw_for(images_);
-    watch_->before_step(*this);
+    watch_->before_step(view());
     const std::uint64_t begin = now_ns();
     progress_.begin(Activity::Step, tick_, begin);
     stepper_->step(tick_, start, time_at(tick_ + 1) - start);
@@ -188,7 +188,7 @@ bool Simulation::run_step()
     if (gave_up_) return false;
     note_cost(static_cast<double>(now_ns() - begin));
     events_ = stepper_->events();
-    watch_->after_step(*this, events_);
+    watch_->after_step(view(), events_);
     freeze_lost_objects();
     quarantine_failed();
     return true;
@@ -288,8 +288,6 @@ void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& 
 }
 
 Totals Simulation::totals() const { return totals_of(*world_, *stepper_, time(), tick_); }
-
-double Simulation::stored_energy() const { return stored_energy_of(*world_, *stepper_, time(), tick_); }
 
 double Simulation::error_of(std::uint32_t component) const { return world_->largest_error(component); }
 

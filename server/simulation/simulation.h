@@ -9,7 +9,8 @@
 #include "simulation/requests/requests.h"
 #include "simulation/snapshot/snapshot.h"
 #include "simulation/step/step_memento.h"
-#include "simulation/totals.h"
+#include "simulation/step/totals.h"
+#include "simulation/watch/run_view.h"
 
 namespace plab::simulation
 {
@@ -88,8 +89,6 @@ public:
     /// Events of the last step and of the requests before it.
     const std::vector<Event>& events() const { return events_; }
     Totals totals() const;
-    /// J, of components that say so (Phase::Potential).
-    double stored_energy() const;
     double kinetic_at_start() const { return kinetic_at_start_; }
     /// The largest output of a component that is declared as its error; 0 if it has none.
     double error_of(std::uint32_t component) const;
@@ -103,6 +102,7 @@ private:
         std::unique_ptr<world::World> world;
         std::unique_ptr<Stepper> stepper;
     };
+    RunView view() const { return {*world_, *stepper_, tick_, time(), dt()}; }
     Result<Live> build(const model::SceneSpec& scene);
     Result<Live> revive(const SnapshotContent& from) const;
     void begin_run(Live live, std::shared_ptr<const model::SceneSpec> scene);

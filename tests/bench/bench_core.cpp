@@ -8,7 +8,7 @@
 #include "blueprint/reader.h"
 #include "model/compile.h"
 #include "plugins/library.h"
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 #include "simulation/simulation.h"
 
 using namespace plab;

@@ -14,7 +14,7 @@
 
 #include "model/measured_costs.h"
 #include "plab/interruption.h"
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 #include "support/load.h"
 
 using namespace plab;

@@ -6,6 +6,7 @@
 #include "blueprint/writer.h"
 #include "model/measured_costs.h"
 #include "model/type_summary.h"
+#include "simulation/step/step_tree.h"
 #include "support/scene.h"
 
 TEST_CASE("the reference of component types is current")
@@ -19,6 +20,22 @@ TEST_CASE("the reference of component types is current")
 }
 
 using namespace plab;
+
+TEST_CASE("step.md explains the nodes of the step in their order")
+{
+    std::ifstream file(std::string(PLAB_SOURCE_DIR) + "/server/docs/step.md");
+    REQUIRE(file);
+    std::vector<std::string> explained, nodes;
+    for (std::string line; std::getline(file, line);)
+    {
+        std::istringstream words(line);
+        std::string bar, stage, name;
+        if (!(words >> bar >> stage >> bar >> name) || name.size() < 3 || name.front() != '`') continue;
+        if (stage == "PreStep" || stage == "Step" || stage == "PostStep") explained.push_back(name.substr(1, name.size() - 2));
+    }
+    for (const simulation::StepNode& node : simulation::kStepTree) nodes.emplace_back(node.name);
+    CHECK(explained == nodes);
+}
 
 TEST_CASE("each rung of a ladder was measured, and nothing else")
 {

@@ -188,6 +188,35 @@ TEST_CASE("who rocks on its edges is not released while it touches")
     }
 }
 
+TEST_CASE("who stands between walls and is lifted off is released once from what it pressed")
+{
+    for (const std::string& response : kResponses)
+        for (const char* shapes : {"wall floor", "floor wall"})
+        {
+            CAPTURE(response);
+            CAPTURE(std::string(shapes));
+            // It touches the wall, and presses the floor alone: both are of one body, so it is one pair.
+            Scene s(
+                "<component id='floor' type='Shape/Plane'/><component id='wall' type='Shape/Plane' orientation='axis 0 1 0 "
+                "-1.5707963267948966'"
+                " position='0.1 0 0'/><component id='ground' type='State/Static' shape='" +
+                    std::string(shapes) +
+                    "'/><component id='form' type='Shape/Sphere' radius='0.1'/>"
+                    "<component id='ball' type='State/RigidBody' shape='form' mass='1' position='0 0 0.1'/>"
+                    "<component id='weight' type='Field/Gravity' between='ball'/>" +
+                    touching(response, 0),
+                "dt='1/240'");
+            REQUIRE_MESSAGE(s.loaded(), s.error());
+            s.keep_events = true, s.warnings_expected = true;
+            s.step(20);
+            CHECK(s.count("contact.release") == 0);
+            REQUIRE(s.ask(simulation::PushOperation{"ball", {0, 0, 2}, {}}).done);
+            s.step(3);
+            CHECK(s.vec("ball", "position").z > 0.1);
+            CHECK(s.count("contact.release") == 1);
+        }
+}
+
 TEST_CASE("a bowl that moves as told takes along what slides in it, as one that stands does")
 {
     const auto place = [](const std::string& response, double speed)

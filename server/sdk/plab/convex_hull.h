@@ -39,6 +39,8 @@ public:
     bool start();
     /// False: rounding made the hull fold over; a larger tolerance may do.
     bool grow();
+    /// Whether it is closed and nothing that was looked at is more than `most` (m) above a face: rounding may have folded what grew.
+    bool is_convex(double most) const;
     ConvexHull result() const;
 
 private:
@@ -61,6 +63,7 @@ private:
     bool leaves_sliver(Index eye) const;
     void restore_visible();
     bool replace_visible(Index eye);
+    std::vector<Index> witnesses_of_folds() const;
     /// The point with the largest value of `measure`; ties go to the first.
     template <class Measure>
     std::pair<Index, double> find_extreme(Measure measure) const
@@ -221,6 +224,41 @@ inline bool Quickhull::grow()
     return true;
 }
 
+inline bool Quickhull::is_convex(double most) const
+{
+    const std::vector<Index> witnesses = witnesses_of_folds();
+    const auto is_below = [&](const Face& f)
+    {
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const auto next = owner_.find({f.corner[(i + 1) % 3], f.corner[i]});
+            if (next == owner_.end() || !faces_[next->second].alive) return false;
+            for (const Index c : faces_[next->second].corner)
+                if (height(f, c) > most) return false;
+        }
+        return std::all_of(witnesses.begin(), witnesses.end(), [&](Index p) { return height(f, p) <= most; });
+    };
+    return std::all_of(faces_.begin(), faces_.end(), [&](const Face& f) { return !f.alive || is_below(f); });
+}
+
+/// Points that each face is held against: all while that is cheap, else the furthest in 26 directions, which a face that leans far off
+/// is seldom above.
+inline std::vector<Quickhull::Index> Quickhull::witnesses_of_folds() const
+{
+    constexpr std::size_t kCheap = 10'000'000;
+    std::vector<Index> out;
+    if (points_.size() * faces_.size() <= kCheap)
+        for (Index i = 0; i < points_.size(); ++i) out.push_back(i);
+    else
+        for (int k = 0; k < 27; ++k)
+        {
+            const Vec3 direction{k % 3 - 1.0, k / 3 % 3 - 1.0, k / 9 - 1.0};
+            const double low = dot(direction, points_[0]);
+            out.push_back(find_extreme([&](const Vec3& p) { return std::max(0.0, dot(direction, p) - low); }).first);
+        }
+    return out;
+}
+
 inline ConvexHull Quickhull::result() const
 {
     ConvexHull hull;
@@ -249,8 +287,9 @@ inline ConvexHull Quickhull::result() const
     return hull;
 }
 
-/// Points within 1e-12 of the extent above a face count as on it and are dropped (up to 1e-9 for points that rounding
-/// makes awkward); so the hull is right to that. Fails for points that do not span a volume, with the reason.
+/// Points within 1e-12 of the extent above a face count as on it and are dropped (up to 1e-8 for points that rounding
+/// makes awkward); so the hull is right to that, and no corner is further above a neighbour's face than 1e-9 of it (1e-7 at the worst).
+/// Fails for points that do not span a volume, with the reason.
 inline Result<ConvexHull> make_convex_hull(std::span<const Vec3> points)
 {
     if (points.size() < 4) return reason("a hull needs at least 4 vertices, not " + std::to_string(points.size()));
@@ -260,13 +299,13 @@ inline Result<ConvexHull> make_convex_hull(std::span<const Vec3> points)
         if (!is_finite(p)) return reason("a vertex of the hull is not finite");
         extent = std::max({extent, std::fabs(p.x - points[0].x), std::fabs(p.y - points[0].y), std::fabs(p.z - points[0].z)});
     }
-    for (double tolerance = 1e-12; tolerance < 1e-8; tolerance *= 10)
+    for (double tolerance = 1e-12; tolerance < 1e-7; tolerance *= 10)
     {
         Quickhull hull(points, tolerance * extent);
         if (!hull.start()) return reason("the vertices lie in a plane: their hull has no volume");
-        if (hull.grow()) return hull.result();
+        if (hull.grow() && hull.is_convex(std::max(1e-9, 10 * tolerance) * extent)) return hull.result();
     }
-    return reason("the vertices are too nearly in planes and lines for a hull of 1e-9 of their extent; fewer vertices would do");
+    return reason("the vertices are too nearly in planes and lines for a hull of 1e-8 of their extent; fewer vertices would do");
 }
 
 }  // namespace plab

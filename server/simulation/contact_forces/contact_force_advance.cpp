@@ -8,7 +8,6 @@
 #include "plab/rotation.h"
 #include "simulation/contact_forces/contact_forces.h"
 #include "simulation/contacts/shape_width.h"
-#include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
@@ -37,7 +36,7 @@ double thinnest(const Geometry& g)
 
 void ContactForces::save(const GroupSystem& system)
 {
-    const world::HostTables& host = s_->world_.host();
+    const world::HostTables& host = step_.world.host();
     for (const std::uint32_t b : system.bodies()) memento_.save_body(host, b);
     for (const std::uint32_t s : system.shafts()) memento_.save_shaft(host, s);
     for (const std::uint32_t q : system.quantities()) memento_.save_quantities(host, q);
@@ -46,7 +45,7 @@ void ContactForces::save(const GroupSystem& system)
 
 void ContactForces::restore(const GroupSystem& system)
 {
-    world::HostTables& host = s_->world_.host();
+    world::HostTables& host = step_.world.host();
     for (const std::uint32_t b : system.bodies()) memento_.restore_body(host, b);
     for (const std::uint32_t s : system.shafts()) memento_.restore_shaft(host, s);
     for (const std::uint32_t q : system.quantities()) memento_.restore_quantities(host, q);
@@ -56,15 +55,15 @@ void ContactForces::restore(const GroupSystem& system)
 bool ContactForces::run(Piece& piece, double to, WorkBook book, bool trial)
 {
     piece.system->set_extra_forces(pushing_.empty() ? nullptr : this);
-    const bool finite = s_->run_solver(*piece.system, piece.solver, piece.t, to, book, s_->sink_for(trial));
+    const bool finite = motion_.run_solver(*piece.system, piece.solver, piece.t, to, book, trial ? nullptr : &step_);
     piece.system->set_extra_forces(nullptr);
     return finite;
 }
 
 double ContactForces::number(std::uint32_t response, const char* name, double otherwise) const
 {
-    const Field* field = s_->world_.table_of(response).schema().find_field(name);
-    const Row row = s_->world_.component(response).row;
+    const Field* field = step_.world.table_of(response).schema().find_field(name);
+    const Row row = step_.world.component(response).row;
     if (field)
         if (const auto* column = dynamic_cast<const Column<std::int64_t>*>(field->column)) return static_cast<double>((*column)[row]);
     return otherwise;
@@ -73,7 +72,7 @@ double ContactForces::number(std::uint32_t response, const char* name, double ot
 /// m/s: no two points of the pair come together faster.
 double ContactForces::closing_bound(const NearPair& p) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const auto turning = [&](Ref r) { return speed_of(r) - length(bodies.velocity[r.index]); };
     return length(bodies.velocity[p.a.index] - bodies.velocity[p.b.index]) + turning(p.a) + turning(p.b);
 }
@@ -83,7 +82,7 @@ double ContactForces::margin_for(double h) const
     double margin = 0;
     for (const NearPair& p : pairs_)
     {
-        const double size = std::min(s_->radius_of_body_[p.a.index], s_->radius_of_body_[p.b.index]);
+        const double size = std::min(contacts_.radius_of_body()[p.a.index], contacts_.radius_of_body()[p.b.index]);
         if (std::isfinite(size)) margin = std::max(margin, kLeastMargin * size);
         const double way = 2 * closing_bound(p) * h;
         if (std::isfinite(way)) margin = std::max(margin, way);
@@ -114,7 +113,7 @@ double ContactForces::free_time(double most) const
 /// they turn, along the way that is shortest.
 double ContactForces::time_through(const NearPair& p) const
 {
-    const world::HostTables& host = s_->world_.host();
+    const world::HostTables& host = step_.world.host();
     const Bodies& bodies = host.bodies;
     const Vec3 way = bodies.velocity[p.b.index] - bodies.velocity[p.a.index];
     const double speed = length(way), turning = closing_bound(p) - speed;
@@ -161,7 +160,7 @@ double ContactForces::spin_rate() const
     double rate = 0;
     for (const Pushing& p : pushing_)
         for (const Ref r : {live_.pairs[p.pair].a, live_.pairs[p.pair].b})
-            rate = std::max(rate, length(s_->world_.host().bodies.angular_velocity[r.index]));
+            rate = std::max(rate, length(step_.world.host().bodies.angular_velocity[r.index]));
     return rate;
 }
 
@@ -184,7 +183,7 @@ double ContactForces::contact_time(double left, int used)
         if (std::exchange(detector, pair.detector) != pair.detector)
         {
             const auto is_it = [&](const Detector& d) { return d.component == pair.detector; };
-            response = std::find_if(s_->detectors_.begin(), s_->detectors_.end(), is_it)->response;
+            response = std::find_if(contacts_.detectors().begin(), contacts_.detectors().end(), is_it)->response;
             wanted_pieces = number(response, "steps_per_contact", 200);
             most = std::min(most, number(response, "max_substeps", 20000));
         }
@@ -218,7 +217,7 @@ double ContactForces::locate(Piece& piece, double high)
 {
     double low = piece.t, width = 2 * (high - low);
     at_low_ = at_start_, at_high_ = at_end_;
-    for (int i = 0; i < kMostTrials && !s_->frame_.give_up(); ++i)
+    for (int i = 0; i < kMostTrials && !step_.frame.give_up(); ++i)
     {
         double next = guess(low, high, at_low_, at_high_);
         // Where guesses creep up from one side, halve.
@@ -227,7 +226,7 @@ double ContactForces::locate(Piece& piece, double high)
         if (!(next > low && next < high) || high - low <= 0x1p-51 * high) break;
         restore(*piece.system);
         (void)run(piece, next, {}, true);
-        ++s_->report_.trials;
+        ++step_.report.trials;
         inspect(margin_, at_trial_);
         const bool beyond = has_switched(at_trial_);
         if (beyond) at_high_ = at_trial_;
@@ -255,7 +254,7 @@ void ContactForces::one_piece(Piece& piece)
     const bool switched = has_switched(at_end_);
     if (switched && piece.finite && piece.events < kMostEvents)
     {
-        ++piece.events, ++s_->report_.events;
+        ++piece.events, ++step_.report.events;
         restore(*piece.system);
         if (piece.book.work) (void)run(piece, to, {piece.book.work, -piece.book.sign}, true);
         to = locate(piece, to);
@@ -281,32 +280,32 @@ void ContactForces::attach(GroupSystem& system, std::span<const std::uint32_t> g
 void ContactForces::start(double from)
 {
     anchor();
-    margin_ = margin_for(1e-9 * s_->frame_.step);
+    margin_ = margin_for(1e-9 * step_.frame.step);
     inspect(margin_, at_end_);
     switch_contacts(at_end_, from);
     if (from > 0) return;
     // How deep it will get is asked anew in each step: what hit hard may have come to rest.
     for (const Seen& s : at_end_)
-        if (ForceContact* known = find_pushing(s.found); known && known->asked != s_->frame_.tick)
-            known->asked = s_->frame_.tick, expect(*known, s.found, std::fabs(s.parting));
+        if (ForceContact* known = find_pushing(s.found); known && known->asked != step_.frame.tick)
+            known->asked = step_.frame.tick, expect(*known, s.found, std::fabs(s.parting));
 }
 
 void ContactForces::advance_island(const Island& island, double from, double to, WorkBook book, bool trial)
 {
     Piece piece;
-    piece.system = &s_->system_for(island.groups, island.shadows);
+    piece.system = &motion_.system_for(island.groups, island.shadows);
     piece.solver = solver_of(island);
     piece.begin = piece.t = from, piece.end = to;
     piece.book = book, piece.trial = trial;
     // Whoever moves as told is where it is at `from`.
     piece.system->begin(from, from, book, nullptr);
     piece.system->move_prescribed();
-    order_ = std::max(1, s_->world_.type_of(piece.solver)->info.order);
+    order_ = std::max(1, step_.world.type_of(piece.solver)->info.order);
     start(from);
     // Free flight and switches come on top of what contacts may have.
-    while (piece.t < to && piece.finite && piece.pieces < kMostPieces && !s_->frame_.give_up()) one_piece(piece);
+    while (piece.t < to && piece.finite && piece.pieces < kMostPieces && !step_.frame.give_up()) one_piece(piece);
     if (piece.t < to && piece.finite) piece.finite = run(piece, to, book, trial);
-    s_->finish_advance(*piece.system, piece.finite, to, trial);
+    motion_.finish_advance(*piece.system, piece.finite, to, trial);
 }
 
 /// Standing hard contacts and springs in one island: the hard ones' time stepping, cut as the springs need it. Springs are
@@ -317,7 +316,7 @@ void ContactForces::advance_mixed(const Island& island, double from, double to, 
     order_ = 2;
     start(from);
     int pieces = 0;
-    for (double t = from; t < to && pieces < kMostPieces && !s_->frame_.give_up(); ++pieces)
+    for (double t = from; t < to && pieces < kMostPieces && !step_.frame.give_up(); ++pieces)
     {
         const double left = to - t;
         const double h = pushing_.empty() ? free_time(left) : contact_time(left, pieces);
@@ -325,9 +324,9 @@ void ContactForces::advance_mixed(const Island& island, double from, double to, 
         const double next = n <= 1 ? to : t + left / n;
         margin_ = margin_for(next - t);
         lead_ = 0.5 * (next - t), taken_ = false;
-        s_->extra_ = this;
-        s_->advance_contacts(island.groups, island.shadows, t, next, book, trial);
-        s_->extra_ = nullptr;
+        motion_.feel(this);
+        hard_.advance(island.groups, island.shadows, t, next, book, trial);
+        motion_.feel(nullptr);
         lead_ = 0;
         const double gone = next - std::exchange(t, next);
         inspect(margin_, at_end_);

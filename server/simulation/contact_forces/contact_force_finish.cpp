@@ -5,7 +5,6 @@
 
 #include "plab/number_text.h"
 #include "simulation/contact_forces/contact_forces.h"
-#include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
@@ -18,7 +17,7 @@ void ContactForces::report(std::vector<FoundContact>& found)
         if (!by_force_[f.detector]) continue;
         const ForceContact* known = find_known(f);
         if (!known) continue;
-        f.contact.id = known->id, f.contact.impulse = known->force * s_->frame_.step;
+        f.contact.id = known->id, f.contact.impulse = known->force * step_.frame.step;
         f.contact.stretch = known->stretch;
     }
 }
@@ -27,25 +26,25 @@ void ContactForces::report(std::vector<FoundContact>& found)
 void ContactForces::run_outputs(std::vector<FoundContact>& found)
 {
     StepContext context;
-    context.time = s_->frame_.start_time + s_->frame_.step, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+    context.time = step_.frame.start_time + step_.frame.step, context.dt = step_.frame.step, context.tick = step_.frame.tick;
     for (std::uint32_t d = 0; d < by_force_.size(); ++d)
     {
-        const std::uint32_t response = s_->detectors_[d].response;
+        const std::uint32_t response = contacts_.detectors()[d].response;
         const auto answers = [&](const Detector& other) { return other.by_force && other.response == response; };
-        const auto first = std::find_if(s_->detectors_.begin(), s_->detectors_.end(), answers);
-        if (!by_force_[d] || first - s_->detectors_.begin() != static_cast<std::ptrdiff_t>(d)) continue;
+        const auto first = std::find_if(contacts_.detectors().begin(), contacts_.detectors().end(), answers);
+        if (!by_force_[d] || first - contacts_.detectors().begin() != static_cast<std::ptrdiff_t>(d)) continue;
         law_contacts_.clear();
         for (const FoundContact& f : found)
         {
-            const ForceContact* known = answers(s_->detectors_[f.detector]) ? find_pushing(f) : nullptr;
+            const ForceContact* known = answers(contacts_.detectors()[f.detector]) ? find_pushing(f) : nullptr;
             if (!known) continue;
             FoundContact own = f;
-            s_->fill_material(own);
+            contacts_.fill_material(own);
             Contact& c = own.contact;
             c.stretch = known->stretch, c.rest_depth = known->rest_depth, c.preload = known->preload, c.approach = known->approach;
             law_contacts_.push_back(c);
         }
-        run_touch(s_->world_, response, context, law_contacts_, s_->world_.host().bodies, scratch_);
+        run_touch(step_.world, response, context, law_contacts_, step_.world.host().bodies, scratch_);
         for (const Contact& c : law_contacts_)
             for (const Ref r : {c.a, c.b}) scratch_.force[r.index] = scratch_.torque[r.index] = {};
     }
@@ -53,7 +52,7 @@ void ContactForces::run_outputs(std::vector<FoundContact>& found)
 
 void ContactForces::emit_happenings()
 {
-    const world::World& world = s_->world_;
+    const world::World& world = step_.world;
     const auto key = [&](const ForceHappening& h)
     { return std::tuple(h.time, world.rank(h.detector), world.rank(h.a), world.rank(h.b), h.kind); };
     std::stable_sort(live_.happenings.begin(), live_.happenings.end(),
@@ -66,21 +65,21 @@ void ContactForces::emit_happenings()
         if (h.kind != ForceHappening::Kind::End)
             e.values = {h.point.x,  h.point.y,   h.point.z,   h.normal.x,  h.normal.y,
                         h.normal.z, h.impulse.x, h.impulse.y, h.impulse.z, h.depth};
-        s_->emit(std::move(e));
+        step_.emit(std::move(e));
     }
     live_.happenings.clear();
 }
 
 void ContactForces::emit_stiff()
 {
-    const bool told = std::exchange(s_->told_.stiff, stiff_ != kNoIndex);
+    const bool told = std::exchange(step_.told.stiff, stiff_ != kNoIndex);
     if (stiff_ == kNoIndex || told) return;
     Event e;
-    e.time = s_->frame_.start_time, e.kind = "contact.stiff", e.severity = Severity::Warning, e.component = stiff_;
+    e.time = step_.frame.start_time, e.kind = "contact.stiff", e.severity = Severity::Warning, e.component = stiff_;
     e.message = "steps_per_contact asks for " + rounded_text(std::ceil(pieces_needed_)) +
                 " pieces of a step, more than max_substeps; contacts are cut less finely";
     e.values = {pieces_needed_};
-    s_->emit(std::move(e));
+    step_.emit(std::move(e));
 }
 
 void ContactForces::finish_step(std::vector<FoundContact>& found)
@@ -89,7 +88,7 @@ void ContactForces::finish_step(std::vector<FoundContact>& found)
     run_outputs(found);
     emit_happenings();
     emit_stiff();
-    s_->cache_.force_pairs() = live_.pairs;
+    contacts_.cache().force_pairs() = live_.pairs;
 }
 
 }  // namespace plab::simulation

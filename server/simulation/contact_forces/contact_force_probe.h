@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "simulation/contact_forces/contact_force_pair.h"
+#include "simulation/contacts/contact_force_pair.h"
 #include "world/world.h"
 
 namespace plab::simulation

@@ -1,13 +1,12 @@
 // Contacts that are forces, at a solver stage: found anew, matched with what is known of them, and handed to the laws.
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <tuple>
 #include <utility>
 
 #include "plab/rotation.h"
 #include "simulation/contact_forces/contact_forces.h"
-#include "simulation/step/stepper.h"
+#include "simulation/motion/component_call.h"
 
 namespace plab::simulation
 {
@@ -16,7 +15,7 @@ void ContactForces::bind(std::span<const std::uint32_t> groups)
 {
     const auto inside = [&](Ref r)
     {
-        const std::uint32_t g = s_->groups_.of(r);
+        const std::uint32_t g = step_.groups.of(r);
         return g != kNoIndex && dynamic(r) && std::binary_search(groups.begin(), groups.end(), g);
     };
     pairs_.clear(), bodies_.clear();
@@ -33,7 +32,7 @@ void ContactForces::bind(std::span<const std::uint32_t> groups)
 
 std::vector<ForcePair>::iterator ContactForces::place_of(std::uint32_t detector, Ref a, Ref b)
 {
-    const world::World& world = s_->world_;
+    const world::World& world = step_.world;
     const auto key = [&](std::uint32_t d, Ref x, Ref y) { return std::tuple(world.rank(d), world.rank(x), world.rank(y)); };
     return std::lower_bound(live_.pairs.begin(), live_.pairs.end(), key(detector, a, b),
                             [&](const ForcePair& p, const auto& k) { return key(p.detector, p.a, p.b) < k; });
@@ -60,7 +59,7 @@ void ContactForces::list_pushing()
     pushing_.clear();
     for (const NearPair& n : pairs_)
     {
-        const ForcePair* pair = find_pair(s_->detectors_[n.detector].component, n.a, n.b);
+        const ForcePair* pair = find_pair(contacts_.detectors()[n.detector].component, n.a, n.b);
         if (!pair) continue;
         const auto i = static_cast<std::uint32_t>(pair - live_.pairs.data());
         for (std::uint32_t k = 0; k < pair->count; ++k)
@@ -70,7 +69,7 @@ void ContactForces::list_pushing()
 
 ForceContact* ContactForces::find_known(const FoundContact& f)
 {
-    ForcePair* pair = find_pair(s_->detectors_[f.detector].component, f.contact.a, f.contact.b);
+    ForcePair* pair = find_pair(contacts_.detectors()[f.detector].component, f.contact.a, f.contact.b);
     return pair ? pair->find(f.contact.feature) : nullptr;
 }
 
@@ -82,29 +81,23 @@ ForceContact* ContactForces::find_pushing(const FoundContact& f)
 
 void ContactForces::anchor()
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     for (const std::uint32_t b : bodies_) anchors_[b] = {bodies.position[b], bodies.orientation[b]};
 }
 
 void ContactForces::detect(std::uint32_t index, std::span<const StandingPair> pairs, double margin, std::vector<FoundContact>& out)
 {
-    const Detector& detector = s_->detectors_[index];
-    world::Table& table = *s_->world_.tables()[detector.table];
-    StepContext context;
-    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    ContactCollector sink(s_->world_, out);
+    const Detector& detector = contacts_.detectors()[index];
+    ContactCollector sink(step_.world, out);
     sink.look_for(index, pairs, true, margin);
-    PhaseCall call;
-    call.context = &context, call.rows = Rows(&detector.row, 1);
-    call.bodies = &s_->world_.host().bodies, call.shafts = &s_->world_.host().shafts, call.shapes = &s_->world_.host().shapes;
-    call.contacts = &sink;
-    (void)detector.command->run(call, table.rows());  // what fails fails in the look at the end of the step, which tells it
+    ComponentCall look(step_, *step_.world.tables()[detector.table], detector.row);
+    look.context.events = nullptr, look.call.contacts = &sink;
+    (void)look.run(*detector.command);  // what fails fails in the look at the end of the step, which tells it
 }
 
 void ContactForces::fill_surface(FoundContact& f) const
 {
-    const world::HostTables& host = s_->world_.host();
+    const world::HostTables& host = step_.world.host();
     const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
     const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
     const SurfaceLaw& law = own ? *own : surfaces_[f.detector];
@@ -121,12 +114,12 @@ void ContactForces::inspect(double margin, std::vector<Seen>& out)
         for (; i < pairs_.size() && pairs_[i].detector == d; ++i) standing_.push_back({pairs_[i].a, pairs_[i].b, {}});
         detect(d, standing_, margin, found_);
     }
-    sort_contacts(found_, s_->world_);
+    sort_contacts(found_, step_.world);
     out.clear();
     for (FoundContact& f : found_)
     {
         fill_surface(f);
-        out.push_back({f, s_->normal_velocity(f.contact)});
+        out.push_back({f, contacts_.normal_velocity(f.contact)});
     }
 }
 
@@ -134,7 +127,7 @@ void ContactForces::inspect(double margin, std::vector<Seen>& out)
 /// a corner; where it stays below the centre only the first term counts, and a ball that rolls has not moved at all.
 Vec3 ContactForces::moved_along(const FoundContact& f) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const auto displacement = [&](std::uint32_t b)
     {
         const Anchor& start = anchors_[b];
@@ -153,14 +146,14 @@ void ContactForces::gather(bool lead)
     {
         const std::uint32_t component = live_.pairs[pushing_[i].pair].detector;
         std::uint32_t d = 0;
-        while (s_->detectors_[d].component != component) ++d;
+        while (contacts_.detectors()[d].component != component) ++d;
         standing_.clear();
         for (; i < pushing_.size() && live_.pairs[pushing_[i].pair].detector == component; ++i)
             if (i == 0 || pushing_[i].pair != pushing_[i - 1].pair)
                 standing_.push_back({live_.pairs[pushing_[i].pair].a, live_.pairs[pushing_[i].pair].b, {}});
         detect(d, standing_, margin_, found_);
     }
-    sort_contacts(found_, s_->world_);
+    sort_contacts(found_, step_.world);
     for (std::size_t i = 0; i < found_.size(); ++i)
     {
         FoundContact& f = found_[i];
@@ -172,7 +165,7 @@ void ContactForces::gather(bool lead)
         Vec3 stretch = known->stretch + moved_along(f);
         if (lead)
         {
-            const Bodies& bodies = s_->world_.host().bodies;
+            const Bodies& bodies = step_.world.host().bodies;
             const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
             c.depth -= lead_ * dot(u, c.normal);
             stretch += u * lead_;
@@ -192,7 +185,7 @@ void ContactForces::run_laws(const StepContext& context, Wrenches& wrenches)
         law_contacts_.clear();
         for (; i < matched_.size() && found_[matched_[i].first].detector == d; ++i)
             law_contacts_.push_back(found_[matched_[i].first].contact);
-        run_touch(s_->world_, s_->detectors_[d].response, own, law_contacts_, s_->world_.host().bodies, wrenches);
+        run_touch(step_.world, contacts_.detectors()[d].response, own, law_contacts_, step_.world.host().bodies, wrenches);
         for (std::size_t k = first; k < i; ++k) found_[matched_[k].first].contact = law_contacts_[k - first];
     }
 }
@@ -216,7 +209,7 @@ void ContactForces::add(const StepContext& context, Wrenches& wrenches)
     {
         const Contact& c = found_[i].contact;
         if (!is_advanced(context, c)) continue;
-        wrenches.begin(s_->detectors_[found_[i].detector].response);
+        wrenches.begin(contacts_.detectors()[found_[i].detector].response);
         if (dynamic(c.a)) wrenches.add_force_at(c.a, -c.impulse, c.point);
         if (dynamic(c.b)) wrenches.add_force_at(c.b, c.impulse, c.point);
     }
@@ -240,7 +233,7 @@ void ContactForces::book(const StepContext& context, std::vector<double>& work, 
     {
         const FoundContact& f = found_[matched_[k].first];
         if (!is_advanced(context, f.contact)) continue;
-        const std::uint32_t response = s_->detectors_[f.detector].response;
+        const std::uint32_t response = contacts_.detectors()[f.detector].response;
         work[response] += share * power[response];
         power[response] = 0;
         matched_[k].second->impulse += f.contact.impulse * share;
@@ -252,7 +245,7 @@ void ContactForces::evaluate_laws()
 {
     gather(false);
     StepContext context;
-    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
+    context.time = step_.frame.start_time, context.dt = step_.frame.step, context.tick = step_.frame.tick;
     run_laws(context, scratch_);
     clear_scratch();
 }
@@ -270,7 +263,7 @@ bool ContactForces::any_slack_change() const
 /// A piece is finished, and evaluate_laws was called at its end: history changes here and nowhere else.
 void ContactForces::commit(double t, double h)
 {
-    const double time = s_->frame_.start_time + t;
+    const double time = step_.frame.start_time + t;
     for (const auto& [i, known] : matched_)
     {
         const Contact& c = found_[i].contact;
@@ -283,7 +276,7 @@ void ContactForces::commit(double t, double h)
         known->stretch = c.stretch, known->force = c.impulse, known->depth = c.depth;
         if (c.depth > 1.05 * known->peak) expect(*known, found_[i], 0);
         known->slack = c.impulse == Vec3{} && c.depth > known->open_depth + rounding(c);
-        ForcePair* pair = find_pair(s_->detectors_[found_[i].detector].component, c.a, c.b);
+        ForcePair* pair = find_pair(contacts_.detectors()[found_[i].detector].component, c.a, c.b);
         pair->normal = c.normal;
         if (time - known->begin > 2 * known->half_period) tell_impact_once(*pair, *known, c, time);
     }

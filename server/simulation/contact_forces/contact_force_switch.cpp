@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "simulation/contact_forces/contact_forces.h"
-#include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
@@ -13,12 +12,15 @@ namespace plab::simulation
 const ContactForces::Seen* ContactForces::find_seen(const std::vector<Seen>& list, const FoundContact& f) const
 {
     for (const Seen& s : list)
-        if (s.found.contact.feature == f.contact.feature && Stepper::same_pair(s.found, f)) return &s;
+        if (s.found.contact.feature == f.contact.feature && same_pair(s.found, f)) return &s;
     return nullptr;
 }
 
 /// m: what positions cannot tell apart.
-double ContactForces::rounding(const Contact& c) const { return 0x1p-50 * (8 * s_->smaller_radius(c.a, c.b) + positions_of(c.a, c.b)); }
+double ContactForces::rounding(const Contact& c) const
+{
+    return 0x1p-50 * (8 * contacts_.smaller_radius(c.a, c.b) + positions_of(c.a, c.b));
+}
 
 /// Whether a contact has begun or ceased to push since `before`.
 bool ContactForces::switches(const Seen& seen, const std::vector<Seen>& before)
@@ -28,7 +30,7 @@ bool ContactForces::switches(const Seen& seen, const std::vector<Seen>& before)
     if (c.depth <= rounding(c)) return false;
     if (const Seen* then = find_seen(before, seen.found)) return then->found.contact.depth <= rounding(c);
     // A new corner of bodies that touch anyway comes at the end of the piece: its depth has no beginning to be found.
-    return !find_pair(s_->detectors_[seen.found.detector].component, c.a, c.b);
+    return !find_pair(contacts_.detectors()[seen.found.detector].component, c.a, c.b);
 }
 
 /// The present state against where the piece began. Leaves the laws evaluated.
@@ -87,13 +89,13 @@ bool ContactForces::is_there(const std::vector<Seen>& now, const std::vector<See
 
 void ContactForces::expect(ForceContact& known, const FoundContact& at, double closing)
 {
-    const std::uint32_t response = s_->detectors_[at.detector].response;
+    const std::uint32_t response = contacts_.detectors()[at.detector].response;
     FoundContact asked = at;
     asked.contact.rest_depth = known.rest_depth, asked.contact.preload = known.preload, asked.contact.approach = known.approach;
     const double depth = at.contact.depth;
-    probe_.take(s_->world_.host().bodies, asked.contact, s_->smaller_radius(asked.contact.a, asked.contact.b), s_->frame_.step);
-    known.peak = std::max(depth, probe_.peak_depth(s_->world_, response, std::max(known.open_depth, depth), closing));
-    known.rates = probe_.rates(s_->world_, response, known.peak);
+    probe_.take(step_.world.host().bodies, asked.contact, contacts_.smaller_radius(asked.contact.a, asked.contact.b), step_.frame.step);
+    known.peak = std::max(depth, probe_.peak_depth(step_.world, response, std::max(known.open_depth, depth), closing));
+    known.rates = probe_.rates(step_.world, response, known.peak);
     const double swing = std::sqrt(std::max(known.rates.normal, known.rates.tangential));
     known.half_period = std::numbers::pi / std::max({swing, known.rates.damping, 1e-300});
 }
@@ -101,13 +103,13 @@ void ContactForces::expect(ForceContact& known, const FoundContact& at, double c
 void ContactForces::begin_contact(const Seen& seen, double time)
 {
     const Contact& c = seen.found.contact;
-    const std::uint32_t detector = s_->detectors_[seen.found.detector].component;
+    const std::uint32_t detector = contacts_.detectors()[seen.found.detector].component;
     ForcePair* pair = find_pair(detector, c.a, c.b);
     const bool fresh = pair == nullptr;
     if (fresh)
     {
         ForcePair p;
-        p.detector = detector, p.a = c.a, p.b = c.b, p.since = s_->frame_.tick;
+        p.detector = detector, p.a = c.a, p.b = c.b, p.since = step_.frame.tick;
         pair = &*live_.pairs.insert(place_of(detector, c.a, c.b), p);
     }
     if (fresh) pair->law_type = laws_[seen.found.detector].type, pair->law = laws_[seen.found.detector].values;
@@ -118,8 +120,8 @@ void ContactForces::begin_contact(const Seen& seen, double time)
     const bool overlap_is_old = std::any_of(pair->all().begin(), pair->all().end(), eases);
     pair->normal = c.normal;
     ForceContact known;
-    known.asked = s_->frame_.tick;
-    known.feature = c.feature, known.id = old ? old->id : s_->cache_.new_id();
+    known.asked = step_.frame.tick;
+    known.feature = c.feature, known.id = old ? old->id : contacts_.cache().new_id();
     known.begin = time, known.depth = c.depth, known.approach = std::max(0.0, -seen.parting);
     known.lively = known.liveliest = known.approach;
     if (overlap_is_old && c.depth > 0) known.rest_depth = known.open_depth = c.depth;
@@ -152,7 +154,7 @@ void ContactForces::drop_dormant(const std::vector<Seen>& seen)
     {
         const auto is_it = [&](const Seen& s)
         {
-            return s_->detectors_[s.found.detector].component == pair.detector && s.found.contact.a == pair.a &&
+            return contacts_.detectors()[s.found.detector].component == pair.detector && s.found.contact.a == pair.a &&
                    s.found.contact.b == pair.b && s.found.contact.feature == known.feature;
         };
         const auto at = std::find_if(seen.begin(), seen.end(), is_it);
@@ -160,7 +162,7 @@ void ContactForces::drop_dormant(const std::vector<Seen>& seen)
     };
     for (const NearPair& near : pairs_)
     {
-        ForcePair* pair = find_pair(s_->detectors_[near.detector].component, near.a, near.b);
+        ForcePair* pair = find_pair(contacts_.detectors()[near.detector].component, near.a, near.b);
         for (std::uint32_t k = pair ? pair->count : 0; k-- > 0;)
             if (pair->contacts[k].dormant && !overlaps(*pair, pair->contacts[k])) pair->contacts[k] = pair->contacts[--pair->count];
     }
@@ -212,9 +214,9 @@ void ContactForces::list_gone(const std::vector<Seen>& seen)
 /// At the end of a piece: who pushes in the next one.
 void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t)
 {
-    const double time = s_->frame_.start_time + t;
+    const double time = step_.frame.start_time + t;
     // What would switch within this time does so now: a face's corners come down together.
-    const double instant = 1e-12 * s_->frame_.step;
+    const double instant = 1e-12 * step_.frame.step;
     list_gone(seen);
     for (const Seen& s : seen)
     {
@@ -224,7 +226,7 @@ void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t)
         if (known && known->dormant)
             follow_dormant(s, *known, time);
         else if (known && s.parting > 0 && c.depth <= known->open_depth + soon)
-            let_go(s, *find_pair(s_->detectors_[s.found.detector].component, c.a, c.b), time);
+            let_go(s, *find_pair(contacts_.detectors()[s.found.detector].component, c.a, c.b), time);
         else if (!known && (s.parting < 0 ? c.depth >= -soon : c.depth > 1e3 * rounding(c)))
             begin_contact(s, time);
     }

@@ -2,10 +2,7 @@
 #include "simulation/contact_forces/contact_forces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
-
-#include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
@@ -20,9 +17,9 @@ constexpr double kSameReach = 1 + 1e-9, kLeastReach = 0.01;  // the latter of a 
 
 void ContactForces::rebuild()
 {
-    const world::World& world = s_->world_;
+    const world::World& world = step_.world;
     by_force_.clear();
-    for (const Detector& d : s_->detectors_) by_force_.push_back(d.by_force ? 1 : 0);
+    for (const Detector& d : contacts_.detectors()) by_force_.push_back(d.by_force ? 1 : 0);
     any_ = std::find(by_force_.begin(), by_force_.end(), 1) != by_force_.end();
     near_.clear();
     live_ = {}, segment_ = {}, end_ = {};
@@ -42,26 +39,26 @@ void ContactForces::make_room()
 {
     constexpr std::size_t kRoom = 32;
     near_.reserve(kRoom), near_found_.reserve(kRoom);
-    islands_.resize(std::max(islands_.size(), std::min(kRoom, s_->groups_.all.size())));
+    islands_.resize(std::max(islands_.size(), std::min(kRoom, step_.groups.all.size())));
     for (Island& island : islands_) island.groups.reserve(kRoom), island.shadows.reserve(kRoom);
 }
 
-bool ContactForces::dynamic(Ref r) const { return s_->world_.host().bodies.dynamic(r.index); }
+bool ContactForces::dynamic(Ref r) const { return step_.world.host().bodies.dynamic(r.index); }
 
 double ContactForces::speed_of(Ref r) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
-    const double spin = length(bodies.angular_velocity[r.index]), radius = s_->radius_of_body_[r.index];
+    const Bodies& bodies = step_.world.host().bodies;
+    const double spin = length(bodies.angular_velocity[r.index]), radius = contacts_.radius_of_body()[r.index];
     return length(bodies.velocity[r.index]) + (spin > 0 ? spin * radius : 0.0);
 }
 
 double ContactForces::positions_of(Ref a, Ref b) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     return length(bodies.position[a.index]) + length(bodies.position[b.index]);
 }
 
-bool ContactForces::touches(Ref a, Ref b, std::uint32_t group) const { return s_->groups_.of(a) == group || s_->groups_.of(b) == group; }
+bool ContactForces::touches(Ref a, Ref b, std::uint32_t group) const { return step_.groups.of(a) == group || step_.groups.of(b) == group; }
 
 void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32_t group)
 {
@@ -70,36 +67,36 @@ void ContactForces::transfer(const ForceState& from, ForceState& to, std::uint32
     std::erase_if(to.pairs, here), std::erase_if(to.happenings, here);
     std::copy_if(from.pairs.begin(), from.pairs.end(), std::back_inserter(to.pairs), here);
     std::copy_if(from.happenings.begin(), from.happenings.end(), std::back_inserter(to.happenings), here);
-    const world::World& world = s_->world_;
+    const world::World& world = step_.world;
     const auto key = [&](const ForcePair& p) { return std::tuple(world.rank(p.detector), world.rank(p.a), world.rank(p.b)); };
     std::sort(to.pairs.begin(), to.pairs.end(), [&](const ForcePair& x, const ForcePair& y) { return key(x) < key(y); });
 }
 
 void ContactForces::begin_step()
 {
-    live_.pairs = s_->cache_.force_pairs();
+    live_.pairs = contacts_.cache().force_pairs();
     live_.happenings.clear();
     near_.clear();
     pieces_needed_ = 0, stiff_ = kNoIndex;
     surfaces_.clear();
-    for (std::uint32_t d = 0; d < by_force_.size(); ++d) surfaces_.push_back(by_force_[d] ? s_->response_law(d) : SurfaceLaw{});
-    reach_.assign(s_->world_.host().bodies.size(), 0.0);
-    fill_reach(s_->frame_.step);
-    look_near(s_->frame_.step);
-    spread_reach(s_->frame_.step);
+    for (std::uint32_t d = 0; d < by_force_.size(); ++d) surfaces_.push_back(by_force_[d] ? contacts_.response_law(d) : SurfaceLaw{});
+    reach_.assign(step_.world.host().bodies.size(), 0.0);
+    fill_reach(step_.frame.step);
+    look_near();
+    spread_reach();
     segment_ = live_;
 }
 
 void ContactForces::fill_reach(double h)
 {
     // Speeds, and what the forces of now would do; half as much again for what they do later.
-    GroupSystem& system = s_->system_for(s_->island_all_, {});
+    GroupSystem& system = motion_.system_for(step_.all_groups, {});
     // To begin joins speeds to the rows of joints that have just come: that is work, whoever is the first to do it.
-    system.begin(0, h, {&s_->work_, 1}, nullptr);
+    system.begin(0, h, step_.book(), nullptr);
     system.evaluate(0, 0);
     const auto members = system.bodies();
     for (std::size_t i = 0; i < members.size(); ++i) reach_[members[i]] = 0.75 * h * h * length(system.acceleration(i));
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     for (std::uint32_t b = 0; b < reach_.size(); ++b)
     {
         if (bodies.motion[b] == Motion::Static) continue;
@@ -109,13 +106,13 @@ void ContactForces::fill_reach(double h)
 }
 
 /// Whoever may be hit within the step may leave with the speed that the blow gives, and hit the next one.
-void ContactForces::spread_reach(double h)
+void ContactForces::spread_reach()
 {
     for (int round = 0; raise_reach(); ++round)
     {
         const bool is_last = round == kMostRounds;
         if (is_last) level_reach();
-        look_near(h);
+        look_near();
         if (is_last) return;
     }
 }
@@ -124,13 +121,13 @@ void ContactForces::spread_reach(double h)
 /// 2 m / (m + m') of the other's speed. Round a circle of pairs these shares multiply to 1 at most: it comes to an end.
 bool ContactForces::raise_reach()
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const auto hits = [&](Ref a, Ref b)
     {
         if (!dynamic(b)) return false;
         const double share = dynamic(a) ? 2 / (1 + bodies.mass[b.index] * bodies.inverse_mass[a.index]) : 2.0;
         const double reach = share * reach_[a.index];
-        if (!(reach > reach_[b.index] * kSameReach && reach > kLeastReach * s_->radius_of_body_[b.index])) return false;
+        if (!(reach > reach_[b.index] * kSameReach && reach > kLeastReach * contacts_.radius_of_body()[b.index])) return false;
         reach_[b.index] = reach;
         return true;
     };
@@ -160,25 +157,16 @@ void ContactForces::add_near(std::uint32_t detector, Ref a, Ref b)
     if (dynamic(a) || dynamic(b)) near_.push_back({detector, a, b});
 }
 
-void ContactForces::look_near(double h)
+void ContactForces::look_near()
 {
-    const world::World& world = s_->world_;
+    const world::World& world = step_.world;
     for (std::uint32_t d = 0; d < by_force_.size(); ++d)
     {
         if (!by_force_[d]) continue;
-        const Detector& detector = s_->detectors_[d];
-        world::Table& table = *s_->world_.tables()[detector.table];
-        StepContext context;
-        context.time = s_->frame_.start_time, context.dt = h, context.tick = s_->frame_.tick, context.events = s_;
-        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
+        const Detector& detector = contacts_.detectors()[d];
         near_found_.clear();
         NearCollector sink(world, reach_, near_found_);
-        PhaseCall call;
-        call.context = &context, call.rows = Rows(&detector.row, 1);
-        call.bodies = &s_->world_.host().bodies, call.shafts = &s_->world_.host().shafts, call.shapes = &s_->world_.host().shapes;
-        call.contacts = &sink;
-        if (auto done = detector.command->run(call, table.rows()); !done)
-            context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
+        contacts_.look(detector, sink);
         for (const NearCollector::Pair& p : near_found_) add_near(d, p.a, p.b);
         for (const ForcePair& p : live_.pairs)
             if (p.detector == detector.component) add_near(d, p.a, p.b);
@@ -192,7 +180,7 @@ void ContactForces::look_near(double h)
 bool ContactForces::within_reach(std::span<const std::uint32_t> groups, double h) const
 {
     for (const std::uint32_t g : groups)
-        for (const std::uint32_t b : s_->groups_.all[g].bodies)
+        for (const std::uint32_t b : step_.groups.all[g].bodies)
             if (speed_of({Facet::Body, b}) * h > reach_[b]) return false;
     return true;
 }
@@ -200,13 +188,13 @@ bool ContactForces::within_reach(std::span<const std::uint32_t> groups, double h
 void ContactForces::join(DisjointSets& sets) const
 {
     for (const NearPair& p : near_)
-        if (dynamic(p.a) && dynamic(p.b)) sets.join(s_->groups_.of(p.a), s_->groups_.of(p.b));
+        if (dynamic(p.a) && dynamic(p.b)) sets.join(step_.groups.of(p.a), step_.groups.of(p.b));
 }
 
 void ContactForces::flag_near(std::vector<std::uint8_t>& groups) const
 {
     for (const NearPair& p : near_)
-        if (dynamic(p.a) && dynamic(p.b)) groups[s_->groups_.of(p.a)] = groups[s_->groups_.of(p.b)] = 1;
+        if (dynamic(p.a) && dynamic(p.b)) groups[step_.groups.of(p.a)] = groups[step_.groups.of(p.b)] = 1;
 }
 
 bool ContactForces::close_over(std::vector<std::uint8_t>& in_scope) const
@@ -215,7 +203,7 @@ bool ContactForces::close_over(std::vector<std::uint8_t>& in_scope) const
     for (const NearPair& p : near_)
     {
         if (!dynamic(p.a) || !dynamic(p.b)) continue;
-        std::uint8_t &a = in_scope[s_->groups_.of(p.a)], &b = in_scope[s_->groups_.of(p.b)];
+        std::uint8_t &a = in_scope[step_.groups.of(p.a)], &b = in_scope[step_.groups.of(p.b)];
         grown = grown || a != b;
         a = b = a | b;
     }
@@ -224,21 +212,21 @@ bool ContactForces::close_over(std::vector<std::uint8_t>& in_scope) const
 
 void ContactForces::make_islands(std::span<const std::uint32_t> groups)
 {
-    const std::size_t count = s_->groups_.all.size();
+    const std::size_t count = step_.groups.all.size();
     member_.assign(count, 0), bound_.assign(count, 0);
     for (const std::uint32_t g : groups) member_[g] = 1;
     sets_.reset(count);
     const auto link = [&](Ref a, Ref b)
     {
-        if (dynamic(a) && dynamic(b) && member_[s_->groups_.of(a)] && member_[s_->groups_.of(b)])
-            sets_.join(s_->groups_.of(a), s_->groups_.of(b));
+        if (dynamic(a) && dynamic(b) && member_[step_.groups.of(a)] && member_[step_.groups.of(b)])
+            sets_.join(step_.groups.of(a), step_.groups.of(b));
     };
     for (const NearPair& p : near_) link(p.a, p.b);
-    for (const PairState& p : s_->cache_.pairs())
+    for (const PairState& p : contacts_.cache().pairs())
         if (p.resting) link(p.a, p.b);
     for (const NearPair& p : near_)
         for (const Ref r : {p.a, p.b})
-            if (dynamic(r) && member_[s_->groups_.of(r)]) bound_[sets_.find(s_->groups_.of(r))] = 1;
+            if (dynamic(r) && member_[step_.groups.of(r)]) bound_[sets_.find(step_.groups.of(r))] = 1;
 }
 
 void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std::uint32_t>& smooth, std::vector<std::uint32_t>& in_contact,
@@ -249,13 +237,13 @@ void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std:
     {
         // An impact within the step made somebody faster than anybody could know.
         for (const std::uint32_t g : groups)
-            for (const std::uint32_t b : s_->groups_.all[g].bodies)
+            for (const std::uint32_t b : step_.groups.all[g].bodies)
                 reach_[b] = std::max(reach_[b], 2 * speed_of({Facet::Body, b}) * (to - from));
-        look_near(to - from);
+        look_near();
     }
     if (near_.empty()) return;
     make_islands(groups);
-    const auto claimed = [&](std::uint32_t g) { return bound_[sets_.find(g)] && s_->groups_.all[g].solver != kNoIndex; };
+    const auto claimed = [&](std::uint32_t g) { return bound_[sets_.find(g)] && step_.groups.all[g].solver != kNoIndex; };
     for (const std::uint32_t first : groups)
     {
         if (!claimed(first) || !member_[first]) continue;
@@ -277,7 +265,7 @@ void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std:
 void ContactForces::collect_shadows(Island& island, std::span<const std::uint32_t> shadows)
 {
     // Whom the forces of the island read, and who is moved as told and may be touched.
-    bound_.assign(s_->groups_.all.size(), 0);
+    bound_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t g : island.groups) bound_[g] = 1;
     island.shadows.assign(shadows.begin(), shadows.end());
     for (const std::uint32_t g : shadows) bound_[g] = 1;
@@ -286,12 +274,12 @@ void ContactForces::collect_shadows(Island& island, std::span<const std::uint32_
         if (g != kNoIndex && !bound_[g]) bound_[g] = 1, island.shadows.push_back(g);
     };
     for (const std::uint32_t g : island.groups)
-        for (const std::uint32_t up : s_->groups_.all[g].upstream) want(up);
+        for (const std::uint32_t up : step_.groups.all[g].upstream) want(up);
     for (std::size_t i = 0; i < island.shadows.size(); ++i)
-        for (const std::uint32_t up : s_->groups_.all[island.shadows[i]].upstream) want(up);
+        for (const std::uint32_t up : step_.groups.all[island.shadows[i]].upstream) want(up);
     for (const NearPair& p : pairs_)
         for (const Ref r : {p.a, p.b})
-            if (!dynamic(r)) want(s_->groups_.of(r));
+            if (!dynamic(r)) want(step_.groups.of(r));
     std::sort(island.shadows.begin(), island.shadows.end());
 }
 
@@ -299,10 +287,10 @@ std::uint32_t ContactForces::solver_of(const Island& island) const
 {
     // As for a group: the highest order, then the first by id.
     std::uint32_t best = kNoIndex;
-    const world::World& world = s_->world_;
+    const world::World& world = step_.world;
     for (const std::uint32_t g : island.groups)
     {
-        const std::uint32_t solver = s_->groups_.all[g].solver;
+        const std::uint32_t solver = step_.groups.all[g].solver;
         if (best == kNoIndex || solver == best)
         {
             best = solver;
@@ -321,14 +309,14 @@ void ContactForces::advance(std::span<const std::uint32_t> shadows, double from,
         Island& island = islands_[i];
         bind(island.groups);
         collect_shadows(island, shadows);
-        world::HostTables& host = s_->world_.host();
+        world::HostTables& host = step_.world.host();
         const auto each = [&](auto body, auto shaft, auto quantities)
         {
             for (const std::uint32_t g : island.shadows)
             {
-                for (const std::uint32_t b : s_->groups_.all[g].bodies) body(b);
-                for (const std::uint32_t s : s_->groups_.all[g].shafts) shaft(s);
-                for (const std::uint32_t q : s_->groups_.all[g].quantities) quantities(q);
+                for (const std::uint32_t b : step_.groups.all[g].bodies) body(b);
+                for (const std::uint32_t s : step_.groups.all[g].shafts) shaft(s);
+                for (const std::uint32_t q : step_.groups.all[g].quantities) quantities(q);
             }
         };
         each([&](auto b) { shadow_memento_.save_body(host, b); }, [&](auto s) { shadow_memento_.save_shaft(host, s); },

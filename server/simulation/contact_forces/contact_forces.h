@@ -4,23 +4,24 @@
 /// Which contact points push is fixed within a piece, so that what the solver sees is smooth and its order is kept. The times
 /// at which a point begins and ceases to push are located, and a piece ends there. Groups whose bodies may meet by force
 /// within the step advance together, as an island; an island that holds standing hard contacts too is advanced by their
-/// time stepping, with the springs as forces (contact_force_mixed.cpp).
+/// time stepping, with the springs as forces (contact_force_advance.cpp).
 #pragma once
 
 #include <vector>
 
 #include "simulation/contact_forces/contact_force_probe.h"
-#include "simulation/contacts/contacts.h"
+#include "simulation/contacts/hard_contacts.h"
 
 namespace plab::simulation
 {
 
-class Stepper;
-
-class ContactForces final : public ExtraForces
+class ContactForces final : public ExtraForces, public GroupMemory
 {
 public:
-    explicit ContactForces(Stepper& stepper) : s_(&stepper) {}
+    ContactForces(StepState& step, GroupMotion& motion, ContactBook& contacts, HardContacts& hard)
+        : step_(step), motion_(motion), contacts_(contacts), hard_(hard)
+    {
+    }
 
     /// After any structural change. Contacts go over from hard to soft and back where a response was exchanged.
     void rebuild();
@@ -39,8 +40,6 @@ public:
     void advance(std::span<const std::uint32_t> shadows, double from, double to, WorkBook book, bool trial);
     /// Springs push in this system of one or more groups from now on, at the present state.
     void attach(GroupSystem& system, std::span<const std::uint32_t> groups);
-    /// Joins what moves together because of contacts that are forces.
-    void join(DisjointSets& groups) const;
     /// Flags groups that may touch another one by force.
     void flag_near(std::vector<std::uint8_t>& groups) const;
     /// Whoever may push a group that is flagged is flagged too. True if that flagged somebody.
@@ -51,15 +50,31 @@ public:
     /// Of the end of the step: events, outputs, and what is reported with found contacts.
     void finish_step(std::vector<FoundContact>& found);
 
-    // As the stepper's functions of the same names: contacts go back and forth with a group.
-    void rewind(std::uint32_t group) { transfer(segment_, live_, group); }
-    void save_segment(std::uint32_t group) { transfer(live_, segment_, group); }
-    void save_end(std::uint32_t group) { transfer(live_, end_, group); }
-    void restore_end(std::uint32_t group) { transfer(end_, live_, group); }
-    void save_ends() { end_ = live_; }
+    // Contacts go back and forth with a group.
+    void rewind(std::uint32_t group) override
+    {
+        if (any_) transfer(segment_, live_, group);
+    }
+    void save_segment(std::uint32_t group) override
+    {
+        if (any_) transfer(live_, segment_, group);
+    }
+    void save_end(std::uint32_t group) override
+    {
+        if (any_) transfer(live_, end_, group);
+    }
+    void restore_end(std::uint32_t group) override
+    {
+        if (any_) transfer(end_, live_, group);
+    }
+    void save_ends() override
+    {
+        if (any_) end_ = live_;
+    }
 
     void add(const StepContext& context, Wrenches& wrenches) override;
     bool is_undersampled() const override { return undersampled_; }
+    void join(DisjointSets& groups) const override;
     void book(const StepContext& context, std::vector<double>& work, std::vector<double>& power, double share) override;
 
 private:
@@ -107,9 +122,9 @@ private:
     void transfer(const ForceState& from, ForceState& to, std::uint32_t group);
     bool touches(Ref a, Ref b, std::uint32_t group) const;
     void make_room();
-    void look_near(double h);
+    void look_near();
     void fill_reach(double h);
-    void spread_reach(double h);
+    void spread_reach();
     bool raise_reach();
     void level_reach();
     bool within_reach(std::span<const std::uint32_t> groups, double h) const;
@@ -199,7 +214,10 @@ private:
     void emit_happenings();
     void emit_stiff();
 
-    Stepper* s_;
+    StepState& step_;
+    GroupMotion& motion_;
+    ContactBook& contacts_;
+    HardContacts& hard_;
     bool any_ = false;
     std::vector<std::uint8_t> by_force_;  ///< by detector
     ForceState live_, segment_, end_;

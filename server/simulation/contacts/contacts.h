@@ -9,8 +9,8 @@
 #include <array>
 #include <vector>
 
-#include "simulation/contact_forces/contact_force_pair.h"
-#include "simulation/groups/group_system.h"
+#include "simulation/contacts/contact_force_pair.h"
+#include "simulation/systems/group_system.h"
 
 namespace plab::simulation
 {
@@ -44,6 +44,11 @@ struct FoundContact
     Contact contact;
     std::uint32_t detector = 0;
 };
+
+inline bool same_pair(const FoundContact& x, const FoundContact& y)
+{
+    return x.detector == y.detector && x.contact.a == y.contact.a && x.contact.b == y.contact.b;
+}
 
 struct KnownContact
 {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "plab/rotation.h"
-#include "simulation/contacts/island_step.h"
+#include "simulation/contacts/held_islands.h"
 
 namespace plab::simulation
 {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "simulation/groups/group_system.h"
+#include "simulation/systems/group_system.h"
 
 namespace plab::simulation
 {

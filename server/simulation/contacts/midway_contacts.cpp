@@ -5,7 +5,6 @@
 
 #include "plab/rotation.h"
 #include "plab/surface.h"
-#include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
@@ -37,23 +36,23 @@ bool is_round(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
 
 bool MidwayContacts::is_driven(const Contact& c) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     return bodies.motion[c.a.index] == Motion::Kinematic || bodies.motion[c.b.index] == Motion::Kinematic;
 }
 
 bool MidwayContacts::turns(const Contact& c, double h) const
 {
-    const world::HostTables& host = s_->world_.host();
+    const world::HostTables& host = step_.world.host();
     const Bodies& bodies = host.bodies;
     const Vec3 v = bodies.velocity[c.b.index] - bodies.velocity[c.a.index];
     const double along = length(v - c.normal * dot(v, c.normal));
-    if (!(along * h > kNoWay * s_->smaller_radius(c.a, c.b))) return false;
+    if (!(along * h > kNoWay * contacts_.smaller_radius(c.a, c.b))) return false;
     return is_round(bodies, host.shapes, c.a.index) && is_round(bodies, host.shapes, c.b.index);
 }
 
 void MidwayContacts::lead(GroupSystem& system, std::span<const std::uint32_t> members, double h)
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const std::span<double> x = system.coordinates();
     ways_.resize(bodies.size());
     for (const std::uint32_t i : members)
@@ -81,24 +80,24 @@ void MidwayContacts::look(std::span<const std::uint32_t> places, const std::vect
             const Contact& c = all[places[i]].contact;
             if (standing_.empty() || standing_.back().a != c.a || standing_.back().b != c.b) standing_.push_back({c.a, c.b, {}});
             const Vec3 way = way_of(c.b) - way_of(c.a);
-            const double radius = s_->smaller_radius(c.a, c.b), opens = radius > 0 ? dot(way, way) / (2 * radius) : 0.0;
-            margin = std::max(margin, std::max(0.0, -c.depth) + opens + s_->overlap_tolerance(c.a, c.b));
+            const double radius = contacts_.smaller_radius(c.a, c.b), opens = radius > 0 ? dot(way, way) / (2 * radius) : 0.0;
+            margin = std::max(margin, std::max(0.0, -c.depth) + opens + contacts_.overlap_tolerance(c.a, c.b));
         }
-        s_->detect(s_->detectors_[detector], detector, standing_, true, midway_, margin);
+        contacts_.detect(contacts_.detectors()[detector], detector, standing_, true, midway_, margin);
     }
-    sort_contacts(midway_, s_->world_);
+    sort_contacts(midway_, step_.world);
     for (FoundContact& f : midway_)
     {
         const Contact& c = f.contact;
-        const std::uint32_t detector = s_->detectors_[f.detector].component;
-        if (const KnownContact* known = s_->cache_.find_contact(detector, c.a, c.b, c.feature, s_->world_))
+        const std::uint32_t detector = contacts_.detectors()[f.detector].component;
+        if (const KnownContact* known = contacts_.cache().find_contact(detector, c.a, c.b, c.feature, step_.world))
             f.contact.depth -= known->rest_depth;
     }
 }
 
 void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h)
 {
-    Bodies& bodies = s_->world_.host().bodies;
+    Bodies& bodies = step_.world.host().bodies;
     for (const Led& led : led_)
     {
         bodies.orientation[led.body] = led.start;
@@ -106,7 +105,7 @@ void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<Fou
     }
     look(places, all);
     const auto key = [&](const FoundContact& f)
-    { return std::tuple(f.detector, s_->world_.rank(f.contact.a), s_->world_.rank(f.contact.b), f.contact.feature); };
+    { return std::tuple(f.detector, step_.world.rank(f.contact.a), step_.world.rank(f.contact.b), f.contact.feature); };
     for (const std::uint32_t place : places)
     {
         Contact& c = all[place].contact;
@@ -128,7 +127,7 @@ void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<Fou
 
 void MidwayContacts::take_back()
 {
-    Bodies& bodies = s_->world_.host().bodies;
+    Bodies& bodies = step_.world.host().bodies;
     for (const Led& led : led_) bodies.position[led.body] -= led.way, ways_[led.body] = {};
     led_.clear();
 }

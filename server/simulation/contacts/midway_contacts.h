@@ -19,17 +19,15 @@
 #include <span>
 #include <vector>
 
-#include "simulation/contacts/contacts.h"
+#include "simulation/contacts/contact_book.h"
 
 namespace plab::simulation
 {
 
-class Stepper;
-
 class MidwayContacts
 {
 public:
-    explicit MidwayContacts(Stepper& stepper) : s_(&stepper) {}
+    MidwayContacts(StepState& step, ContactBook& contacts) : step_(step), contacts_(contacts) {}
 
     /// Whether two round bodies move along one another so far in h (s) that their normal turns.
     bool turns(const Contact& contact, double h) const;
@@ -54,7 +52,8 @@ private:
     Vec3 way_of(Ref body) const { return ways_[body.index]; }
     void look(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all);
 
-    Stepper* s_;
+    StepState& step_;
+    ContactBook& contacts_;
     std::vector<Led> led_;
     std::vector<Vec3> ways_;  ///< m, by host row; zero between steps
     std::vector<FoundContact> midway_;

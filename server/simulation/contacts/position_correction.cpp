@@ -1,81 +1,143 @@
-// What time stepping leaves in overlap is parted again, by moving and turning: speeds stay as they are.
-//
-// Nonlinear Gauss-Seidel on positions (Mueller et al., Position based dynamics, 2007; Deul et al. for rigid bodies, 2016):
-//   lambda = depth / K,  K = 1/ma + 1/mb + (ra x n) . Ia^-1 (ra x n) + (rb x n) . Ib^-1 (rb x n)
-// A shift of the whole body by its deepest corner would lift the other corners and feed its rocking for ever.
-#include "simulation/contact_forces/nudge.h"
-#include "simulation/step/stepper.h"
+#include "simulation/contacts/position_correction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/contacts/nudge.h"
 
 namespace plab::simulation
 {
 namespace
 {
 
-constexpr int kSweeps = 8;
+constexpr int kPartingSweeps = 8, kEasingSweeps = 100;
 
 }  // namespace
 
-void Stepper::part(std::size_t begin, std::size_t end)
+/// Parts one pair.
+void PositionCorrection::part(std::span<const FoundContact> contacts)
 {
-    Bodies& bodies = world_.host().bodies;
-    const std::uint32_t ia = found_[begin].contact.a.index, ib = found_[begin].contact.b.index;
-    Nudge a(bodies, ia), b(bodies, ib);
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (std::size_t i = begin; i < end; ++i)
+    Bodies& bodies = step_.world.host().bodies;
+    const Ref first = contacts.front().contact.a, second = contacts.front().contact.b;
+    Nudge a(bodies, first.index), b(bodies, second.index);
+    for (int sweep = 0; sweep < kPartingSweeps; ++sweep)
+        for (const FoundContact& f : contacts)
         {
-            const Contact& c = found_[i].contact;
+            const Contact& c = f.contact;
             const double depth = c.depth - c.rest_depth - dot(b.at(c.point) - a.at(c.point), c.normal);
             const double mobility = a.mobility(c.point, c.normal) + b.mobility(c.point, c.normal);
             if (depth <= 0 || mobility <= 0) continue;
             const Vec3 push = c.normal * (depth / mobility);
             b.push(c.point, push), a.push(c.point, -push);
         }
-    a.apply(bodies, ia), b.apply(bodies, ib);
-    const std::uint32_t response = detectors_[found_[begin].detector].response;
-    if (response == kNoIndex) return;
-    const Contact& c = found_[begin].contact;
-    contact_energy_[response].lifted -= dot(force_on(c.a), a.shift) + dot(force_on(c.b), b.shift);
+    a.apply(bodies, first.index), b.apply(bodies, second.index);
+    const std::uint32_t response = contacts_.detectors()[contacts.front().detector].response;
+    if (response != kNoIndex) step_.contact_energy[response].lifted -= dot(force_on(first), a.shift) + dot(force_on(second), b.shift);
 }
 
-void Stepper::note_forces(const GroupSystem& system)
+void PositionCorrection::note_forces(const GroupSystem& system)
 {
-    const Bodies& bodies = world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     known_force_.resize(bodies.size());
     for (std::size_t i = 0; i < system.bodies().size(); ++i)
     {
         const std::uint32_t b = system.bodies()[i];
-        known_force_[b] = {system.acceleration(i) * bodies.mass[b], serial_};
+        known_force_[b] = {system.acceleration(i) * bodies.mass[b], step_.serial};
     }
 }
 
 /// N, of this step; what has just met others has not been advanced with them yet.
-Vec3 Stepper::force_on(Ref body)
+Vec3 PositionCorrection::force_on(Ref body)
 {
-    if (!world_.host().bodies.dynamic(body.index)) return {};
-    known_force_.resize(world_.host().bodies.size());
-    if (known_force_[body.index].serial != serial_)
+    if (!step_.world.host().bodies.dynamic(body.index)) return {};
+    known_force_.resize(step_.world.host().bodies.size());
+    if (known_force_[body.index].serial != step_.serial)
     {
-        const std::uint32_t group = groups_.of(body);
-        GroupSystem& system = system_for(std::span(&group, 1), {});
-        system.begin(frame_.step, frame_.step, {}, nullptr);
+        const std::uint32_t group = step_.groups.of(body);
+        GroupSystem& system = motion_.system_for(std::span(&group, 1), {});
+        system.begin(step_.frame.step, step_.frame.step, {}, nullptr);
         system.evaluate_here();
         note_forces(system);
     }
     return known_force_[body.index].force;
 }
 
-void Stepper::correct_positions()
+void PositionCorrection::correct_positions()
 {
-    for (std::size_t i = 0; i < found_.size();)
+    const std::span<const FoundContact> found = contacts_.found();
+    for (std::size_t i = 0, end = 0; i < found.size(); i = end)
     {
         double deepest = 0;
-        std::size_t end = i;
-        for (; end < found_.size() && same_pair(found_[end], found_[i]); ++end)
-            deepest = std::max(deepest, found_[end].contact.depth - found_[end].contact.rest_depth);
-        const Contact& c = found_[i].contact;
-        const PairState* pair = cache_.find(detectors_[found_[i].detector].component, c.a, c.b, world_);
-        if (pair && pair->resting && !detectors_[found_[i].detector].by_rows && deepest > overlap_tolerance(c.a, c.b)) part(i, end);
-        i = end;
+        for (end = i; end < found.size() && same_pair(found[end], found[i]); ++end)
+            deepest = std::max(deepest, found[end].contact.depth - found[end].contact.rest_depth);
+        const PairState* pair = contacts_.find_pair(found[i]);
+        const bool by_impulses = pair && pair->resting && !contacts_.detectors()[found[i].detector].by_rows;
+        if (by_impulses && deepest > contacts_.overlap_tolerance(pair->a, pair->b)) part(found.subspan(i, end - i));
+    }
+}
+
+/// How much of the overlap that a spring left behind stays after a step: it shrinks at a twentieth of the speed that falling
+/// through it would give,
+///   d' = -max(sqrt(a d) / 20, d / 2 s),   a: what presses the pair together over its mass,
+/// and no further than it is. All contacts of a pair shrink alike, so that a face stays as it lies.
+double PositionCorrection::share_of_overlap_left(const PairState& pair, std::span<const Eased> eased) const
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    double deepest = 0, press = 0;
+    for (std::uint32_t k = 0; k < pair.count; ++k)
+    {
+        deepest = std::max(deepest, pair.contacts[k].rest_depth);
+        press += std::max(0.0, dot(pair.contacts[k].impulse, pair.normal)) / step_.frame.step;
+    }
+    const double a = press * (bodies.inverse_mass[pair.a.index] + bodies.inverse_mass[pair.b.index]);
+    const double left = deepest - step_.frame.step * std::max(0.05 * std::sqrt(a * deepest), 0.5 * deepest);
+    if (left < contacts_.overlap_tolerance(pair.a, pair.b)) return 0;
+    double share = left / deepest;
+    for (const Eased& e : eased) share = std::min(share, std::max(0.0, e.found->contact.depth / e.known->rest_depth));
+    return share;
+}
+
+void PositionCorrection::ease_pair(PairState& pair)
+{
+    std::vector<Eased>& eased = eased_;
+    eased.clear();
+    for (std::uint32_t k = 0; k < pair.count; ++k)
+    {
+        KnownContact& known = pair.contacts[k];
+        if (!(known.rest_depth > 0)) continue;
+        const auto is_it = [&](const FoundContact& f) { return contacts_.is_of_pair(f, pair) && f.contact.feature == known.feature; };
+        const auto found = std::find_if(contacts_.found().begin(), contacts_.found().end(), is_it);
+        if (found == contacts_.found().end())
+            known.rest_depth = 0;
+        else
+            eased.push_back({&known, &*found});
+    }
+    if (eased.empty()) return;
+    const double share = share_of_overlap_left(pair, eased);
+    Bodies& bodies = step_.world.host().bodies;
+    Nudge a(bodies, pair.a.index), b(bodies, pair.b.index);
+    for (const Eased& e : eased) e.known->rest_depth *= share;
+    for (int sweep = 0; sweep < kEasingSweeps; ++sweep)
+        for (const Eased& e : eased)
+        {
+            const Contact& c = e.found->contact;
+            const double excess = c.depth - e.known->rest_depth - dot(b.at(c.point) - a.at(c.point), c.normal);
+            const double mobility = a.mobility(c.point, c.normal) + b.mobility(c.point, c.normal);
+            if (!(mobility > 0)) continue;
+            const Vec3 push = c.normal * (excess / mobility);
+            b.push(c.point, push), a.push(c.point, -push);
+        }
+    a.apply(bodies, pair.a.index), b.apply(bodies, pair.b.index);
+    // Found where it was: the correction of other overlaps has nothing to add.
+    for (const Eased& e : eased) e.found->contact.rest_depth = e.found->contact.depth;
+}
+
+void PositionCorrection::ease_overlaps()
+{
+    for (PairState& pair : contacts_.cache().pairs())
+    {
+        const auto eases = [](const KnownContact& k) { return k.rest_depth > 0; };
+        if (std::any_of(pair.contacts.begin(), pair.contacts.begin() + pair.count, eases)) ease_pair(pair);
     }
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "plab/stage.h"
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 
 namespace plab::simulation
 {

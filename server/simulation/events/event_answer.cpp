@@ -33,21 +33,21 @@ std::vector<double> values_of(const Contact& c, const Vec3& impulse)
 /// than its solver.
 void EventLocator::advance_group(std::uint32_t g, double time, WorkBook book, bool trial)
 {
-    s_->rewind(g);
+    motion_.rewind(g);
     const std::span one(&g, 1);
-    if (rests_[g] == 0 && s_->groups_.all[g].upstream.empty() && !touches_by_force_)
-        s_->advance_smooth(one, {}, s_->segment_begin_[g], time, book, trial);
+    if (rests_[g] == 0 && step_.groups.all[g].upstream.empty() && !touches_by_force_)
+        motion_.advance_smooth(one, {}, motion_.segment_begin(g), time, book, trial);
     else
-        s_->advance(one, s_->segment_begin_[g], time, book, trial);
+        advance_.advance(one, motion_.segment_begin(g), time, book, trial);
 }
 
 void EventLocator::advance_scope(double time, WorkBook book, bool trial)
 {
-    const std::uint64_t swept = s_->report_.swept_rows;
+    const double before = sweeps_and_looks();
     move_scope(time, book, trial);
     const bool stands = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
-    if (stands) budget_.spend(WorkBudget::kGoneThrough * static_cast<double>(s_->groups_.all.size() + s_->cache_.pairs().size()));
-    budget_.spend(static_cast<double>(scope_.size()) + WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows - swept));
+    if (stands) budget_.spend(WorkBudget::kGoneThrough * static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()));
+    budget_.spend(static_cast<double>(scope_.size()) + sweeps_and_looks() - before);
 }
 
 void EventLocator::move_scope(double time, WorkBook book, bool trial)
@@ -55,33 +55,34 @@ void EventLocator::move_scope(double time, WorkBook book, bool trial)
     // Pieces that began together advance together; usually all of them did.
     bool together = true, rests = false;
     for (const std::uint32_t g : scope_)
-        together = together && s_->segment_begin_[g] == s_->segment_begin_[scope_.front()], rests = rests || rests_[g] != 0;
+        together = together && motion_.segment_begin(g) == motion_.segment_begin(scope_.front()), rests = rests || rests_[g] != 0;
     if (any_certifies_ && !(together && rests))
     {
         for (const std::uint32_t g : scope_) advance_group(g, time, book, trial);
         return;
     }
-    for (const std::uint32_t g : scope_) s_->rewind(g);
+    for (const std::uint32_t g : scope_) motion_.rewind(g);
     if (together)
-        s_->advance(scope_, s_->segment_begin_[scope_.front()], time, book, trial);
+        advance_.advance(scope_, motion_.segment_begin(scope_.front()), time, book, trial);
     else
-        for (const std::uint32_t& g : scope_) s_->advance(std::span(&g, 1), s_->segment_begin_[g], time, book, trial);
+        for (const std::uint32_t& g : scope_) advance_.advance(std::span(&g, 1), motion_.segment_begin(g), time, book, trial);
 }
 
 /// Puts the scope where it is at `time`; both ends of a piece are known.
 void EventLocator::advance_groups_to(double time)
 {
-    if (time == s_->frame_.step)
+    if (time == step_.frame.step)
     {
-        for (const std::uint32_t g : scope_) s_->restore_end(g);
+        for (const std::uint32_t g : scope_) motion_.restore_end(g);
         return;
     }
-    const auto begins = [&](std::uint32_t g) {
-        return s_->segment_begin_[g] == time && s_->groups_.all[g].prescribed_bodies.empty() &&
-               s_->groups_.all[g].prescribed_shafts.empty();
+    const auto begins = [&](std::uint32_t g)
+    {
+        return motion_.segment_begin(g) == time && step_.groups.all[g].prescribed_bodies.empty() &&
+               step_.groups.all[g].prescribed_shafts.empty();
     };
     if (!std::all_of(scope_.begin(), scope_.end(), begins)) return advance_scope(time, {}, true);
-    for (const std::uint32_t g : scope_) s_->rewind(g);
+    for (const std::uint32_t g : scope_) motion_.rewind(g);
 }
 
 /// From `time`, where a new piece begins, to the end of the step.
@@ -89,17 +90,18 @@ void EventLocator::go_on(double time)
 {
     if (!any_certifies_)
     {
-        s_->advance(scope_, time, s_->frame_.step, {&s_->work_, 1}, false);
-        budget_.spend(static_cast<double>(scope_.size()));
+        const double before = sweeps_and_looks();
+        advance_.advance(scope_, time, step_.frame.step, step_.book(), false);
+        budget_.spend(static_cast<double>(scope_.size()) + sweeps_and_looks() - before);
         return;
     }
-    advance_scope(s_->frame_.step, {&s_->work_, 1}, false);
+    advance_scope(step_.frame.step, step_.book(), false);
 }
 
 /// m: of where two bodies are.
 double EventLocator::rounding_of(Ref a, Ref b) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     return kRounding * (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]));
 }
 
@@ -108,13 +110,13 @@ void EventLocator::look_from_the_clear_side(Candidate& candidate)
     // The contacts were seen a rounding error later: see them where the answer will act, pushed together by no more
     // than the way from there, so that arms and normals fit the state.
     double closing = 0;
-    for (const FoundContact& f : candidate.contacts) closing = std::max(closing, std::fabs(s_->normal_velocity(f.contact)));
+    for (const FoundContact& f : candidate.contacts) closing = std::max(closing, std::fabs(contacts_.normal_velocity(f.contact)));
     const double margin = 4 * closing * candidate.bracket + rounding_of(candidate.a, candidate.b);
     const StandingPair pair{candidate.a, candidate.b, candidate.contacts.front().contact.normal * -margin};
     seen_.clear();
-    s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
+    contacts_.detect(contacts_.detectors()[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
     if (seen_.empty()) return;
-    sort_contacts(seen_, s_->world_);
+    sort_contacts(seen_, step_.world);
     candidate.contacts = seen_;
 }
 
@@ -122,14 +124,14 @@ void EventLocator::look_from_the_clear_side(Candidate& candidate)
 void EventLocator::complete(Candidate& candidate)
 {
     if (!candidate.certified) return;
-    const Detector& detector = s_->detectors_[candidate.detector];
+    const Detector& detector = contacts_.detectors()[candidate.detector];
     if (!detector.responds) scope_of_pair(candidate), advance_groups_to(candidate.time);
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const GapQuery q = measure(candidate, candidate.time);
     const double closing = std::fabs(dot(bodies.velocity_at(q.b.index, q.point_b) - bodies.velocity_at(q.a.index, q.point_a), q.normal));
     // Corners that land a rounding error later belong to the same impact.
     const double margin =
-        std::max(0.0, q.gap) * 2 + 4 * closing * candidate.bracket + rounding_of(q.a, q.b) + closing * 0x1p-44 * s_->frame_.step;
+        std::max(0.0, q.gap) * 2 + 4 * closing * candidate.bracket + rounding_of(q.a, q.b) + closing * 0x1p-44 * step_.frame.step;
     candidate.contacts.clear();
     detect_pair(candidate, q.normal * -margin, candidate.contacts);
     if (candidate.contacts.empty())
@@ -140,20 +142,20 @@ void EventLocator::complete(Candidate& candidate)
         only.contact.point = (q.point_a + q.point_b) * 0.5, only.contact.depth = -q.gap;
     }
     if (!detector.responds)
-        for (const std::uint32_t g : scope_) s_->restore_end(g);
+        for (const std::uint32_t g : scope_) motion_.restore_end(g);
 }
 
 void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double at)
 {
     // Normal acceleration of the contact points under the forces alone; it tells bouncing from coming to rest.
     accelerated_.clear();
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     for (const std::uint32_t g : scope_)
     {
-        if (s_->groups_.all[g].bodies.empty()) continue;
-        GroupSystem& system = s_->system_for(std::span(&g, 1), {});
-        if (s_->forces_.any()) s_->forces_.attach(system, std::span(&g, 1));
-        system.begin(at, s_->frame_.step, {}, nullptr);
+        if (step_.groups.all[g].bodies.empty()) continue;
+        GroupSystem& system = motion_.system_for(std::span(&g, 1), {});
+        if (forces_.any()) forces_.attach(system, std::span(&g, 1));
+        system.begin(at, step_.frame.step, {}, nullptr);
         system.evaluate_here();
         system.set_extra_forces(nullptr);
         for (std::size_t i = 0; i < system.bodies().size(); ++i)
@@ -184,17 +186,17 @@ void EventLocator::announce_rest(const FoundContact& f, PairState& pair)
     pair.resting = true;
     pair.bounces = {};
     for (const Ref r : {pair.a, pair.b})
-        if (const std::uint32_t g = s_->groups_.of(r); g != kNoIndex) rests_[g] = 1;
-    Event e = s_->contact_event("contact.rest", pair, rest_time_);
+        if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) rests_[g] = 1;
+    Event e = contacts_.contact_event("contact.rest", pair, rest_time_);
     e.values = values_of(f.contact, f.contact.impulse);
-    s_->emit(std::move(e));
+    step_.emit(std::move(e));
 }
 
 void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>& contacts, double time)
 {
-    const Detector& detector = s_->detectors_[candidate.detector];
+    const Detector& detector = contacts_.detectors()[candidate.detector];
     bool added = false;
-    PairState& pair = s_->cache_.get_or_add(detector.component, candidate.a, candidate.b, s_->world_, s_->frame_.tick, added);
+    PairState& pair = contacts_.cache().get_or_add(detector.component, candidate.a, candidate.b, step_.world, step_.frame.tick, added);
     pair.overlapping = !detector.responds || candidate.at_end;
     for (std::size_t i = 0; i < contacts.size(); ++i)
     {
@@ -203,17 +205,17 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
         if (std::exchange(added, false))
         {
             // Impulses are told by the impacts that follow.
-            Event begin = s_->contact_event("contact.begin", pair, time);
+            Event begin = contacts_.contact_event("contact.begin", pair, time);
             begin.values = values_of(f.contact, {});
-            s_->emit(std::move(begin));
+            step_.emit(std::move(begin));
         }
         pair.normal = f.contact.normal;
-        (void)s_->cache_.contact_of(pair, f.contact.feature);
+        (void)contacts_.cache().contact_of(pair, f.contact.feature);
         if (!detector.responds) continue;
-        Event e = s_->contact_event("contact.impact", pair, time);
+        Event e = contacts_.contact_event("contact.impact", pair, time);
         e.values = values_of(f.contact, f.contact.impulse);
-        s_->emit(std::move(e));
-        if (paradox_[i]) s_->tell_paradox(f.contact, pair, time);
+        step_.emit(std::move(e));
+        if (paradox_[i]) contacts_.tell_paradox(f.contact, pair, time);
         announce_rest(f, pair);
     }
 }
@@ -227,8 +229,8 @@ void EventLocator::note_paradoxes()
     {
         const Contact& c = f.contact;
         const double rounding = kStill * speeds_at(c.a, c.point, c.b, c.point);
-        const bool pressed = s_->normal_velocity(c) >= 2 * c.normal_acceleration * s_->frame_.step - rounding;
-        paradox_.push_back(pressed && s_->is_paradox(f.contact) ? 1 : 0);
+        const bool pressed = contacts_.normal_velocity(c) >= 2 * c.normal_acceleration * step_.frame.step - rounding;
+        paradox_.push_back(pressed && contacts_.is_paradox(f.contact) ? 1 : 0);
     }
 }
 
@@ -236,14 +238,15 @@ void EventLocator::calm(std::vector<FoundContact>& contacts) const
 {
     // Answered late, a resting body seems to arrive with the speed that it gathered in up to two steps: that is no bounce.
     for (FoundContact& f : contacts)
-        if (f.contact.normal_acceleration < 0 && s_->normal_velocity(f.contact) >= 2 * f.contact.normal_acceleration * s_->frame_.step)
+        if (f.contact.normal_acceleration < 0 &&
+            contacts_.normal_velocity(f.contact) >= 2 * f.contact.normal_acceleration * step_.frame.step)
             f.contact.restitution = 0;
 }
 
 void EventLocator::keep_if_it_cannot_leave(Contact& c) const
 {
     // It overlapped from the start: a rebound that does not clear the overlap would be answered again and again.
-    const double speed = s_->normal_velocity(c);
+    const double speed = contacts_.normal_velocity(c);
     const double way = std::max(c.depth, overlap_tolerance(c.a, c.b));
     if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * way)) c.resting = true;
 }
@@ -253,17 +256,17 @@ void EventLocator::keep_if_it_cannot_leave(Contact& c) const
 bool EventLocator::stop_bouncing(const Candidate& candidate, double time, double& ends)
 {
     ends = time;
-    const Detector& detector = s_->detectors_[candidate.detector];
-    PairState* pair = s_->cache_.find(detector.component, candidate.a, candidate.b, s_->world_);
+    const Detector& detector = contacts_.detectors()[candidate.detector];
+    PairState* pair = contacts_.cache().find(detector.component, candidate.a, candidate.b, step_.world);
     if (!pair) return false;
-    if (pair->impacts_tick != s_->frame_.tick) pair->impacts = 0, pair->impacts_tick = s_->frame_.tick;
+    if (pair->impacts_tick != step_.frame.tick) pair->impacts = 0, pair->impacts_tick = step_.frame.tick;
     if (++pair->impacts > kMostOfHeldPair && stands_)
     {
         if (pair->impacts == kMostOfHeldPair + 1)
         {
-            Event e = s_->contact_event("contact.too_many", *pair, time);
+            Event e = contacts_.contact_event("contact.too_many", *pair, time);
             e.message = "more than " + std::to_string(kMostOfHeldPair) + " impacts of one pair in one step; it stops bouncing";
-            s_->emit(std::move(e));
+            step_.emit(std::move(e));
         }
         return true;
     }
@@ -273,24 +276,24 @@ bool EventLocator::stop_bouncing(const Candidate& candidate, double time, double
     for (const FoundContact& f : impact_)
     {
         if (f.detector != candidate.detector || f.contact.a != candidate.a || f.contact.b != candidate.b) continue;
-        const double closing = -s_->normal_velocity(f.contact);
+        const double closing = -contacts_.normal_velocity(f.contact);
         if (!(f.contact.normal_acceleration < 0) || !(closing > 0)) return false;
         next = std::max(next, 2 * f.contact.restitution * closing / -f.contact.normal_acceleration);
         ratio = std::max(ratio, f.contact.restitution);
     }
     const std::optional<double> rest = rest_of_bounces(pair->bounces, next, ratio);
-    if (!rest || time + *rest > s_->frame_.start_time + s_->frame_.step) return false;
+    if (!rest || time + *rest > step_.frame.start_time + step_.frame.step) return false;
     ends = time + *rest;
-    Event e = s_->contact_event("contact.zeno", *pair, ends);
+    Event e = contacts_.contact_event("contact.zeno", *pair, ends);
     e.values = {next, ratio};
-    s_->emit(std::move(e));
+    step_.emit(std::move(e));
     return true;
 }
 
 void EventLocator::answer()
 {
     const Candidate& first = candidates_[chosen_.front()];
-    const double time = s_->frame_.start_time + first.time;
+    const double time = step_.frame.start_time + first.time;
     const bool at_end = first.at_end;
     impact_.clear();
     for (const std::uint32_t slot : chosen_)
@@ -303,7 +306,7 @@ void EventLocator::answer()
     const std::size_t own = impact_.size();
     seen_.clear();
     stands_ = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
-    if (stands_) s_->touching_pairs_of(scope_, seen_);
+    if (stands_) contacts_.touching_pairs_of(scope_, seen_);
     const auto is_chosen = [&](const FoundContact& f)
     {
         return std::any_of(chosen_.begin(), chosen_.end(),
@@ -311,7 +314,7 @@ void EventLocator::answer()
     };
     for (FoundContact& f : seen_)
         if (!is_chosen(f)) f.contact.impulse = {}, impact_.push_back(f);
-    for (std::size_t i = 0; i < own; ++i) s_->fill_material(impact_[i]), impact_[i].contact.impulse = {};
+    for (std::size_t i = 0; i < own; ++i) contacts_.fill_material(impact_[i]), impact_[i].contact.impulse = {};
     rate_of_approach(impact_, first.time);
     if (at_end) calm(impact_);
     stopped_.clear();
@@ -325,7 +328,7 @@ void EventLocator::answer()
             Contact& c = impact_[i].contact;
             if (c.a != candidates_[slot].a || c.b != candidates_[slot].b) continue;
             c.restitution = 0;
-            stays = std::max(stays, std::fabs(s_->normal_velocity(c)) + std::fabs(c.normal_acceleration) * s_->frame_.step);
+            stays = std::max(stays, std::fabs(contacts_.normal_velocity(c)) + std::fabs(c.normal_acceleration) * step_.frame.step);
         }
         stopped_.push_back({slot, ends, kStays * stays});
     }
@@ -334,7 +337,7 @@ void EventLocator::answer()
     if (first.stuck)
         for (std::size_t i = 0; i < own; ++i) keep_if_it_cannot_leave(impact_[i].contact);
     for (const std::uint32_t slot : chosen_) record_answered(candidates_[slot], time);
-    ++s_->report_.events;
+    ++step_.report.events;
 }
 
 /// Tells what became of a chosen pair, which may have bounced for the last time.
@@ -345,7 +348,7 @@ void EventLocator::record_answered(Candidate& candidate, double time)
     {
         if (stopped.slot != slot) continue;
         for (FoundContact& f : impact_)
-            if (f.contact.a == candidate.a && f.contact.b == candidate.b && s_->normal_velocity(f.contact) <= stopped.stays)
+            if (f.contact.a == candidate.a && f.contact.b == candidate.b && contacts_.normal_velocity(f.contact) <= stopped.stays)
                 f.contact.resting = true;
         rest_time_ = stopped.ends;
         record(candidate, impact_, time);

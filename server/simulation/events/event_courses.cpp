@@ -1,6 +1,5 @@
 // Pairs that may meet anywhere inside their present smooth pieces: courses of bodies, the broad look, the first bounds.
 #include <algorithm>
-#include <cmath>
 
 #include "simulation/events/event_locator.h"
 
@@ -9,9 +8,9 @@ namespace plab::simulation
 
 void EventLocator::begin_courses()
 {
-    const world::HostTables& host = s_->world_.host();
+    const world::HostTables& host = step_.world.host();
     const Bodies& bodies = host.bodies;
-    const double step = s_->frame_.step;
+    const double step = step_.frame.step;
     // The stepper makes a new locator when anything but motion has changed.
     if (courses_.size() != bodies.size())
     {
@@ -28,9 +27,9 @@ void EventLocator::begin_courses()
             reach_[b] = 0;
             continue;
         }
-        s_->start_.restore_body(s_->world_.host(), b);
+        motion_.start().restore_body(step_.world.host(), b);
         const BodyState first = BodyState::of(bodies, b);
-        s_->end_.restore_body(s_->world_.host(), b);
+        motion_.end().restore_body(step_.world.host(), b);
         courses_[b] =
             bodies.dynamic(b) ? course_of(bodies, b, extents_[b], 0, first, step, last) : steady_course(extents_[b], 0, first, step, last);
         reach_[b] = reach_of(courses_[b], extents_[b]);
@@ -40,51 +39,39 @@ void EventLocator::begin_courses()
 void EventLocator::start_pieces(double time)
 {
     for (const std::uint32_t g : scope_)
-        for (const std::uint32_t b : s_->groups_.all[g].bodies)
-            courses_[b].begin = time, courses_[b].first = BodyState::of(s_->world_.host().bodies, b);
+        for (const std::uint32_t b : step_.groups.all[g].bodies)
+            courses_[b].begin = time, courses_[b].first = BodyState::of(step_.world.host().bodies, b);
 }
 
 void EventLocator::end_pieces()
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     for (const std::uint32_t g : scope_)
-        for (const std::uint32_t b : s_->groups_.all[g].bodies)
+        for (const std::uint32_t b : step_.groups.all[g].bodies)
         {
             const Course& c = courses_[b];
-            courses_[b] = course_of(bodies, b, extents_[b], c.begin, c.first, s_->frame_.step, BodyState::of(bodies, b));
+            courses_[b] = course_of(bodies, b, extents_[b], c.begin, c.first, step_.frame.step, BodyState::of(bodies, b));
             reach_[b] = reach_of(courses_[b], extents_[b]);
         }
 }
 
 void EventLocator::find_near(bool only_touched)
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const auto activate = [&](std::uint8_t flag)
     {
         for (const std::uint32_t g : scope_)
             if (touched_[g] != 0)
-                for (const std::uint32_t b : s_->groups_.all[g].bodies) active_[b] = flag;
+                for (const std::uint32_t b : step_.groups.all[g].bodies) active_[b] = flag;
     };
     if (only_touched) activate(1);
-    for (std::uint32_t d = 0; d < s_->detectors_.size(); ++d)
+    for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d)
     {
-        const Detector& detector = s_->detectors_[d];
+        const Detector& detector = contacts_.detectors()[d];
         if (!detector.certifies) continue;
-        world::Table& table = *s_->world_.tables()[detector.table];
-        StepContext context;
-        context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick, context.events = s_;
-        context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-        if (only_touched) context.active_bodies = active_;
         near_.clear();
-        NearCollector sink(s_->world_, reach_, near_);
-        PhaseCall call;
-        call.context = &context, call.rows = Rows(&detector.row, 1);
-        call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.contacts = &sink;
-        s_->meter_.enter(s_->meter_.of_component(detector.component));
-        s_->meter_.ran(detector.table, Phase::Detect);
-        const auto done = detector.command->run(call, table.rows());
-        if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
-        s_->meter_.leave();
+        NearCollector sink(step_.world, reach_, near_);
+        contacts_.look(detector, sink, only_touched ? std::span<const std::uint8_t>(active_) : std::span<const std::uint8_t>());
         budget_.spend(WorkBudget::kListedPair * static_cast<double>(near_.size()));
         for (const NearCollector::Pair& pair : near_)
             if (bodies.dynamic(pair.a.index) || bodies.dynamic(pair.b.index)) consider_near(d, pair.a, pair.b);
@@ -95,26 +82,15 @@ void EventLocator::find_near(bool only_touched)
 /// The contacts of one pair, as if b were `shift` further. The detection knows the bodies from the look at all.
 void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, std::vector<FoundContact>& found)
 {
-    const Detector& detector = s_->detectors_[candidate.detector];
-    world::Table& table = *s_->world_.tables()[detector.table];
+    const Detector& detector = contacts_.detectors()[candidate.detector];
     const StandingPair pair{candidate.a, candidate.b, shift};
     active_[candidate.a.index] = active_[candidate.b.index] = 1;
-    StepContext context;
-    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick, context.events = s_;
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    context.active_bodies = active_;
-    ContactCollector sink(s_->world_, found);
+    ContactCollector sink(step_.world, found);
     sink.look_for(candidate.detector, std::span(&pair, 1), true);
-    PhaseCall call;
-    call.context = &context, call.rows = Rows(&detector.row, 1);
-    call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.contacts = &sink;
-    s_->meter_.enter(s_->meter_.of_component(detector.component));
-    s_->meter_.ran(detector.table, Phase::Detect);
-    const auto done = detector.command->run(call, table.rows());
-    if (!done) context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
-    s_->meter_.leave();
+    contacts_.look(detector, sink, active_);
+    step_.report.further_pairs += sink.further_pairs();
     active_[candidate.a.index] = active_[candidate.b.index] = 0;
-    sort_contacts(found, s_->world_);
+    sort_contacts(found, step_.world);
 }
 
 void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
@@ -122,10 +98,10 @@ void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
     // Rounding, where a course starts again inside the step, is far below this share of what moves a body.
     constexpr double kExact = 0x1p-32;
     const Course &ca = courses_[a.index], &cb = courses_[b.index];
-    const double begin = std::max(ca.begin, cb.begin), left = s_->frame_.step - begin;
+    const double begin = std::max(ca.begin, cb.begin), left = step_.frame.step - begin;
     if (!(left > 0)) return;
-    const Bodies& bodies = s_->world_.host().bodies;
-    const Shapes& shapes = s_->world_.host().shapes;
+    const Bodies& bodies = step_.world.host().bodies;
+    const Shapes& shapes = step_.world.host().shapes;
     double clear = 0;
     // Where one began earlier, it is where its course says, unless its forces change.
     const auto is_exact = [&](const Course& c)
@@ -142,8 +118,8 @@ void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
         if (known(a.index, ca) && known(b.index, cb)) clear = std::max(clear, clearance.of_half_space());
         if (clear >= left) return;
     }
-    const Detector& by = s_->detectors_[detector];
-    const PairState* pair = s_->cache_.find(by.component, a, b, s_->world_);
+    const Detector& by = contacts_.detectors()[detector];
+    const PairState* pair = contacts_.cache().find(by.component, a, b, step_.world);
     if (pair && (pair->resting || !by.responds)) return;
     const std::uint32_t slot = new_slot();
     Candidate& c = candidates_[slot];
@@ -158,15 +134,15 @@ void EventLocator::look_at_known_pairs(std::vector<FoundContact>& found)
 {
     // Everything else is known to be apart.
     found.clear();
-    for (std::uint32_t d = 0; d < s_->detectors_.size(); ++d)
+    for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d)
     {
         standing_.clear();
-        for (const PairState& p : s_->cache_.pairs())
-            if (p.detector == s_->detectors_[d].component)
-                standing_.push_back({p.a, p.b, p.resting ? p.normal * -s_->standing_margin(p) : Vec3{}});
-        if (!standing_.empty()) s_->detect(s_->detectors_[d], d, standing_, true, found);
+        for (const PairState& p : contacts_.cache().pairs())
+            if (p.detector == contacts_.detectors()[d].component)
+                standing_.push_back({p.a, p.b, p.resting ? p.normal * -contacts_.standing_margin(p) : Vec3{}});
+        if (!standing_.empty()) contacts_.detect(contacts_.detectors()[d], d, standing_, true, found);
     }
-    sort_contacts(found, s_->world_);
+    sort_contacts(found, step_.world);
 }
 
 }  // namespace plab::simulation

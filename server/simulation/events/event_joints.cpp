@@ -5,7 +5,6 @@
 //
 // Source: F. Pfeiffer, C. Glocker, "Multibody dynamics with unilateral contacts", 1996, ch. 8.
 #include <algorithm>
-#include <cmath>
 
 #include "simulation/events/event_locator.h"
 
@@ -28,10 +27,10 @@ bool EventLocator::find_jointed()
     for (const FoundContact& f : impact_)
         for (const Ref r : {f.contact.a, f.contact.b})
         {
-            const std::uint32_t g = s_->groups_.of(r);
-            if (g == kNoIndex || !s_->world_.host().bodies.dynamic(r.index)) continue;
+            const std::uint32_t g = step_.groups.of(r);
+            if (g == kNoIndex || !step_.world.host().bodies.dynamic(r.index)) continue;
             j.bodies.push_back(r.index);
-            if (s_->groups_.all[g].rows.empty()) continue;
+            if (step_.groups.all[g].rows.empty()) continue;
             j.groups.push_back(g);
         }
     if (j.groups.empty()) return false;
@@ -43,7 +42,7 @@ bool EventLocator::find_jointed()
     unique(j.groups);
     for (const std::uint32_t g : j.groups)
     {
-        const Group& group = s_->groups_.all[g];
+        const Group& group = step_.groups.all[g];
         j.bodies.insert(j.bodies.end(), group.bodies.begin(), group.bodies.end());
         j.shafts.insert(j.shafts.end(), group.shafts.begin(), group.shafts.end());
     }
@@ -55,14 +54,14 @@ bool EventLocator::find_jointed()
 void EventLocator::note_who_rests()
 {
     Jointed& j = jointed_;
-    Bodies& bodies = s_->world_.host().bodies;
+    Bodies& bodies = step_.world.host().bodies;
     j.velocity.clear(), j.spin.clear(), j.momentum.clear();
     for (const std::uint32_t b : j.bodies)
     {
         j.velocity.push_back(bodies.velocity[b]), j.spin.push_back(bodies.angular_velocity[b]);
         j.momentum.push_back(bodies.angular_momentum[b]);
     }
-    s_->respond(impact_, ImpactMode::Impact, 0, {});
+    contacts_.respond(impact_, ImpactMode::Impact, 0, {});
     for (std::size_t i = 0; i < j.bodies.size(); ++i)
     {
         const std::uint32_t b = j.bodies[i];
@@ -80,20 +79,20 @@ void EventLocator::note_who_rests()
 void EventLocator::join(double time)
 {
     for (const std::uint32_t g : jointed_.groups)
-        s_->system_for(std::span(&g, 1), {}).begin(time, s_->frame_.step, {&s_->work_, 1}, nullptr);
+        motion_.system_for(std::span(&g, 1), {}).begin(time, step_.frame.step, step_.book(), nullptr);
 }
 
 double EventLocator::closing() const
 {
     double most = 0;
-    for (const FoundContact& f : impact_) most = std::max(most, -s_->normal_velocity(f.contact));
+    for (const FoundContact& f : impact_) most = std::max(most, -contacts_.normal_velocity(f.contact));
     return most;
 }
 
 void EventLocator::compress_once(double time)
 {
     for (FoundContact& f : impact_) f.contact.impulse = {};
-    s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
+    contacts_.respond(impact_, ImpactMode::Impact, 0, step_.book());
     jointed_.last.clear();
     for (std::size_t i = 0; i < impact_.size(); ++i)
     {
@@ -106,7 +105,7 @@ void EventLocator::compress_once(double time)
 /// Adds `share` times the last impulses, or of those so far what is normal, with friction where they slide.
 void EventLocator::add_impulses(double share, bool of_all)
 {
-    Bodies& bodies = s_->world_.host().bodies;
+    Bodies& bodies = step_.world.host().bodies;
     for (std::size_t i = 0; i < impact_.size(); ++i)
     {
         const Contact& c = impact_[i].contact;
@@ -124,7 +123,7 @@ void EventLocator::add_impulses(double share, bool of_all)
         if (impulse == Vec3{}) continue;
         if (bodies.dynamic(c.a.index)) bodies.apply_impulse(c.a.index, -impulse, c.point);
         if (bodies.dynamic(c.b.index)) bodies.apply_impulse(c.b.index, impulse, c.point);
-        s_->work_[s_->detectors_[impact_[i].detector].response] += 0.5 * dot(impulse, before + slip());
+        step_.work[contacts_.detectors()[impact_[i].detector].response] += 0.5 * dot(impulse, before + slip());
         if (!of_all) jointed_.impulse[i] += impulse;
     }
 }
@@ -157,7 +156,7 @@ void EventLocator::respond(double time)
 {
     if (!find_jointed())
     {
-        s_->respond(impact_, ImpactMode::Impact, 0, {&s_->work_, 1});
+        contacts_.respond(impact_, ImpactMode::Impact, 0, step_.book());
         return;
     }
     note_who_rests();

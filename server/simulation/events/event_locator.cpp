@@ -40,15 +40,15 @@ std::uint64_t EventLocator::version_of(Ref a, Ref b) const
 {
     std::uint64_t sum = 0;
     for (const Ref r : {a, b})
-        if (const std::uint32_t g = s_->groups_.of(r); g != kNoIndex) sum += versions_[g];
+        if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) sum += versions_[g];
     return sum;
 }
 
 void EventLocator::push(std::uint32_t slot)
 {
     const Candidate& c = candidates_[slot];
-    const world::World& world = s_->world_;
-    queue_.push_back({c.time, world.rank(s_->detectors_[c.detector].component), world.rank(c.a), world.rank(c.b), slot});
+    const world::World& world = step_.world;
+    queue_.push_back({c.time, world.rank(contacts_.detectors()[c.detector].component), world.rank(c.a), world.rank(c.b), slot});
     std::push_heap(queue_.begin(), queue_.end());
 }
 
@@ -92,15 +92,15 @@ bool EventLocator::acts(const Detector& detector, const PairState* pair, bool ap
 void EventLocator::consider(const std::vector<FoundContact>& found, std::size_t begin, std::size_t end)
 {
     const FoundContact& first = found[begin];
-    const Detector& detector = s_->detectors_[first.detector];
+    const Detector& detector = contacts_.detectors()[first.detector];
     if (detector.persists() || (detector.certifies && !answers_at_end_)) return;
     bool overlaps = false, approaching = false;
     for (std::size_t i = begin; i < end; ++i)
     {
         overlaps = overlaps || found[i].contact.depth > 0;
-        approaching = approaching || (found[i].contact.depth > 0 && s_->normal_velocity(found[i].contact) < 0);
+        approaching = approaching || (found[i].contact.depth > 0 && contacts_.normal_velocity(found[i].contact) < 0);
     }
-    const PairState* pair = s_->cache_.find(detector.component, first.contact.a, first.contact.b, s_->world_);
+    const PairState* pair = contacts_.cache().find(detector.component, first.contact.a, first.contact.b, step_.world);
     if (!overlaps || !acts(detector, pair, approaching)) return;
     if (detector.locates && detector.responds && slides(std::span(found).subspan(begin, end - begin))) return;
     if (is_live(first.detector, first.contact.a, first.contact.b)) return;
@@ -119,7 +119,7 @@ void EventLocator::collect(const std::vector<FoundContact>& found)
     for (std::size_t i = 0; i < found.size();)
     {
         std::size_t end = i;
-        while (end < found.size() && Stepper::same_pair(found[end], found[i])) ++end;
+        while (end < found.size() && same_pair(found[end], found[i])) ++end;
         consider(found, i, end);
         i = end;
     }
@@ -127,13 +127,13 @@ void EventLocator::collect(const std::vector<FoundContact>& found)
 
 void EventLocator::note_resting_groups()
 {
-    rests_.assign(s_->groups_.all.size(), 0);
-    if (s_->forces_.any()) s_->forces_.flag_near(rests_);  // springs hold together as well
-    for (const PairState& p : s_->cache_.pairs())
+    rests_.assign(step_.groups.all.size(), 0);
+    if (forces_.any()) forces_.flag_near(rests_);  // springs hold together as well
+    for (const PairState& p : contacts_.cache().pairs())
     {
         if (!p.resting) continue;
         for (const Ref r : {p.a, p.b})
-            if (const std::uint32_t g = s_->groups_.of(r); g != kNoIndex) rests_[g] = 1;
+            if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) rests_[g] = 1;
     }
 }
 
@@ -142,11 +142,11 @@ void EventLocator::close_over_resting_pairs()
     // Whatever rests on a member goes with it: an impact passes through standing contacts.
     for (bool grown = true; grown;)
     {
-        grown = s_->forces_.any() && s_->forces_.close_over(in_scope_);
-        for (const PairState& p : s_->cache_.pairs())
+        grown = forces_.any() && forces_.close_over(in_scope_);
+        for (const PairState& p : contacts_.cache().pairs())
         {
-            const std::uint32_t ga = s_->groups_.of(p.a), gb = s_->groups_.of(p.b);
-            const Bodies& bodies = s_->world_.host().bodies;
+            const std::uint32_t ga = step_.groups.of(p.a), gb = step_.groups.of(p.b);
+            const Bodies& bodies = step_.world.host().bodies;
             if (!p.resting || !bodies.dynamic(p.a.index) || !bodies.dynamic(p.b.index) || in_scope_[ga] == in_scope_[gb]) continue;
             in_scope_[ga] = in_scope_[gb] = 1;
             grown = true;
@@ -155,15 +155,15 @@ void EventLocator::close_over_resting_pairs()
 }
 
 /// m: an overlap where a piece begins that is no more than this is closed or opened like a gap of 0.
-double EventLocator::overlap_tolerance(Ref a, Ref b) const { return s_->overlap_tolerance(a, b); }
+double EventLocator::overlap_tolerance(Ref a, Ref b) const { return contacts_.overlap_tolerance(a, b); }
 
 void EventLocator::scope_of(const Candidate& candidate, bool local)
 {
-    const std::size_t groups = s_->groups_.all.size();
+    const std::size_t groups = step_.groups.all.size();
     if (!local) in_scope_.assign(groups, 1);
     bool rests = !local;
     for (const Ref r : {candidate.a, candidate.b})
-        if (const std::uint32_t g = s_->groups_.of(r); g != kNoIndex) in_scope_[g] = 1, rests = rests || rests_[g] != 0;
+        if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) in_scope_[g] = 1, rests = rests || rests_[g] != 0;
     if (rests) close_over_resting_pairs();
 }
 
@@ -172,12 +172,12 @@ void EventLocator::scope_of(const Candidate& candidate, bool local)
 void EventLocator::take(std::uint32_t slot, double until)
 {
     chosen_.push_back(slot);
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const Ref a = candidates_[slot].a, b = candidates_[slot].b;
     for (const Ref r : {a, b})
         if (bodies.dynamic(r.index) && !std::exchange(met_[r.index].chosen, true)) met_bodies_.push_back(r.index);
     // Rows answer an island as one anyway.
-    if (!candidates_[slot].pressed || s_->detectors_[candidates_[slot].detector].by_rows) return;
+    if (!candidates_[slot].pressed || contacts_.detectors()[candidates_[slot].detector].by_rows) return;
     const auto stands = [&](Ref r) { return !bodies.dynamic(r.index) || met_[r.index].relief != Vec3{}; };
     if (stands(a) == stands(b)) return;
     const Ref stopped = stands(a) ? b : a;
@@ -204,10 +204,10 @@ void EventLocator::recall_touching(Ref stopped, double until)
 void EventLocator::gather(std::uint32_t first)
 {
     chosen_.clear();
-    const double until = candidates_[first].time + kSameTime * s_->frame_.step;
+    const double until = candidates_[first].time + kSameTime * step_.frame.step;
     take(first, until);
     const Candidate& c = candidates_[first];
-    if (c.certified && s_->detectors_[c.detector].responds && !c.stuck) gather_until(until);
+    if (c.certified && contacts_.detectors()[c.detector].responds && !c.stuck) gather_until(until);
     for (const std::uint32_t b : met_bodies_) met_[b] = {};
     met_bodies_.clear();
 }
@@ -224,7 +224,7 @@ void EventLocator::gather_until(double until)
     while (!budget_.is_spent() && !queue_.empty() && queue_.front().time <= until && pop(slot))
     {
         Candidate& x = candidates_[slot];
-        if (x.time > until || !x.certified || !s_->detectors_[x.detector].responds || !meets_chosen(slot))
+        if (x.time > until || !x.certified || !contacts_.detectors()[x.detector].responds || !meets_chosen(slot))
         {
             set_aside_.push_back(slot);
             continue;
@@ -251,17 +251,17 @@ void EventLocator::gather_until(double until)
 void EventLocator::process()
 {
     const Candidate& first = candidates_[chosen_.front()];
-    const Detector& detector = s_->detectors_[first.detector];
+    const Detector& detector = contacts_.detectors()[first.detector];
     const double time = first.time;
     rewound_ = false;
     if (!detector.responds)
     {
         // A sensor disturbs nobody: the time is known, nothing goes back.
         complete(candidates_[chosen_.front()]);
-        record(candidates_[chosen_.front()], candidates_[chosen_.front()].contacts, s_->frame_.start_time + time);
+        record(candidates_[chosen_.front()], candidates_[chosen_.front()].contacts, step_.frame.start_time + time);
         return;
     }
-    in_scope_.assign(s_->groups_.all.size(), 0);
+    in_scope_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t slot : chosen_) scope_of(candidates_[slot], true);
     touched_ = in_scope_;
     if (!detector.local && !first.at_end) scope_of(first, false);
@@ -272,22 +272,22 @@ void EventLocator::process()
     {
         // Answered where the step ends: nobody goes back, only speeds change.
         answer();
-        for (const std::uint32_t g : scope_) s_->save_end(g);
+        for (const std::uint32_t g : scope_) motion_.save_end(g);
         return;
     }
     rewound_ = true;
     // What the pieces booked up to the end of the step is taken back, then booked again in two parts.
-    advance_scope(s_->frame_.step, {&s_->work_, -1}, true);
-    advance_scope(time, {&s_->work_, 1}, true);
-    for (const std::uint32_t g : scope_) s_->segment_begin_[g] = time;
-    s_->report_.rewinds += static_cast<int>(scope_.size());
-    const std::uint64_t swept = s_->report_.swept_rows;
+    advance_scope(step_.frame.step, {&step_.work, -1}, true);
+    advance_scope(time, step_.book(), true);
+    for (const std::uint32_t g : scope_) motion_.begin_segment(g, time);
+    step_.report.rewinds += static_cast<int>(scope_.size());
+    const double before = sweeps_and_looks();
     answer();
-    budget_.spend(static_cast<double>(impact_.size()) + WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows - swept));
-    for (const std::uint32_t g : scope_) s_->save_segment(g);
+    budget_.spend(static_cast<double>(impact_.size()) + sweeps_and_looks() - before);
+    for (const std::uint32_t g : scope_) motion_.save_segment(g);
     if (any_certifies_) start_pieces(time);
-    if (time < s_->frame_.step) go_on(time);
-    for (const std::uint32_t g : scope_) s_->save_end(g), versions_[g] += touched_[g];
+    if (time < step_.frame.step) go_on(time);
+    for (const std::uint32_t g : scope_) motion_.save_end(g), versions_[g] += touched_[g];
     if (any_certifies_) end_pieces();
 }
 
@@ -296,36 +296,40 @@ void EventLocator::look_again(std::vector<FoundContact>& found)
     // Only pairs with a member that went back can have changed; the rest of what was known stands.
     if (any_certifies_) find_near(true);
     if (all_certify_) return;
-    const double before = s_->report_.further_pairs;
-    s_->detect_all(found);
-    budget_.spend(WorkBudget::kListedPair * static_cast<double>(s_->groups_.all.size() + found.size()) +
-                  WorkBudget::kFurtherPair * (s_->report_.further_pairs - before));
+    const double before = sweeps_and_looks();
+    contacts_.detect_all(found);
+    budget_.spend(WorkBudget::kListedPair * static_cast<double>(step_.groups.all.size() + found.size()) + sweeps_and_looks() - before);
     collect(found);
+}
+
+/// What responses, managers and looks took in this step so far, in units of the budget.
+double EventLocator::sweeps_and_looks() const
+{
+    return WorkBudget::kSweptRow * static_cast<double>(step_.report.swept_rows) + WorkBudget::kFurtherPair * step_.report.further_pairs;
 }
 
 /// What the step takes without locating: groups, pairs that are known, and what rows and looks took so far.
 void EventLocator::begin_budget()
 {
-    const double plain = static_cast<double>(s_->groups_.all.size() + s_->cache_.pairs().size()) +
-                         WorkBudget::kSweptRow * static_cast<double>(s_->report_.swept_rows) +
-                         WorkBudget::kFurtherPair * s_->report_.further_pairs;
+    const double plain = static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()) + sweeps_and_looks();
     double multiple = 0;
-    for (const Detector& d : s_->detectors_)
-        if (d.locates) multiple = std::max(multiple, s_->number_of(d.resolution, "max_work"));
+    for (const Detector& d : contacts_.detectors())
+        if (d.locates) multiple = std::max(multiple, contacts_.number_of(d.resolution, "max_work"));
     budget_.begin(plain, multiple > 0 ? multiple : WorkBudget::kMultiple);
 }
 
 void EventLocator::tell_too_many(std::size_t left)
 {
     Event e;
-    e.time = s_->frame_.start_time + s_->frame_.step, e.kind = "resolution.over_budget", e.severity = Severity::Warning;
-    const auto locates = std::find_if(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.locates; });
-    e.component = (locates == s_->detectors_.end() ? s_->detectors_.front() : *locates).component;
+    e.time = step_.frame.start_time + step_.frame.step, e.kind = "resolution.over_budget", e.severity = Severity::Warning;
+    const auto locates =
+        std::find_if(contacts_.detectors().begin(), contacts_.detectors().end(), [](const Detector& d) { return d.locates; });
+    e.component = (locates == contacts_.detectors().end() ? contacts_.detectors().front() : *locates).component;
     e.message = "locating events took more than a step may (" + std::to_string(std::llround(budget_.allowed())) +
-                " looks and advances) after " + std::to_string(s_->report_.events) + " impacts; " + std::to_string(left) +
+                " looks and advances) after " + std::to_string(step_.report.events) + " impacts; " + std::to_string(left) +
                 " pairs are answered at the end of the step; take shorter steps, Resolution/None, or a larger max_work";
     e.values = {static_cast<double>(left)};
-    s_->emit(std::move(e));
+    step_.emit(std::move(e));
 }
 
 /// The work of the step is spent: everybody is where the step ends, and what overlaps there is answered there, each heap of bodies at once,
@@ -335,31 +339,31 @@ void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& 
     tell_too_many(left);
     queue_.clear(), free_.clear(), chosen_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
-    s_->detect_all(found);
+    contacts_.detect_all(found);
     answers_at_end_ = true;
     collect(found);
     answers_at_end_ = false;
-    left_islands_.reset(s_->groups_.all.size());
-    const Bodies& bodies = s_->world_.host().bodies;
+    left_islands_.reset(step_.groups.all.size());
+    const Bodies& bodies = step_.world.host().bodies;
     const auto join = [&](Ref a, Ref b)
     {
-        if (bodies.dynamic(a.index) && bodies.dynamic(b.index)) left_islands_.join(s_->groups_.of(a), s_->groups_.of(b));
+        if (bodies.dynamic(a.index) && bodies.dynamic(b.index)) left_islands_.join(step_.groups.of(a), step_.groups.of(b));
     };
     for (const Entry& e : queue_) join(candidates_[e.slot].a, candidates_[e.slot].b);
-    for (const PairState& p : s_->cache_.pairs())
+    for (const PairState& p : contacts_.cache().pairs())
         if (p.resting) join(p.a, p.b);
-    const auto island_of = [&](const Candidate& c) { return left_islands_.find(s_->groups_.of(bodies.dynamic(c.a.index) ? c.a : c.b)); };
+    const auto island_of = [&](const Candidate& c) { return left_islands_.find(step_.groups.of(bodies.dynamic(c.a.index) ? c.a : c.b)); };
     std::uint32_t slot = 0;
     while (pop(slot))
     {
         chosen_.assign(1, slot);
         Candidate& first = candidates_[slot];
-        first.time = s_->frame_.step;
+        first.time = step_.frame.step;
         for (const Entry& e : queue_)
         {
             Candidate& c = candidates_[e.slot];
-            if (c.detector != first.detector || !s_->detectors_[c.detector].responds || island_of(c) != island_of(first)) continue;
-            c.time = s_->frame_.step;
+            if (c.detector != first.detector || !contacts_.detectors()[c.detector].responds || island_of(c) != island_of(first)) continue;
+            c.time = step_.frame.step;
             chosen_.push_back(e.slot);
         }
         std::sort(chosen_.begin() + 1, chosen_.end());
@@ -370,20 +374,20 @@ void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& 
 
 void EventLocator::run(std::vector<FoundContact>& found)
 {
-    const auto& detectors = s_->detectors_;
+    const auto& detectors = contacts_.detectors();
     any_certifies_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     all_certify_ = std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     touches_by_force_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_force; });
     begin_budget();
     queue_.clear(), free_.clear(), touching_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
-    versions_.assign(s_->groups_.all.size(), 0);
-    met_.assign(s_->world_.host().bodies.size(), {});
+    versions_.assign(step_.groups.all.size(), 0);
+    met_.assign(step_.world.host().bodies.size(), {});
     note_resting_groups();
     if (any_certifies_) begin_courses(), find_near(false);
-    if (!all_certify_) s_->detect_all(found), collect(found);
+    if (!all_certify_) contacts_.detect_all(found), collect(found);
     std::uint32_t slot = 0;
-    while (!s_->frame_.give_up() && pop(slot))
+    while (!step_.frame.give_up() && pop(slot))
     {
         Candidate& c = candidates_[slot];
         if (budget_.is_spent())

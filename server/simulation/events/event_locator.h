@@ -10,9 +10,9 @@
 
 #include <vector>
 
+#include "simulation/advance/advance.h"
 #include "simulation/events/course.h"
 #include "simulation/events/work_budget.h"
-#include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
@@ -20,7 +20,10 @@ namespace plab::simulation
 class EventLocator
 {
 public:
-    explicit EventLocator(Stepper& stepper) : s_(&stepper) {}
+    EventLocator(StepState& step, GroupMotion& motion, ContactBook& contacts, ContactForces& forces, Advance& advance)
+        : step_(step), motion_(motion), contacts_(contacts), forces_(forces), advance_(advance)
+    {
+    }
     /// Until the step holds no event any more. Leaves the contacts of the end of the step in `found`.
     void run(std::vector<FoundContact>& found);
 
@@ -111,6 +114,7 @@ private:
     void look_again(std::vector<FoundContact>& found);
     void note_resting_groups();
     void begin_budget();
+    double sweeps_and_looks() const;
     void answer_the_rest(std::size_t left, std::vector<FoundContact>& found);
     void tell_too_many(std::size_t left);
     double overlap_tolerance(Ref a, Ref b) const;
@@ -186,7 +190,11 @@ private:
     void add_impulses(double share, bool of_all);
     void give_back(double time);
 
-    Stepper* s_;
+    StepState& step_;
+    GroupMotion& motion_;
+    ContactBook& contacts_;
+    ContactForces& forces_;
+    Advance& advance_;
     std::vector<Candidate> candidates_;  ///< slots
     std::vector<std::uint32_t> free_;
     std::vector<Entry> queue_;                      ///< heap, first event on top

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "simulation/events/event_locator.h"
+#include "simulation/motion/component_call.h"
 
 namespace plab::simulation
 {
@@ -26,39 +27,33 @@ constexpr int kFirstSteps = 4;
 double EventLocator::begin_of_scope() const
 {
     double begin = 0;
-    for (const std::uint32_t g : scope_) begin = std::max(begin, s_->segment_begin_[g]);
+    for (const std::uint32_t g : scope_) begin = std::max(begin, motion_.segment_begin(g));
     return begin;
 }
 
 bool EventLocator::overlaps_at(Candidate& candidate, double time)
 {
     advance_scope(time, {}, true);
-    ++s_->report_.trials;
+    ++step_.report.trials;
     const StandingPair pair{candidate.a, candidate.b, {}};
     seen_.clear();
-    const double before = s_->report_.further_pairs;
-    s_->detect(s_->detectors_[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
-    budget_.spend(1 + WorkBudget::kFurtherPair * (s_->report_.further_pairs - before));
+    const double before = sweeps_and_looks();
+    contacts_.detect(contacts_.detectors()[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
+    budget_.spend(1 + sweeps_and_looks() - before);
     std::erase_if(seen_, [&](const FoundContact& f) { return f.contact.depth <= candidate.ignored; });
     if (seen_.empty()) return false;
-    sort_contacts(seen_, s_->world_);
+    sort_contacts(seen_, step_.world);
     candidate.contacts = seen_;
     return true;
 }
 
 void EventLocator::ask(const Candidate& candidate, Trial& trial)
 {
-    const std::uint32_t resolution = s_->detectors_[candidate.detector].resolution;
-    const world::Component& c = s_->world_.component(resolution);
-    world::Table& table = s_->world_.table_of(resolution);
-    StepContext context;
-    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick, context.events = s_;
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    PhaseCall call;
-    call.context = &context, call.rows = Rows(&c.row, 1), call.trial = &trial;
-    const CostScope scope(s_->meter_, s_->meter_.of_component(resolution));
-    for (const CommandInfo& command : table.type().info.commands)
-        if (command.phase == Phase::Locate && command.run) (void)command.run(call, table.rows());
+    const std::uint32_t resolution = contacts_.detectors()[candidate.detector].resolution;
+    ComponentCall question(step_, resolution);
+    question.call.trial = &trial;
+    const CostScope scope(step_.meter, step_.meter.of_component(resolution));
+    question.run(Phase::Locate);
 }
 
 void EventLocator::bracket(Candidate& candidate, Trial& trial)
@@ -66,7 +61,7 @@ void EventLocator::bracket(Candidate& candidate, Trial& trial)
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
-        if (trial.decision != Trial::Decision::Try || budget_.is_spent() || s_->frame_.give_up()) return;
+        if (trial.decision != Trial::Decision::Try || budget_.is_spent() || step_.frame.give_up()) return;
         (overlaps_at(candidate, trial.next) ? trial.end : trial.begin) = trial.next;
     }
 }
@@ -75,12 +70,12 @@ void EventLocator::locate(Candidate& candidate)
 {
     candidate.located = true;
     if (candidate.certified) return search(candidate);
-    candidate.time = s_->frame_.step;
+    candidate.time = step_.frame.step;
     if (candidate.at_end) return;
     // Trials need the pair alone, whoever is rewound for its answer: the rest does not feel it.
     scope_of_pair(candidate);
     Trial trial;
-    trial.begin = begin_of_scope(), trial.end = trial.step = s_->frame_.step;
+    trial.begin = begin_of_scope(), trial.end = trial.step = step_.frame.step;
     trial.gap_begin = trial.gap_end = trial.rate_begin = trial.rate_end = kUnknown;
     for (const FoundContact& f : candidate.contacts) trial.depth = std::max(trial.depth, f.contact.depth);
     at_end_ = candidate.contacts;
@@ -102,7 +97,7 @@ void EventLocator::locate(Candidate& candidate)
     {
         // Overlapping where the piece begins: nothing to bracket. A pair that closes is answered there; one that parts is
         // left alone until the end of the step.
-        const auto closes = [&](const FoundContact& f) { return s_->normal_velocity(f.contact) <= 0; };
+        const auto closes = [&](const FoundContact& f) { return contacts_.normal_velocity(f.contact) <= 0; };
         candidate.stuck = std::any_of(candidate.contacts.begin(), candidate.contacts.end(), closes);
         candidate.at_end = !candidate.stuck;
         if (candidate.stuck)
@@ -110,7 +105,7 @@ void EventLocator::locate(Candidate& candidate)
         else
             candidate.contacts = at_end_;
     }
-    for (const std::uint32_t g : scope_) s_->restore_end(g);
+    for (const std::uint32_t g : scope_) motion_.restore_end(g);
     candidate.located = !budget_.is_spent();
 }
 
@@ -118,7 +113,7 @@ void EventLocator::locate(Candidate& candidate)
 void EventLocator::scope_of_pair(const Candidate& candidate)
 {
     scope_.clear();
-    const std::uint32_t ga = s_->groups_.of(candidate.a), gb = s_->groups_.of(candidate.b);
+    const std::uint32_t ga = step_.groups.of(candidate.a), gb = step_.groups.of(candidate.b);
     const auto rests = [&](std::uint32_t g) { return g != kNoIndex && rests_[g] != 0; };
     if (!rests(ga) && !rests(gb))
     {
@@ -126,7 +121,7 @@ void EventLocator::scope_of_pair(const Candidate& candidate)
             if (g != kNoIndex && (scope_.empty() || scope_.back() != g)) scope_.push_back(g);
         return;
     }
-    in_scope_.assign(s_->groups_.all.size(), 0);
+    in_scope_.assign(step_.groups.all.size(), 0);
     scope_of(candidate, true);
     for (std::uint32_t g = 0; g < in_scope_.size(); ++g)
         if (in_scope_[g]) scope_.push_back(g);
@@ -135,11 +130,11 @@ void EventLocator::scope_of_pair(const Candidate& candidate)
 EventLocator::Look EventLocator::look_at(const Candidate& candidate, double time)
 {
     advance_groups_to(time);
-    ++s_->report_.trials;
+    ++step_.report.trials;
     Look look;
     look.time = time;
     look.query = measure(candidate, time);
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const GapQuery& q = look.query;
     const Vec3 va = bodies.velocity_at(q.a.index, q.point_a), vb = bodies.velocity_at(q.b.index, q.point_b);
     look.rate = dot(vb - va, q.normal);
@@ -147,7 +142,7 @@ EventLocator::Look EventLocator::look_at(const Candidate& candidate, double time
     // Rounding of positions, and the way in the least time that can be told apart.
     const double size = length(bodies.position[q.a.index]) + length(bodies.position[q.b.index]) + length(q.point_a - q.point_b);
     look.touch = 4e-16 * size + 2e-16 * length(bodies.position[q.b.index] - bodies.position[q.a.index]) +
-                 0x1p-50 * s_->frame_.step * std::fabs(look.rate);
+                 0x1p-50 * step_.frame.step * std::fabs(look.rate);
     look.slack = slack_of(q.a, q.b, look.speed);
     return look;
 }
@@ -164,11 +159,11 @@ bool EventLocator::settle_at_begin(Candidate& candidate, const Look& look)
     if (look.query.gap >= -look.touch - overlap_tolerance(candidate.a, candidate.b)) return false;
     // Nothing to find: a pair that closes is answered here; one that parts is left alone until the end of the step.
     candidate.time = look.time;
-    candidate.stuck = look.rate <= 0 || !s_->detectors_[candidate.detector].responds;
+    candidate.stuck = look.rate <= 0 || !contacts_.detectors()[candidate.detector].responds;
     candidate.at_end = !candidate.stuck;
     if (candidate.stuck) return true;
-    candidate.time = s_->frame_.step;
-    const Look last = look_at(candidate, s_->frame_.step);
+    candidate.time = step_.frame.step;
+    const Look last = look_at(candidate, step_.frame.step);
     candidate.nothing = !(last.query.gap < 0 && last.rate < 0);
     return true;
 }
@@ -177,7 +172,7 @@ bool EventLocator::settle_at_begin(Candidate& candidate, const Look& look)
 bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, const Look& over, bool certify)
 {
     Trial trial;
-    trial.begin = clear.time, trial.end = over.time, trial.step = s_->frame_.step;
+    trial.begin = clear.time, trial.end = over.time, trial.step = step_.frame.step;
     trial.gap_begin = clear.query.gap, trial.rate_begin = clear.rate;
     trial.gap_end = std::min(over.query.gap, -kNothing), trial.rate_end = over.rate;
     trial.depth = -over.query.gap, trial.closing = -over.rate;
@@ -186,7 +181,7 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, co
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
-        if (trial.decision != Trial::Decision::Try || budget_.is_spent() || s_->frame_.give_up()) break;
+        if (trial.decision != Trial::Decision::Try || budget_.is_spent() || step_.frame.give_up()) break;
         const Look look = look_at(candidate, trial.next);
         trial.last = look.time, trial.last_gap = look.query.gap, trial.last_rate = look.rate;
         if (look.query.gap > 0)
@@ -203,7 +198,7 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, co
 /// The resolution gave up: what shows at the end of the step is all that is known.
 bool EventLocator::found_when_given_up(Candidate& candidate, const Look& look)
 {
-    const Look last = look_at(candidate, s_->frame_.step);
+    const Look last = look_at(candidate, step_.frame.step);
     if (!(last.query.gap < -last.touch)) return false;
     candidate.time = look.time, candidate.bracket = last.time - look.time;
     return settle_in_bracket(candidate, look, last, false);
@@ -214,29 +209,30 @@ void EventLocator::search(Candidate& candidate)
     scope_of_pair(candidate);
     candidate.nothing = !meets(candidate);
     candidate.located = !budget_.is_spent();
-    for (const std::uint32_t g : scope_) s_->restore_end(g);
+    for (const std::uint32_t g : scope_) motion_.restore_end(g);
 }
 
 /// Whether the pair has had an impact at this very time: what did not part it then will not now.
 bool EventLocator::answered_at(const Candidate& candidate, double time) const
 {
-    const PairState* pair = s_->cache_.find(s_->detectors_[candidate.detector].component, candidate.a, candidate.b, s_->world_);
-    return pair && pair->impacts_tick == s_->frame_.tick && pair->bounces.time == s_->frame_.start_time + time;
+    const PairState* pair =
+        contacts_.cache().find(contacts_.detectors()[candidate.detector].component, candidate.a, candidate.b, step_.world);
+    return pair && pair->impacts_tick == step_.frame.tick && pair->bounces.time == step_.frame.start_time + time;
 }
 
 /// Whether forces press together what touches and moves along: so that it would sink in by more than rounding. Once: what presses rests.
 bool EventLocator::presses(Candidate& candidate, const Look& look)
 {
     if (answered_at(candidate, look.time)) return false;
-    const double left = s_->frame_.step - look.time;
+    const double left = step_.frame.step - look.time;
     pressed_.assign(1, {});
     Contact& c = pressed_.front().contact;
     c.a = candidate.a, c.b = candidate.b, c.normal = look.query.normal, c.point = (look.query.point_a + look.query.point_b) * 0.5;
-    const auto held = [&](Ref r) { return s_->groups_.of(r) != kNoIndex && rests_[s_->groups_.of(r)] != 0; };
+    const auto held = [&](Ref r) { return step_.groups.of(r) != kNoIndex && rests_[step_.groups.of(r)] != 0; };
     if (held(c.a) || held(c.b))
     {
         // Who stands does not fall as forces alone would make it; where the step ends is known.
-        const Bodies& bodies = s_->world_.host().bodies;
+        const Bodies& bodies = step_.world.host().bodies;
         const Vec3 arm_a = c.point - bodies.position[c.a.index], arm_b = c.point - bodies.position[c.b.index];
         // Arms go along with their bodies, and do not turn: a rolling ball's point turns away, its gap does not open.
         const auto rate = [&]
@@ -246,7 +242,7 @@ bool EventLocator::presses(Candidate& candidate, const Look& look)
             return dot(b - a, c.normal);
         };
         const double before = rate();
-        advance_groups_to(s_->frame_.step);
+        advance_groups_to(step_.frame.step);
         c.normal_acceleration = (rate() - before) / left;
         advance_groups_to(look.time);
     }
@@ -259,8 +255,8 @@ bool EventLocator::presses(Candidate& candidate, const Look& look)
 
 bool EventLocator::meets(Candidate& candidate)
 {
-    const double step = s_->frame_.step, shortest = 0x1p-48 * step;
-    const bool responds = s_->detectors_[candidate.detector].responds;
+    const double step = step_.frame.step, shortest = 0x1p-48 * step;
+    const bool responds = contacts_.detectors()[candidate.detector].responds;
     Trial trial;
     trial.end = trial.step = step;
     Vec3 turn;
@@ -269,7 +265,7 @@ bool EventLocator::meets(Candidate& candidate)
     double let_go = kLetGo;
     for (; !budget_.is_spent(); ++trial.iteration)
     {
-        if (s_->frame_.give_up()) return false;
+        if (step_.frame.give_up()) return false;
         candidate.time = look.time;
         const double left = step - look.time;
         const bool touches = look.query.gap <= look.touch, closes = look.rate < -kStill * look.speed;

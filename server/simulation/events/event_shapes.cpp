@@ -7,6 +7,7 @@
 
 #include "plab/rotation.h"
 #include "simulation/events/event_locator.h"
+#include "simulation/motion/component_call.h"
 
 namespace plab::simulation
 {
@@ -27,17 +28,18 @@ std::array<Vec3, 3> face_normals(const Shapes& shapes, const Mover& m)
 /// m/s: sum of the speeds of a point of each.
 double EventLocator::speeds_at(Ref a, const Vec3& point_a, Ref b, const Vec3& point_b) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     return length(bodies.velocity_at(a.index, point_a)) + length(bodies.velocity_at(b.index, point_b));
 }
 
-double EventLocator::smaller_radius(Ref a, Ref b) const { return s_->smaller_radius(a, b); }
+double EventLocator::smaller_radius(Ref a, Ref b) const { return contacts_.smaller_radius(a, b); }
 
 /// m: overlaps up to this, and sinking so far in a step, are rounding of where the two are and how they move.
 double EventLocator::slack_of(Ref a, Ref b, double speed) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
-    return 0x1p-46 * (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]) + speed * s_->frame_.step);
+    const Bodies& bodies = step_.world.host().bodies;
+    return 0x1p-46 *
+           (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]) + speed * step_.frame.step);
 }
 
 /// Contacts that overlap, and close within a whole step, by rounding only.
@@ -47,8 +49,9 @@ bool EventLocator::slides(std::span<const FoundContact> contacts) const
                        [&](const FoundContact& f)
                        {
                            const Contact& c = f.contact;
-                           const double rate = s_->normal_velocity(c), slack = slack_of(c.a, c.b, speeds_at(c.a, c.point, c.b, c.point));
-                           return c.depth <= slack && -rate * s_->frame_.step <= slack;
+                           const double rate = contacts_.normal_velocity(c),
+                                        slack = slack_of(c.a, c.b, speeds_at(c.a, c.point, c.b, c.point));
+                           return c.depth <= slack && -rate * step_.frame.step <= slack;
                        });
 }
 
@@ -56,35 +59,35 @@ bool EventLocator::slides(std::span<const FoundContact> contacts) const
 bool EventLocator::slides(const Candidate& candidate, const ShapeGap& g, double time) const
 {
     const double slack = slack_of(candidate.a, candidate.b, speeds_at(candidate.a, g.point_a, candidate.b, g.point_b));
-    const double left = s_->frame_.step - time;
+    const double left = step_.frame.step - time;
     return std::fabs(g.gap) <= slack && left > 0 && clearance_of(candidate, g, left).along(g.normal, slack) >= left;
 }
 
 /// Of the two bodies where they are now, or of two shapes of them.
 Clearance EventLocator::clearance_of(const Candidate& candidate, double left) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const std::uint32_t a = candidate.a.index, b = candidate.b.index;
-    return {bodies, s_->world_.host().shapes, mover(a, BodyState::of(bodies, a)), mover(b, BodyState::of(bodies, b)), left};
+    return {bodies, step_.world.host().shapes, mover(a, BodyState::of(bodies, a)), mover(b, BodyState::of(bodies, b)), left};
 }
 
 Clearance EventLocator::clearance_of(const Candidate& candidate, const ShapeGap& gap, double left) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     Mover a = mover(candidate.a.index, BodyState::of(bodies, candidate.a.index)),
           b = mover(candidate.b.index, BodyState::of(bodies, candidate.b.index));
     a.extent = gap.shape_a, b.extent = gap.shape_b;
-    return {bodies, s_->world_.host().shapes, a, b, left};
+    return {bodies, step_.world.host().shapes, a, b, left};
 }
 
 /// The direction along which two shapes are widest apart, of those that are likely to be it.
 EventLocator::ShapeGap EventLocator::gap_of_shapes(const Candidate& candidate, const ShapeExtent& shape_a, const ShapeExtent& shape_b,
                                                    const Vec3& hint) const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
-    const Shapes& shapes = s_->world_.host().shapes;
+    const Bodies& bodies = step_.world.host().bodies;
+    const Shapes& shapes = step_.world.host().shapes;
     ShapeGap out{&shape_a, &shape_b, -HUGE_VAL, hint, {}, {}, false};
-    const Clearance clearance = clearance_of(candidate, out, s_->frame_.step);
+    const Clearance clearance = clearance_of(candidate, out, step_.frame.step);
     const Mover a{candidate.a.index, nullptr, &shape_a, BodyState::of(bodies, candidate.a.index)};
     const Mover b{candidate.b.index, nullptr, &shape_b, BodyState::of(bodies, candidate.b.index)};
     if (Vec3 n; clearance.find_half_space(n, out.gap))
@@ -129,7 +132,7 @@ void EventLocator::list_shape_gaps(const Candidate& candidate, const GapQuery& n
             ShapeGap& g = shape_gaps_.emplace_back(gap_of_shapes(candidate, a, b, nearest.normal));
             // No two others are as near along the normal of the nearest.
             const double width = g.exact ? (g.normal == nearest.normal ? g.gap : HUGE_VAL)
-                                         : clearance_of(candidate, g, s_->frame_.step).width_along(nearest.normal);
+                                         : clearance_of(candidate, g, step_.frame.step).width_along(nearest.normal);
             if (const double off = std::fabs((std::isfinite(width) ? width : g.gap) - nearest.gap); off < least)
                 least = off, best = shape_gaps_.size() - 1;
         }
@@ -144,17 +147,12 @@ void EventLocator::list_shape_gaps(const Candidate& candidate, const GapQuery& n
 /// beside them that may be met.
 GapQuery EventLocator::measure(const Candidate& candidate, double time)
 {
-    const Detector& detector = s_->detectors_[candidate.detector];
-    world::Table& table = *s_->world_.tables()[detector.table];
+    const Detector& detector = contacts_.detectors()[candidate.detector];
     GapQuery query;
     query.a = candidate.a, query.b = candidate.b;
-    StepContext context;
-    context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    PhaseCall call;
-    call.context = &context, call.rows = Rows(&detector.row, 1);
-    call.bodies = &s_->world_.host().bodies, call.shapes = &s_->world_.host().shapes, call.gap = &query;
-    (void)detector.gap->run(call, table.rows());
+    ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
+    question.context.events = nullptr, question.call.gap = &query;
+    (void)question.run(*detector.gap);
     budget_.spend(1 + WorkBudget::kFurtherPair * query.further_pairs);
     list_shape_gaps(candidate, query);
     if (shape_gaps_.empty() || !slides(candidate, shape_gaps_.front(), time)) return query;
@@ -168,7 +166,7 @@ GapQuery EventLocator::measure(const Candidate& candidate, double time)
 /// s from the last look until which they cannot come nearer than `slack` (m) deep; `closing`: the first-order bound on their speed, m/s.
 double EventLocator::clear_for(const Candidate& candidate, const Look& look, const Vec3& turn, double slack, double& closing) const
 {
-    const double left = s_->frame_.step - look.time;
+    const double left = step_.frame.step - look.time;
     const Clearance whole = clearance_of(candidate, left);
     closing = whole.fastest_closing(look.query.normal);
     const double balls = whole.of_balls();
@@ -191,7 +189,7 @@ double EventLocator::clear_for(const Candidate& candidate, const Look& look, con
 /// Whether nothing of the pair met between two looks, `last` the last one.
 bool EventLocator::was_clear(const Candidate& candidate, const Look& clear, const Look& last) const
 {
-    const double left = s_->frame_.step - last.time, ago = last.time - clear.time;
+    const double left = step_.frame.step - last.time, ago = last.time - clear.time;
     const Vec3 turn = turn_between(clear, last);
     if (shape_gaps_.empty()) return clearance_of(candidate, left).was_clear(last.query.normal, std::max(last.query.gap, 0.0), ago, turn);
     return std::all_of(

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/step/schedule.h"
+#include "simulation/groups/schedule.h"
 
 namespace plab::simulation
 {

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "model/alike.h"
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 #include "simulation/requests/transaction.h"
 
 namespace plab::simulation

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "model/numbers.h"
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 #include "simulation/requests/request_words.h"
 #include "simulation/requests/transaction.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/clock.h"
+#include "simulation/costs/clock.h"
 #include "simulation/requests/field_change.h"
-#include "simulation/totals.h"
+#include "simulation/step/totals.h"
 
 namespace plab::simulation
 {

@@ -26,6 +26,8 @@ struct HistoryOptions
 /// About what a snapshot holds in memory, shared parts counted as its own.
 std::size_t bytes_of(const Snapshot& snapshot);
 
+class Simulation;
+
 class History
 {
 public:

@@ -25,7 +25,6 @@ private:
     std::vector<ContactEnergy> contact_energy_;
     double departed_work_ = 0, requests_work_ = 0;
     Told told_;
-    CostBook cost_;
     std::vector<std::uint32_t> split_;
     StepFrame frame_;
 };

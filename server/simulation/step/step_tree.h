@@ -1,14 +1,9 @@
 /// The step on one page. This list is what runs, what --explain prints, and what tests look at: nobody writes it again.
 ///
-///   requests    due requests take effect (Simulation): rows are born and die only there
-///   PreStep     save_start, drive, couple_speeds
-///   Step        advance_all: speeds that joints do not allow; per solver stage clear, forces(t, state), rows(t, state), couplings, rates
-///   PostStep    locate_events: detect, find the first event, rewind who is touched, advance to it, respond, go on
-///               finish_contacts, finish, draw
-///   publish     whoever watches sees a const world
+/// Around it stands the run: requests that are due take effect before it, since rows are born and die only there; whoever publishes sees
+/// a const world after it.
 #pragma once
 
-#include <span>
 #include <string_view>
 
 #include "simulation/step/stepper.h"

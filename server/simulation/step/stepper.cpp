@@ -1,127 +1,113 @@
 #include "simulation/step/stepper.h"
 
-#include <algorithm>
 #include <utility>
-
-#include "simulation/step/step_tree.h"
 
 namespace plab::simulation
 {
+
 /// Calls the block's command for its rows: together, or one by one where each is measured.
 void Stepper::run_block(const Block& block, StepContext& context, PhaseCall& call)
 {
-    world::Table& table = *world_.tables()[block.table];
+    world::Table& table = *step_.world.tables()[block.table];
     context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    meter_.ran(block.table, block.command->phase);
+    step_.meter.ran(block.table, block.command->phase);
     if (!block.alone)
     {
-        const CostScope scope(meter_, meter_.of_table(block.table));
+        const CostScope scope(step_.meter, step_.meter.of_table(block.table));
         call.rows = block.rows;
         (void)block.command->run(call, table.rows());
         return;
     }
     for (const Row& row : block.rows)
     {
-        const CostScope scope(meter_, meter_.of_component(context.component_of_row[row]));
+        const CostScope scope(step_.meter, step_.meter.of_component(context.component_of_row[row]));
         call.rows = Rows(&row, 1);
         (void)block.command->run(call, table.rows());
     }
 }
 
-void Stepper::emit(Event event)
+/// `context` and `call` have what this phase gets beside the world's tables.
+void Stepper::run_blocks(Phase phase, StepContext& context, PhaseCall& call)
 {
-    event.tick = frame_.tick;
-    events_.push_back(std::move(event));
-}
-
-void Stepper::step(Tick tick, double start_time, double dt)
-{
-    meter_.start();
-    ++serial_;
-    events_.clear(), releases_.clear();
-    report_ = {};
-    reactions_.clear();
-    if (!schedule_.of(Phase::Constrain).empty()) row_reports_.clear(world_.components().size());
-    frame_ = {&world_,   &schedule_,          &groups_, &graph_, &start_, start_time, dt, tick, world_.scene().settings.seed, interruption_,
-              progress_, &told_.contradictory};
-    if (interruption_) interruption_->forget_heeded();
-    for (std::size_t i = 0; i < std::size(kStepTree) && !frame_.give_up(); ++i)
-    {
-        const StepNode& node = kStepTree[i];
-        if (!(this->*node.needed)()) continue;
-        if (progress_) progress_->enter(static_cast<std::uint8_t>(i), now_ns());
-        (this->*node.run)();
-    }
-    collect_cost();
+    context.seed = step_.frame.seed, context.events = &step_;
+    call.context = &context;
+    for (const Block& block : step_.schedule.of(phase)) run_block(block, context, call);
 }
 
 void Stepper::collect_cost()
 {
-    report_.evaluations += std::exchange(pool_.scratch().evaluations, 0);
-    for (Batch& batch : batches_)
-        if (batch.scratch) report_.evaluations += std::exchange(batch.scratch->evaluations, 0);
-    meter_.stop();
-    cost_.book(meter_.accounts());
+    step_.report.evaluations += std::exchange(motion_.scratch().evaluations, 0) + advance_.batches().take_evaluations();
+    step_.meter.stop();
+    cost_.book(step_.meter.accounts());
 }
 
-void Stepper::save_start()
+void Stepper::retire(std::uint32_t component)
 {
-    start_.save(world_.host());
-    if (!rewinds_possible_) return;
-    segment_.save(world_.host());
-    std::fill(segment_begin_.begin(), segment_begin_.end(), 0.0);
+    if (component >= step_.work.size()) return;
+    departed_work_ += std::exchange(step_.work[component], 0.0);
+    cost_.forget(component);
+    step_.contact_energy[component] = {};
+    step_.told.contradictory[component] = 0;
 }
+
+std::uint64_t Stepper::state_hash() const { return book_.cache().state_hash(step_.world, step_.world.state_hash(0xcbf29ce484222325ull)); }
+
+// The nodes of the step tree -------------------------------------------------------------------------------------------
+
+void Stepper::save_start() { motion_.save_start(); }
 
 void Stepper::drive()
 {
     changes_.clear();
-    StepContext context;
-    context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
-    context.events = this, context.changes = &changes_, context.interruption = interruption_;
-    PhaseCall call;
-    call.context = &context;
-    call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
-    call.quantities = &world_.host().quantities;
-    for (const Block& block : schedule_.of(Phase::Drive)) run_block(block, context, call);
-    if (!changes_.empty() && apply_changes_ && !frame_.give_up()) apply_changes_(changes_owner_, changes_);
+    StepContext context = step_.context();
+    context.changes = &changes_, context.interruption = interruption_;
+    PhaseCall call = step_.call();
+    run_blocks(Phase::Drive, context, call);
+    if (!changes_.empty() && apply_changes_ && !step_.frame.give_up()) apply_changes_(changes_owner_, changes_);
 }
 
 void Stepper::couple_speeds()
 {
-    Shafts& shafts = world_.host().shafts;
-    if (!graph_.consistent(shafts)) graph_.engage(shafts, &work_);
-    if (schedule_.of(Phase::Couple).empty()) return;
-    StepContext context;
-    context.time = frame_.start_time, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
-    const CouplingReport done = speed_system_.solve_speeds(context, shafts, work_);
-    coupling_watch_.tell(world_, speed_system_, done, frame_.start_time, *this, told_.contradictory);
+    Shafts& shafts = step_.world.host().shafts;
+    if (!step_.graph.consistent(shafts)) step_.graph.engage(shafts, &step_.work);
+    if (step_.schedule.of(Phase::Couple).empty()) return;
+    StepContext context = step_.context();
+    context.seed = step_.frame.seed;
+    const CouplingReport done = speed_system_.solve_speeds(context, shafts, step_.work);
+    coupling_watch_.tell(step_.world, speed_system_, done, step_.frame.start_time, step_, step_.told.contradictory);
 }
 
-void Stepper::draw()
+void Stepper::advance_all() { advance_.advance_all(); }
+
+void Stepper::locate_events()
 {
-    const Sight sight = sight_.look(world_);
-    StepContext context;
-    context.time = frame_.start_time + frame_.step, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
-    context.events = this;
-    PhaseCall call;
-    call.context = &context;
-    call.sight = &sight, call.images = images_;
-    for (const Block& block : schedule_.of(Phase::Draw)) run_block(block, context, call);
+    if (!locator_) locator_.emplace(step_, motion_, book_, forces_, advance_);
+    locator_->run(book_.found());
+}
+
+void Stepper::finish_contacts()
+{
+    if (forces_.any()) forces_.finish_step(book_.found());
+    hard_.finish_step();
 }
 
 void Stepper::finish()
 {
-    StepContext context;
-    context.time = frame_.start_time + frame_.step, context.dt = frame_.step, context.tick = frame_.tick, context.seed = frame_.seed;
-    context.events = this;
-    PhaseCall call;
-    call.context = &context;
-    call.bodies = &world_.host().bodies, call.shafts = &world_.host().shafts, call.shapes = &world_.host().shapes;
-    call.quantities = &world_.host().quantities;
-    call.reactions = &reactions_, call.row_reports = &row_reports_;
-    for (const Block& block : schedule_.of(Phase::Finish)) run_block(block, context, call);
+    StepContext context = step_.context();
+    context.time += step_.frame.step;
+    PhaseCall call = step_.call();
+    call.reactions = &motion_.reactions(), call.row_reports = &motion_.row_reports();
+    run_blocks(Phase::Finish, context, call);
 }
 
-std::uint64_t Stepper::state_hash() const { return cache_.state_hash(world_, world_.state_hash(0xcbf29ce484222325ull)); }
+void Stepper::draw()
+{
+    const Sight sight = sight_.look(step_.world);
+    StepContext context = step_.context();
+    context.time += step_.frame.step;
+    PhaseCall call;
+    call.sight = &sight, call.images = images_;
+    run_blocks(Phase::Draw, context, call);
+}
 
 }  // namespace plab::simulation

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "simulation/simulation.h"
+#include "simulation/step/totals.h"
 
 namespace plab::simulation
 {
@@ -51,12 +51,12 @@ bool sealed(const world::HostTables& host)
            std::none_of(host.shafts.motion.begin(), host.shafts.motion.end(), moved);
 }
 
-Event warning(const Simulation& s, Ref who, const char* what, std::vector<double> values)
+Event warning(const RunView& s, Ref who, const char* what, std::vector<double> values)
 {
     Event e;
-    e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "motion.diverged", e.severity = Severity::Warning;
-    e.component = s.world().host().component_of(who), e.a = who;
-    e.message = s.world().id_of(who) + " " + what + "; shorter steps, a softer law or another algorithm may hold it";
+    e.tick = s.tick, e.time = s.time + s.dt, e.kind = "motion.diverged", e.severity = Severity::Warning;
+    e.component = s.world.host().component_of(who), e.a = who;
+    e.message = s.world.id_of(who) + " " + what + "; shorter steps, a softer law or another algorithm may hold it";
     e.values = std::move(values);
     return e;
 }
@@ -103,9 +103,9 @@ void DivergenceWatch::recall(DivergenceMemory memory)
     m_.tunnels = {};
 }
 
-void DivergenceWatch::size_for(const Simulation& s)
+void DivergenceWatch::size_for(const RunView& s)
 {
-    const world::HostTables& host = s.world().host();
+    const world::HostTables& host = s.world.host();
     if (m_.way.size() != host.bodies.size()) m_.way.assign(host.bodies.size(), {}), m_.spin.assign(host.bodies.size(), {});
     if (m_.turn.size() != host.shafts.size()) m_.turn.assign(host.shafts.size(), {});
     m_.bodies_told.resize(host.bodies.size()), m_.shafts_told.resize(host.shafts.size());
@@ -118,12 +118,12 @@ bool DivergenceWatch::tell(Ref who)
     return std::exchange(told, std::uint8_t{1}) == 0;
 }
 
-void DivergenceWatch::before_step(const Simulation& s)
+void DivergenceWatch::before_step(const RunView& s)
 {
     tunnels_.before_step(s);
     if (m_.counting) return;
-    const Stepper& stepper = s.stepper();
-    const world::HostTables& host = s.world().host();
+    const Stepper& stepper = s.stepper;
+    const world::HostTables& host = s.world.host();
     m_.counting = true, m_.told = false, m_.sealed = sealed(host), m_.gaining_since = -1, m_.gaining_steps = 0;
     size_for(s);
     m_.start_work = stepper.work();
@@ -134,7 +134,7 @@ void DivergenceWatch::before_step(const Simulation& s)
     if (m_.sealed)
     {
         for (const Block& block : stepper.schedule().of(Phase::Potential))
-            for (const Row row : block.rows) m_.passive[s.world().tables()[block.table]->component_of_row()[row]] = 1;
+            for (const Row row : block.rows) m_.passive[s.world.tables()[block.table]->component_of_row()[row]] = 1;
         for (const Detector& d : stepper.detectors())
             if (d.response != kNoIndex) m_.passive[d.response] = 0;
     }
@@ -142,11 +142,14 @@ void DivergenceWatch::before_step(const Simulation& s)
     m_.start_energy = energy(s, m_.last_kinetic);
 }
 
-double DivergenceWatch::energy(const Simulation& s, double kinetic) const { return m_.sealed ? kinetic + s.stored_energy() : kinetic; }
-
-DivergenceWatch::Sources DivergenceWatch::sources(const Simulation& s) const
+double DivergenceWatch::energy(const RunView& s, double kinetic) const
 {
-    const Stepper& stepper = s.stepper();
+    return m_.sealed ? kinetic + stored_energy_of(s.world, s.stepper, s.time, s.tick) : kinetic;
+}
+
+DivergenceWatch::Sources DivergenceWatch::sources(const RunView& s) const
+{
+    const Stepper& stepper = s.stepper;
     const double other = stepper.departed_work() + stepper.requests_work() - m_.start_other_work;
     Sources out{other, std::fabs(other)};
     for (std::size_t c = 0; c < std::min(m_.start_work.size(), stepper.work().size()); ++c)
@@ -157,7 +160,7 @@ DivergenceWatch::Sources DivergenceWatch::sources(const Simulation& s) const
     return out;
 }
 
-void DivergenceWatch::after_step(const Simulation& s, std::vector<Event>& events)
+void DivergenceWatch::after_step(const RunView& s, std::vector<Event>& events)
 {
     if (m_.way.empty() && m_.turn.empty()) return;
     tunnels_.after_step(s, events);
@@ -166,19 +169,19 @@ void DivergenceWatch::after_step(const Simulation& s, std::vector<Event>& events
     if (!m_.told) look_at_energy(s, events);
 }
 
-void DivergenceWatch::look_at_contacts(const Simulation& s, std::vector<Event>& events)
+void DivergenceWatch::look_at_contacts(const RunView& s, std::vector<Event>& events)
 {
-    const auto& energy = s.stepper().contact_energy();
+    const auto& energy = s.stepper.contact_energy();
     double scale = -1;
-    for (const std::uint32_t c : s.world().in_id_order())
+    for (const std::uint32_t c : s.world.in_id_order())
     {
         if (c >= std::min(energy.size(), m_.start_made.size()) || !(energy[c].made > m_.start_made[c])) continue;
-        if (scale < 0) scale = std::fabs(m_.start_energy) + sources(s).gross + least_energy(s.world().host(), s.dt());
+        if (scale < 0) scale = std::fabs(m_.start_energy) + sources(s).gross + least_energy(s.world.host(), s.dt);
         const double made = energy[c].made - m_.start_made[c];
         if (!(made > kMostMade * scale)) continue;
         m_.start_made[c] = HUGE_VAL;
         Event e;
-        e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "contact.gains_energy", e.severity = Severity::Warning, e.component = c;
+        e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.gains_energy", e.severity = Severity::Warning, e.component = c;
         char text[160];
         std::snprintf(text, sizeof text, "its contacts have made %.3g J, while %.3g J were there or put in; shorter steps may hold it",
                       made, scale);
@@ -188,19 +191,19 @@ void DivergenceWatch::look_at_contacts(const Simulation& s, std::vector<Event>& 
     }
 }
 
-void DivergenceWatch::look_at_growth(const Simulation& s, std::vector<Event>& events)
+void DivergenceWatch::look_at_growth(const RunView& s, std::vector<Event>& events)
 {
-    const world::HostTables& host = s.world().host();
-    const double turn = kSmallTurn / s.dt();
+    const world::HostTables& host = s.world.host();
+    const double turn = kSmallTurn / s.dt;
     const auto look = [&](DivergenceMemory::Growth& growth, double speed_squared, double least, Ref who)
     {
         if (growth.runs_away(speed_squared, least) && tell(who))
             events.push_back(warning(s, who, "doubles its speed every few steps, on and on", {std::sqrt(speed_squared)}));
     };
     // In the order of ids, as events stand.
-    for (const std::uint32_t i : s.world().in_id_order())
+    for (const std::uint32_t i : s.world.in_id_order())
     {
-        const world::Component& c = s.world().component(i);
+        const world::Component& c = s.world.component(i);
         const std::uint32_t k = c.host_index;
         if (c.facet == Facet::Body && host.bodies.dynamic(k))
         {
@@ -213,9 +216,9 @@ void DivergenceWatch::look_at_growth(const Simulation& s, std::vector<Event>& ev
     }
 }
 
-void DivergenceWatch::look_at_energy(const Simulation& s, std::vector<Event>& events)
+void DivergenceWatch::look_at_energy(const RunView& s, std::vector<Event>& events)
 {
-    const world::HostTables& host = s.world().host();
+    const world::HostTables& host = s.world.host();
     const double now = kinetic(host);
     if (now <= kLook * m_.last_kinetic && m_.gaining_steps == 0) return;
     if (!std::isfinite(now))
@@ -228,12 +231,12 @@ void DivergenceWatch::look_at_energy(const Simulation& s, std::vector<Event>& ev
     m_.last_kinetic = std::max(now, m_.last_kinetic);
     const Sources given = sources(s);
     const double scale = std::fabs(m_.start_energy) + given.gross, gain = energy(s, now) - m_.start_energy - given.net;
-    if (!(gain > kMostGain * scale + least_energy(host, s.dt())))
+    if (!(gain > kMostGain * scale + least_energy(host, s.dt)))
     {
         m_.gaining_steps = 0;
         return;
     }
-    if (m_.gaining_steps == 0) m_.gaining_since = s.tick();
+    if (m_.gaining_steps == 0) m_.gaining_since = s.tick;
     if (++m_.gaining_steps < kPatience) return;
     m_.told = true;
     char text[160];

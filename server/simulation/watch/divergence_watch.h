@@ -26,8 +26,6 @@
 namespace plab::simulation
 {
 
-class Simulation;
-
 /// What a watch remembers from step to step.
 struct DivergenceMemory
 {
@@ -59,9 +57,9 @@ public:
     DivergenceMemory memory() const;
     /// Goes on as the watch that remembered this did.
     void recall(DivergenceMemory memory);
-    void before_step(const Simulation& s);
+    void before_step(const RunView& s);
     /// Adds to `events`; once per run and object.
-    void after_step(const Simulation& s, std::vector<Event>& events);
+    void after_step(const RunView& s, std::vector<Event>& events);
 
 private:
     struct Sources
@@ -70,12 +68,12 @@ private:
     };
 
     bool tell(Ref who);
-    void size_for(const Simulation& s);
-    void look_at_growth(const Simulation& s, std::vector<Event>& events);
-    void look_at_energy(const Simulation& s, std::vector<Event>& events);
-    void look_at_contacts(const Simulation& s, std::vector<Event>& events);
-    Sources sources(const Simulation& s) const;
-    double energy(const Simulation& s, double kinetic) const;
+    void size_for(const RunView& s);
+    void look_at_growth(const RunView& s, std::vector<Event>& events);
+    void look_at_energy(const RunView& s, std::vector<Event>& events);
+    void look_at_contacts(const RunView& s, std::vector<Event>& events);
+    Sources sources(const RunView& s) const;
+    double energy(const RunView& s, double kinetic) const;
 
     TunnelWatch tunnels_;
     DivergenceMemory m_;  ///< but m_.tunnels: those are in tunnels_

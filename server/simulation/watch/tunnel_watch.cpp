@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "simulation/contacts/shape_width.h"
-#include "simulation/simulation.h"
 
 namespace plab::simulation
 {
@@ -72,13 +71,13 @@ bool crosses(const Vec3& a, const Vec3& b, const Geometry& g)
 
 }  // namespace
 
-void TunnelWatch::look_up(const Simulation& s)
+void TunnelWatch::look_up(const RunView& s)
 {
-    const world::World& world = s.world();
+    const world::World& world = s.world;
     const world::HostTables& host = world.host();
     ready_ = true;
     crowds_.clear();
-    for (const Detector& d : s.stepper().detectors())
+    for (const Detector& d : s.stepper.detectors())
     {
         if (!d.responds && !d.by_rows && !d.by_force) continue;  // a sensor: passing through is what it is for
         Crowd crowd{d.component, {}, d.certifies && !d.persists()};
@@ -99,22 +98,22 @@ void TunnelWatch::look_up(const Simulation& s)
         if (width > 0) shallow_ = std::min(shallow_, kDeep * width);
 }
 
-void TunnelWatch::before_step(const Simulation& s)
+void TunnelWatch::before_step(const RunView& s)
 {
     if (!ready_) look_up(s);
     if (crowds_.empty()) return;
-    const Bodies& bodies = s.world().host().bodies;
+    const Bodies& bodies = s.world.host().bodies;
     for (std::size_t b = 0; b < start_.size(); ++b) start_[b] = {bodies.position[b], bodies.orientation[b]};
 }
 
-bool TunnelWatch::passed(const Simulation& s, std::uint32_t body, std::uint32_t other) const
+bool TunnelWatch::passed(const RunView& s, std::uint32_t body, std::uint32_t other) const
 {
-    const world::HostTables& host = s.world().host();
+    const world::HostTables& host = s.world.host();
     const Bodies& bodies = host.bodies;
     const auto straight = [&](std::uint32_t b)
     {
         const Vec3 way = bodies.position[b] - start_[b].position;
-        return length_squared(way - bodies.velocity[b] * s.dt()) <= kStraight * kStraight * length_squared(way);
+        return length_squared(way - bodies.velocity[b] * s.dt) <= kStraight * kStraight * length_squared(way);
     };
     if (!straight(body) || !straight(other)) return false;
     // In the other's axes about its centre of mass, at the start and at the end.
@@ -130,10 +129,10 @@ bool TunnelWatch::passed(const Simulation& s, std::uint32_t body, std::uint32_t 
 }
 
 /// Boxes around what the crowd's bodies swept over. False if nobody went far enough to pass through anybody.
-bool TunnelWatch::sweep(const Simulation& s, const Crowd& crowd)
+bool TunnelWatch::sweep(const RunView& s, const Crowd& crowd)
 {
-    const Bodies& bodies = s.world().host().bodies;
-    const std::span<const double> radius = s.stepper().radius_of_body();
+    const Bodies& bodies = s.world.host().bodies;
+    const std::span<const double> radius = s.stepper.radius_of_body();
     const auto is_fast = [&](std::uint32_t b)
     {
         return bodies.dynamic(b) && memory_.told[b] == 0 &&
@@ -156,7 +155,7 @@ bool TunnelWatch::sweep(const Simulation& s, const Crowd& crowd)
 }
 
 /// Sweep and prune along x, then whoever may have met is looked at.
-void TunnelWatch::find_passages(const Simulation& s, const Crowd& crowd)
+void TunnelWatch::find_passages(const RunView& s, const Crowd& crowd)
 {
     active_.clear(), passages_.clear();
     const auto look = [&](const Swept& one, const Swept& two)
@@ -179,9 +178,9 @@ void TunnelWatch::find_passages(const Simulation& s, const Crowd& crowd)
     std::sort(passages_.begin(), passages_.end());
 }
 
-void TunnelWatch::tell(const Simulation& s, const Crowd& crowd, std::vector<Event>& events)
+void TunnelWatch::tell(const RunView& s, const Crowd& crowd, std::vector<Event>& events)
 {
-    const world::World& world = s.world();
+    const world::World& world = s.world;
     for (const Passage& p : passages_)
     {
         const std::uint32_t body = crowd.bodies[p.body];
@@ -189,7 +188,7 @@ void TunnelWatch::tell(const Simulation& s, const Crowd& crowd, std::vector<Even
         memory_.told[body] = 1;
         const Ref a{Facet::Body, body}, b{Facet::Body, crowd.bodies[p.other]};
         Event e;
-        e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "contact.missed", e.severity = Severity::Warning;
+        e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.missed", e.severity = Severity::Warning;
         e.component = crowd.detector, e.a = a, e.b = b;
         e.message = world.id_of(a) + " passed through " + world.id_of(b) +
                     " within a step, unseen; a resolution that looks inside the step (Resolution/LocalRoot) or shorter steps would find it";
@@ -198,7 +197,7 @@ void TunnelWatch::tell(const Simulation& s, const Crowd& crowd, std::vector<Even
     }
 }
 
-void TunnelWatch::after_step(const Simulation& s, std::vector<Event>& events)
+void TunnelWatch::after_step(const RunView& s, std::vector<Event>& events)
 {
     for (const Crowd& crowd : crowds_)
     {
@@ -206,28 +205,28 @@ void TunnelWatch::after_step(const Simulation& s, std::vector<Event>& events)
         find_passages(s, crowd);
         tell(s, crowd, events);
     }
-    if (!crowds_.empty() && s.stepper().report().deepest > shallow_) look_for_overlaps(s, events);
+    if (!crowds_.empty() && s.stepper.report().deepest > shallow_) look_for_overlaps(s, events);
 }
 
-void TunnelWatch::look_for_overlaps(const Simulation& s, std::vector<Event>& events)
+void TunnelWatch::look_for_overlaps(const RunView& s, std::vector<Event>& events)
 {
-    const world::World& world = s.world();
+    const world::World& world = s.world;
     const Bodies& bodies = world.host().bodies;
-    for (const FoundContact& f : s.stepper().touching())
+    for (const FoundContact& f : s.stepper.touching())
     {
         const Contact& c = f.contact;
-        const Detector& d = s.stepper().detectors()[f.detector];
+        const Detector& d = s.stepper.detectors()[f.detector];
         if (d.by_force || (!d.responds && !d.by_rows)) continue;
         const double one = least_width_[c.a.index], two = least_width_[c.b.index];
         if (!(c.depth > kDeep * std::min(one > 0 ? one : two, two > 0 ? two : one))) continue;
         const Ref who = bodies.dynamic(c.a.index) ? c.a : c.b;
         TunnelMemory::Sinking& sinking = memory_.sinking[who.index];
-        if (sinking.last == s.tick()) continue;
-        sinking.steps = sinking.last + 1 == s.tick() ? sinking.steps + 1 : 1;
-        sinking.last = s.tick();
+        if (sinking.last == s.tick) continue;
+        sinking.steps = sinking.last + 1 == s.tick ? sinking.steps + 1 : 1;
+        sinking.last = s.tick;
         if (sinking.steps != kDeepSteps) continue;
         Event e;
-        e.tick = s.tick(), e.time = s.time() + s.dt(), e.kind = "contact.deep", e.severity = Severity::Warning;
+        e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.deep", e.severity = Severity::Warning;
         e.component = d.component, e.a = c.a, e.b = c.b;
         e.message = world.id_of(c.a) + " and " + world.id_of(c.b) +
                     " are sunk into one another, and stay so; more iterations, shorter steps or Manager/Direct may hold them";

@@ -20,11 +20,10 @@
 
 #include "plab/context.h"
 #include "plab/tables.h"
+#include "simulation/watch/run_view.h"
 
 namespace plab::simulation
 {
-
-class Simulation;
 
 /// What a watch for tunnelling remembers from step to step.
 struct TunnelMemory
@@ -46,9 +45,9 @@ public:
     const TunnelMemory& memory() const { return memory_; }
     /// Goes on as the watch that remembered this did.
     void recall(TunnelMemory memory) { ready_ = false, memory_ = std::move(memory); }
-    void before_step(const Simulation& s);
+    void before_step(const RunView& s);
     /// Adds to `events`; once per body until begin_anew().
-    void after_step(const Simulation& s, std::vector<Event>& events);
+    void after_step(const RunView& s, std::vector<Event>& events);
 
 private:
     struct Place
@@ -77,12 +76,12 @@ private:
         friend auto operator<=>(const Passage&, const Passage&) = default;
     };
 
-    void look_up(const Simulation& s);
-    bool sweep(const Simulation& s, const Crowd& crowd);
-    void find_passages(const Simulation& s, const Crowd& crowd);
-    void tell(const Simulation& s, const Crowd& crowd, std::vector<Event>& events);
-    void look_for_overlaps(const Simulation& s, std::vector<Event>& events);
-    bool passed(const Simulation& s, std::uint32_t body, std::uint32_t other) const;
+    void look_up(const RunView& s);
+    bool sweep(const RunView& s, const Crowd& crowd);
+    void find_passages(const RunView& s, const Crowd& crowd);
+    void tell(const RunView& s, const Crowd& crowd, std::vector<Event>& events);
+    void look_for_overlaps(const RunView& s, std::vector<Event>& events);
+    bool passed(const RunView& s, std::uint32_t body, std::uint32_t other) const;
 
     bool ready_ = false;
     std::vector<Crowd> crowds_;

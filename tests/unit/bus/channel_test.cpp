@@ -213,6 +213,25 @@ TEST_CASE("a request is looked at again, whatever plab-bus says of it")
     CHECK(again->answer.reply.done);
 }
 
+TEST_CASE("a desk whose answers nobody fetches is full, until they are fetched")
+{
+    RequestDesk desk;
+    std::uint64_t strays = 0, number = 1000;
+    const auto refuse = [&]
+    {
+        RequestMessage m = some_request();
+        m.request.number = ++number, m.request.operations.clear();
+        (void)desk.receive(std::move(m), 1);
+    };
+    for (int i = 0; i < 1023; ++i) refuse();
+    CHECK_FALSE(desk.is_full());
+    refuse();
+    CHECK(desk.is_full());
+    int fetched = 0;
+    for (; desk.next_answer(strays); ++fetched) CHECK_FALSE(desk.is_full());
+    CHECK(fetched == 1024);
+}
+
 TEST_CASE("the catalogue that is kept is the one that was told")
 {
     CatalogueMirror mirror;

@@ -26,6 +26,8 @@ TEST_CASE("a writer that takes another's place goes on where that one ended: wha
     CHECK(missing.count == 12);
     CHECK(numbers.note(2, 116, 1).count == 0);
     CHECK(numbers.note(3, 117, 2).count == 0);
+    CHECK(numbers.note(2, 117, 1).count == 0);  // late
+    CHECK(numbers.note(4, 119, 1).count == 0);
     numbers.forget();
-    CHECK(numbers.note(4, 500, 1).count == 0);
+    CHECK(numbers.note(5, 500, 1).count == 0);
 }

@@ -1,5 +1,5 @@
 // How far gaps are looked for: nothing that can close within the step lies beyond.
-#include "simulation/events/speculation.h"
+#include "simulation/contacts/speculation.h"
 
 #include <doctest/doctest.h>
 

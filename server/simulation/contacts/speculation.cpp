@@ -1,4 +1,4 @@
-#include "simulation/events/speculation.h"
+#include "simulation/contacts/speculation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/contacts/island_step.h"
-#include "simulation/step/stepper.h"
+#include "simulation/contacts/held_islands.h"
 
 namespace plab::simulation
 {
@@ -13,7 +12,7 @@ namespace plab::simulation
 
 void HeldIslands::note_state()
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     known_positions_ = bodies.position, known_orientations_ = bodies.orientation;
     known_velocities_ = bodies.velocity, known_spins_ = bodies.angular_velocity;
     known_ = true;
@@ -21,7 +20,7 @@ void HeldIslands::note_state()
 
 bool HeldIslands::is_current() const
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     if (!known_ || known_positions_ != bodies.position || known_orientations_ != bodies.orientation) return false;
     // How far gaps are looked for depends on speeds.
     return known_velocities_ == bodies.velocity && known_spins_ == bodies.angular_velocity;
@@ -30,11 +29,11 @@ bool HeldIslands::is_current() const
 void HeldIslands::begin_step()
 {
     look_for_yielding_rows();
-    const bool stands =
-        std::any_of(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.by_rows && d.persists(); });
+    const bool stands = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(),
+                                    [](const Detector& d) { return d.by_rows && d.persists(); });
     if (!stands || is_current()) return;
-    s_->detect_all(s_->found_);
-    adopt(s_->found_, s_->frame_.start_time);
+    contacts_.detect_all(contacts_.found());
+    adopt(contacts_.found(), step_.frame.start_time);
     note_state();
 }
 
@@ -46,14 +45,14 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
         const FoundContact& first = found[i];
         double deepest = first.contact.depth;
         std::size_t end = i;
-        for (; end < found.size() && Stepper::same_pair(found[end], first); ++end) deepest = std::max(deepest, found[end].contact.depth);
-        const Detector& d = s_->detectors_[first.detector];
-        if (d.by_rows && d.persists() && !s_->cache_.find(d.component, first.contact.a, first.contact.b, s_->world_))
+        for (; end < found.size() && same_pair(found[end], first); ++end) deepest = std::max(deepest, found[end].contact.depth);
+        const Detector& d = contacts_.detectors()[first.detector];
+        if (d.by_rows && d.persists() && !contacts_.cache().find(d.component, first.contact.a, first.contact.b, step_.world))
         {
             PairState& pair = fresh_.emplace_back();
-            pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = s_->frame_.tick;
+            pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
             pair.resting = true, pair.normal = first.contact.normal;
-            pair.ahead = deepest <= -s_->standing_margin(pair);
+            pair.ahead = deepest <= -contacts_.standing_margin(pair);
             if (pair.ahead && !d.speculates)
                 fresh_.pop_back();
             else
@@ -62,22 +61,22 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
         i = end;
     }
     if (fresh_.empty()) return;
-    s_->cache_.add_sorted(fresh_, s_->world_);
+    contacts_.cache().add_sorted(fresh_, step_.world);
     for (std::size_t k = 0; k < fresh_.size(); ++k)
         if (!fresh_[k].ahead) tell_begin(fresh_[k], found[first_found_[k]].contact, time);
 }
 
 void HeldIslands::tell_begin(const PairState& pair, const Contact& c, double time) const
 {
-    Event begin = s_->contact_event("contact.begin", pair, time);
+    Event begin = contacts_.contact_event("contact.begin", pair, time);
     begin.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, 0, 0, 0, c.depth};
-    s_->emit(std::move(begin));
+    step_.emit(std::move(begin));
 }
 
 bool HeldIslands::keeps_ahead(PairState& pair, bool touches, std::span<const FoundContact> found, double time) const
 {
-    if (touches && pair.ahead) pair.ahead = false, pair.since = s_->frame_.tick, tell_begin(pair, found.front().contact, time);
-    return !touches && !found.empty() && s_->detectors_[found.front().detector].speculates;
+    if (touches && pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, tell_begin(pair, found.front().contact, time);
+    return !touches && !found.empty() && contacts_.detectors()[found.front().detector].speculates;
 }
 
 void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const FoundContact> found) const
@@ -97,11 +96,11 @@ void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const 
 
 void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law)
 {
-    const world::HostTables& host = s_->world_.host();
+    const world::HostTables& host = step_.world.host();
     const std::uint32_t ma = host.bodies.material[f.contact.a.index], mb = host.bodies.material[f.contact.b.index];
     const SurfaceLaw* own = ma != 0 && mb != 0 ? host.materials.find_pair(ma, mb) : nullptr;
     f.contact.friction = (own ? own : &law)->friction, f.contact.restitution = (own ? own : &law)->restitution;
-    const KnownContact& known = s_->cache_.contact_of(pair, f.contact.feature);
+    const KnownContact& known = contacts_.cache().contact_of(pair, f.contact.feature);
     f.contact.id = known.id, f.contact.impulse = known.impulse;
     f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
     f.contact.resting = true;
@@ -114,19 +113,19 @@ void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law)
 void HeldIslands::collect_contacts(double from, double h)
 {
     touching_.clear(), pair_of_contact_.clear();
-    const auto& detectors = s_->detectors_;
+    const auto& detectors = contacts_.detectors();
     const bool known = from == 0 && is_current();
     const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); });
-    if (!known || locates) s_->touching_pairs_of(held_, touching_, h);
+    if (!known || locates) contacts_.touching_pairs_of(held_, touching_, h);
     if (!known || !std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
     {
         for (const FoundContact& f : touching_)
-            pair_of_contact_.push_back(s_->cache_.find(detectors[f.detector].component, f.contact.a, f.contact.b, s_->world_));
+            pair_of_contact_.push_back(contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world));
         return;
     }
     std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
     for (const FoundContact& f : touching_)
-        pair_of_contact_.push_back(s_->cache_.find(detectors[f.detector].component, f.contact.a, f.contact.b, s_->world_));
+        pair_of_contact_.push_back(contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world));
     add_known_contacts();
 }
 
@@ -137,14 +136,14 @@ void HeldIslands::add_known_contacts()
     std::size_t at = 0;
     std::uint32_t law_detector = kNoIndex;
     SurfaceLaw law;
-    for (PairState& pair : s_->cache_.pairs())
+    for (PairState& pair : contacts_.cache().pairs())
     {
-        at = s_->first_of_pair(pair, at);
-        for (; at < s_->found_.size() && s_->is_of_pair(s_->found_[at], pair); ++at)
+        at = contacts_.first_of_pair(pair, at);
+        for (; at < contacts_.found().size() && contacts_.is_of_pair(contacts_.found()[at], pair); ++at)
         {
-            if (!pair.resting || !s_->detectors_[s_->found_[at].detector].persists()) continue;
-            FoundContact& f = touching_.emplace_back(s_->found_[at]);
-            if (f.detector != law_detector) law = s_->response_law(f.detector), law_detector = f.detector;
+            if (!pair.resting || !contacts_.detectors()[contacts_.found()[at].detector].persists()) continue;
+            FoundContact& f = touching_.emplace_back(contacts_.found()[at]);
+            if (f.detector != law_detector) law = contacts_.response_law(f.detector), law_detector = f.detector;
             fill(f, pair, law);
             pair_of_contact_.push_back(&pair);
         }
@@ -153,13 +152,14 @@ void HeldIslands::add_known_contacts()
 
 void HeldIslands::share_contacts(double h)
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     for (std::uint32_t i = 0; i < touching_.size(); ++i)
     {
         const Contact& c = touching_[i].contact;
         std::uint32_t number = kNoIndex;
         for (const Ref r : {c.a, c.b})
-            if (bodies.dynamic(r.index) && s_->groups_.of(r) != kNoIndex && number == kNoIndex) number = isle_of_group_[s_->groups_.of(r)];
+            if (bodies.dynamic(r.index) && step_.groups.of(r) != kNoIndex && number == kNoIndex)
+                number = isle_of_group_[step_.groups.of(r)];
         if (number == kNoIndex) continue;
         Isle& isle = *isles_[number];
         isle.turns = isle.turns || (!isle.has_rows && midway_.turns(c, h));
@@ -174,10 +174,10 @@ void HeldIslands::share_contacts(double h)
 void HeldIslands::set_approach(Isle& isle, const GroupSystem& system, double h)
 {
     for (std::size_t k = 0; k < isle.members.size(); ++k) given_speed_[isle.bodies[k]] = length(system.acceleration(isle.members[k])) * h;
-    const double least = kNoApproach * least_gyration(s_->world_.host().bodies, isle.bodies) / h;
+    const double least = kNoApproach * least_gyration(step_.world.host().bodies, isle.bodies) / h;
     for (Contact& c : isle.contacts)
     {
-        const double speed = s_->normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
+        const double speed = contacts_.normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
         const double share = c.impulse == Vec3{} ? 0.5 : 2;
         c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
     }
@@ -191,7 +191,7 @@ void HeldIslands::keep(const Isle& isle)
         const Contact& c = isle.contacts[i];
         PairState& pair = *pair_of_contact_[isle.places[i]];
         // What an impact took does not tell how hard the contact will press.
-        s_->cache_.contact_of(pair, c.feature).impulse = c.approach > 0 ? Vec3{} : c.impulse;
+        contacts_.cache().contact_of(pair, c.feature).impulse = c.approach > 0 ? Vec3{} : c.impulse;
         pair.normal = c.normal;
     }
 }
@@ -202,15 +202,17 @@ void HeldIslands::note_releases(Isle& isle, double from, double h) const
     for (std::size_t i = 0, end = 0; i < isle.contacts.size(); i = end)
     {
         PairState& pair = *pair_of_contact_[isle.places[i]];
-        double presses = 0, parting = HUGE_VAL;
+        ContactBook::Pressing pressing;
+        bool is_hit = false;
         for (end = i; end < isle.contacts.size() && pair_of_contact_[isle.places[end]] == &pair; ++end)
         {
-            const Contact& c = isle.contacts[end];
-            const double gap = std::max(0.0, -touching_[isle.places[end]].contact.depth);
-            parting = std::min(parting, isle.motion.parting(end) - c.turning + gap / h);
-            presses += c.approach > 0 ? HUGE_VAL : dot(c.impulse, c.normal);  // who is hit is held
+            Contact c = isle.contacts[end];
+            c.depth = touching_[isle.places[end]].contact.depth;
+            contacts_.add_point(pressing, pair, c, isle.motion.parting(end), h);
+            is_hit = is_hit || c.approach > 0;
         }
-        if (!s_->note_release(pair, isle.contacts[i], presses, parting, from, h)) continue;
+        if (is_hit) pressing.now = HUGE_VAL;  // who is hit is held
+        if (!contacts_.note_release(pair, isle.contacts[i], pressing, from, h)) continue;
         for (std::size_t k = i; k < end; ++k) isle.contacts[k].impulse = {};
     }
 }
@@ -223,10 +225,10 @@ void HeldIslands::tell_impacts(const Isle& isle, double time)
         if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
         const double depth = touching_[isle.places[i]].contact.depth;
         PairState& pair = *pair_of_contact_[isle.places[i]];
-        if (pair.ahead) pair.ahead = false, pair.since = s_->frame_.tick, tell_begin(pair, touching_[isle.places[i]].contact, time);
-        Event e = s_->contact_event("contact.impact", pair, time);
+        if (pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, tell_begin(pair, touching_[isle.places[i]].contact, time);
+        Event e = contacts_.contact_event("contact.impact", pair, time);
         e.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.impulse.x, c.impulse.y, c.impulse.z, depth};
-        s_->emit(std::move(e));
+        step_.emit(std::move(e));
     }
 }
 

@@ -10,15 +10,15 @@
 
 #include "plab/interruption.h"
 #include "simulation/groups/groups.h"
-#include "simulation/groups/progress.h"
-#include "simulation/groups/stage_scratch.h"
 #include "simulation/rows/row_system.h"
 #include "simulation/shafts/shaft_system.h"
+#include "simulation/systems/progress.h"
+#include "simulation/systems/stage_scratch.h"
 
 namespace plab::simulation
 {
 
-/// What a step shares with all of its parts; owned by the stepper.
+/// What a step shares with all of its parts; owned by StepState (motion/step_state.h).
 struct StepFrame
 {
     world::World* world = nullptr;
@@ -66,6 +66,8 @@ public:
     virtual void book(const StepContext& context, std::vector<double>& work, std::vector<double>& power, double share) = 0;
     /// See DynamicSystem.
     virtual bool is_undersampled() const { return false; }
+    /// Joins the groups that move together because of them.
+    virtual void join(DisjointSets& /*groups*/) const {}
 };
 
 class GroupSystem final : public DynamicSystem

@@ -1,4 +1,4 @@
-#include "simulation/sight.h"
+#include "simulation/step/sight.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "simulation/groups/stage_scratch.h"
+#include "simulation/systems/stage_scratch.h"
 
 namespace plab::simulation
 {

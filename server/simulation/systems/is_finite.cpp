@@ -3,7 +3,7 @@
 
 #include "plab/limits.h"
 #include "plab/rotation.h"
-#include "simulation/groups/group_system.h"
+#include "simulation/systems/group_system.h"
 
 namespace plab::simulation
 {

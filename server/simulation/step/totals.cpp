@@ -1,4 +1,4 @@
-#include "simulation/totals.h"
+#include "simulation/step/totals.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "simulation/contacts/island_step.h"
+#include "simulation/contacts/held_islands.h"
 
 #include <algorithm>
 
-#include "simulation/step/stepper.h"
+#include "simulation/motion/component_call.h"
 
 namespace plab::simulation
 {
@@ -22,17 +22,17 @@ std::uint32_t manager_role(const world::World& world, std::uint32_t component)
 void HeldIslands::rebuild()
 {
     known_ = false;
-    manager_of_group_.assign(s_->groups_.all.size(), kNoIndex);
-    any_ = std::any_of(s_->detectors_.begin(), s_->detectors_.end(), [](const Detector& d) { return d.by_rows; });
+    manager_of_group_.assign(step_.groups.all.size(), kNoIndex);
+    any_ = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(), [](const Detector& d) { return d.by_rows; });
     holds_joints_ = false;
-    yields_.assign(s_->groups_.all.size(), 0);
+    yields_.assign(step_.groups.all.size(), 0);
     yielding_groups_.clear();
-    const auto& blocks = s_->schedule_.of(Phase::Constrain);
+    const auto& blocks = step_.schedule.of(Phase::Constrain);
     for (std::uint32_t g = 0; g < manager_of_group_.size(); ++g)
-        for (const BlockRow& row : s_->groups_.all[g].rows)
+        for (const BlockRow& row : step_.groups.all[g].rows)
         {
-            const std::uint32_t component = s_->world_.tables()[blocks[row.block].table]->component_of_row()[row.row];
-            const std::uint32_t manager = manager_role(s_->world_, component);
+            const std::uint32_t component = step_.world.tables()[blocks[row.block].table]->component_of_row()[row.row];
+            const std::uint32_t manager = manager_role(step_.world, component);
             if (manager == kNoIndex || manager_of_group_[g] != kNoIndex) continue;
             manager_of_group_[g] = manager;
             yielding_groups_.push_back(g);
@@ -46,10 +46,10 @@ void HeldIslands::look_for_yielding_rows()
     holds_joints_ = false;
     for (const std::uint32_t g : yielding_groups_)
     {
-        RowSystem* rows = s_->system_for(std::span(&g, 1), {}).rows();
+        RowSystem* rows = motion_.system_for(std::span(&g, 1), {}).rows();
         StepContext context;
-        context.time = s_->frame_.start_time, context.dt = s_->frame_.step, context.tick = s_->frame_.tick;
-        context.seed = s_->frame_.seed;
+        context.time = step_.frame.start_time, context.dt = step_.frame.step, context.tick = step_.frame.tick;
+        context.seed = step_.frame.seed;
         rows->collect(context);
         yields_[g] = rows->may_yield() ? 1 : 0;
         holds_joints_ = holds_joints_ || rows->may_yield();
@@ -58,7 +58,7 @@ void HeldIslands::look_for_yielding_rows()
 
 std::uint32_t HeldIslands::manager_of(const PairState& pair) const
 {
-    for (const Detector& d : s_->detectors_)
+    for (const Detector& d : contacts_.detectors())
         if (d.component == pair.detector) return d.by_rows ? d.manager : kNoIndex;
     return kNoIndex;
 }
@@ -69,20 +69,20 @@ void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands
 {
     held_.clear();
     if (!any_) return;
-    manager_of_island_.assign(s_->groups_.all.size(), kNoIndex);
+    manager_of_island_.assign(step_.groups.all.size(), kNoIndex);
     const auto name = [&](std::uint32_t group, std::uint32_t manager)
     {
         if (group == kNoIndex || manager == kNoIndex) return;
         std::uint32_t& known = manager_of_island_[islands.find(group)];
-        if (known == kNoIndex || s_->world_.rank(manager) < s_->world_.rank(known)) known = manager;
+        if (known == kNoIndex || step_.world.rank(manager) < step_.world.rank(known)) known = manager;
     };
-    for (const PairState& p : s_->cache_.pairs())
+    for (const PairState& p : contacts_.cache().pairs())
     {
         if (!p.resting) continue;
         const std::uint32_t manager = manager_of(p);
         if (manager == kNoIndex) continue;
         for (const Ref r : {p.a, p.b})
-            if (s_->world_.host().bodies.dynamic(r.index)) name(s_->groups_.of(r), manager);
+            if (step_.world.host().bodies.dynamic(r.index)) name(step_.groups.of(r), manager);
     }
     for (const std::uint32_t g : yielding_groups_)
         if (yields_[g]) name(g, manager_of_group_[g]);
@@ -98,7 +98,7 @@ void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands
 
 void HeldIslands::make_isles(DisjointSets& islands)
 {
-    isle_of_group_.assign(s_->groups_.all.size(), kNoIndex);
+    isle_of_group_.assign(step_.groups.all.size(), kNoIndex);
     isle_count_ = 0;
     for (const std::uint32_t g : held_)
     {
@@ -115,7 +115,7 @@ void HeldIslands::make_isles(DisjointSets& islands)
         isle_of_group_[g] = number;
         Isle& isle = *isles_[number];
         isle.groups.push_back(g);
-        isle.has_rows = isle.has_rows || !s_->groups_.all[g].rows.empty();
+        isle.has_rows = isle.has_rows || !step_.groups.all[g].rows.empty();
     }
 }
 
@@ -144,36 +144,36 @@ void HeldIslands::advance(std::span<const std::uint32_t> shadows, DisjointSets& 
 void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from,
                       double to, WorkBook book, bool trial)
 {
-    GroupSystem& system = s_->system_for(groups, shadows);
+    GroupSystem& system = motion_.system_for(groups, shadows);
     system.hold_rows(true);
-    system.begin(from, to, book, trial ? nullptr : s_);
+    system.begin(from, to, book, trial ? nullptr : &step_);
     for (Isle* isle : isles) isle->members.clear(), isle->roots.clear(), isle->bodies.clear(), isle->shafts.clear();
     for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
     {
-        const std::uint32_t b = system.bodies()[i], number = isle_of_group_[s_->groups_.group_of_body[b]];
+        const std::uint32_t b = system.bodies()[i], number = isle_of_group_[step_.groups.group_of_body[b]];
         if (number == kNoIndex) continue;  // a shadow
         isles_[number]->members.push_back(i), isles_[number]->bodies.push_back(b);
     }
     for (std::uint32_t i = 0; i < system.roots().size(); ++i)
     {
-        const std::uint32_t shaft = system.roots()[i], number = isle_of_group_[s_->groups_.group_of_shaft[shaft]];
+        const std::uint32_t shaft = system.roots()[i], number = isle_of_group_[step_.groups.group_of_shaft[shaft]];
         if (number == kNoIndex) continue;
         isles_[number]->roots.push_back(i), isles_[number]->shafts.push_back(shaft);
     }
     system.evaluate(0, 0);
-    given_speed_.resize(s_->world_.host().bodies.size(), 0.0);
+    given_speed_.resize(step_.world.host().bodies.size(), 0.0);
     for (Isle* isle : isles) set_approach(*isle, system, to - from);
     lead(isles, system, to - from);
     for (Isle* isle : isles)
-        if (!s_->frame_.give_up()) solve(*isle, system, from, to, book, trial);
-    const bool given_up = s_->frame_.give_up();  // then isles may not have been solved, and nobody reads what is booked
+        if (!step_.frame.give_up()) solve(*isle, system, from, to, book, trial);
+    const bool given_up = step_.frame.give_up();  // then isles may not have been solved, and nobody reads what is booked
     if (book.work && !given_up) book_forces(system, isles, to - from);
     midway_.take_back();
     system.finish_held();
     if (!given_up)
         for (const Isle* isle : isles) report_rows(*isle, system, to - from, book);
     system.hold_rows(false);
-    s_->finish_advance(system, system.all_finite(), to, trial);
+    motion_.finish_advance(system, system.all_finite(), to, trial);
 }
 
 /// Islands in which somebody goes along a curve are led half a step ahead, with their forces. Not where somebody meets, or moves as told:
@@ -199,7 +199,7 @@ void HeldIslands::lead(std::span<Isle*> isles, GroupSystem& system, double h)
 
 void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial)
 {
-    world::World& world = s_->world_;
+    world::World& world = step_.world;
     world::HostTables& host = world.host();
     isle.rows.clear();
     if (isle.has_rows && system.rows())
@@ -209,12 +209,12 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     }
     if (!trial)
         for (std::size_t i = 0; i < isle.contacts.size(); ++i)
-            if (s_->is_paradox(isle.contacts[i]))
-                s_->tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]], s_->frame_.start_time + from);
+            if (contacts_.is_paradox(isle.contacts[i]))
+                contacts_.tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]], step_.frame.start_time + from);
     isle.motion.begin(system, host.bodies, host.shafts, isle.members, isle.roots, isle.contacts, isle.rows, book.work != nullptr);
     Island island;
-    island.interruption = s_->frame_.interruption;
-    island.h = to - from, island.time = s_->frame_.start_time + from;
+    island.interruption = step_.frame.interruption;
+    island.h = to - from, island.time = step_.frame.start_time + from;
     island.bodies = isle.bodies, island.shafts = isle.shafts;
     island.size = least_gyration(host.bodies, isle.bodies);
     shaft_mobility_.resize(host.shafts.size());
@@ -222,28 +222,22 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
     island.shaft_mobility = shaft_mobility_;
     island.rows = isle.rows, island.contacts = isle.contacts, island.motion = &isle.motion;
 
-    const world::Component& c = world.component(isle.manager);
-    world::Table& table = world.table_of(isle.manager);
-    StepContext context;
-    context.time = island.time, context.dt = island.h, context.tick = s_->frame_.tick, context.events = trial ? nullptr : s_;
-    context.interruption = island.interruption;
-    context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
-    PhaseCall call;
-    call.context = &context, call.rows = Rows(&c.row, 1);
-    call.bodies = &host.bodies, call.shafts = &host.shafts, call.island = &island;
+    ComponentCall answer(step_, isle.manager);
+    answer.context.time = island.time, answer.context.dt = island.h, answer.context.interruption = island.interruption;
+    if (trial) answer.context.events = nullptr;
+    answer.call.island = &island;
     const double before = book.work ? isle.motion.kinetic_energy() : 0.0;
-    s_->meter_.enter(s_->meter_.of_component(isle.manager));
-    s_->meter_.ran(c.table, Phase::Solve);
-    for (const CommandInfo& command : table.type().info.commands)
-        if (command.phase == Phase::Solve && command.run) (void)command.run(call, table.rows());
-    s_->meter_.leave();
+    step_.meter.enter(step_.meter.of_component(isle.manager));
+    step_.meter.ran(world.component(isle.manager).table, Phase::Solve);
+    answer.run(Phase::Solve);
+    step_.meter.leave();
     if (book.work) book_contacts(isle, isle.motion.kinetic_energy() - before, book);
     // A factorisation takes longer for each row the more there are: as long as a sweep over all where there are so many.
     constexpr std::size_t kFactored = 400;
     const std::size_t rows = 3 * isle.contacts.size() + isle.rows.size();
-    s_->report_.swept_rows += rows * (static_cast<std::size_t>(1 + island.iterations) + rows / kFactored);
+    step_.report.swept_rows += rows * (static_cast<std::size_t>(1 + island.iterations) + rows / kFactored);
     if (trial) return;
-    s_->report_.worst_residual = std::max(s_->report_.worst_residual, island.residual);
+    step_.report.worst_residual = std::max(step_.report.worst_residual, island.residual);
     note_releases(isle, from, to - from);
     keep(isle);
     tell_impacts(isle, island.time);
@@ -253,7 +247,7 @@ void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to,
 /// what parting their overlap lifts. What a method makes beyond that is nobody's work: it stays unexplained.
 void HeldIslands::book_contacts(Isle& isle, double gained, WorkBook book)
 {
-    const Bodies& bodies = s_->world_.host().bodies;
+    const Bodies& bodies = step_.world.host().bodies;
     const double lifted = isle.motion.count_corrections();
     const double work = gained - isle.motion.work_of_forces();
     const bool driven = !isle.rows.empty() || std::any_of(isle.contacts.begin(), isle.contacts.end(),
@@ -263,7 +257,7 @@ void HeldIslands::book_contacts(Isle& isle, double gained, WorkBook book)
                                                           });
     const double made = driven ? 0.0 : std::max(0.0, work - lifted);
     (*book.work)[isle.manager] += book.sign * (work - made);
-    ContactEnergy& own = s_->contact_energy_[isle.manager];
+    ContactEnergy& own = step_.contact_energy[isle.manager];
     own.made += book.sign * made, own.lifted += book.sign * lifted;
 }
 
@@ -280,8 +274,8 @@ void HeldIslands::report_rows(const Isle& isle, GroupSystem& system, double h, W
 /// 1/(kg m^2) of the train that a shaft carries.
 double HeldIslands::mobility_of(std::uint32_t root) const
 {
-    const Shafts& shafts = s_->world_.host().shafts;
-    const ShaftTree* tree = s_->graph_.tree_of(root);
+    const Shafts& shafts = step_.world.host().shafts;
+    const ShaftTree* tree = step_.graph.tree_of(root);
     const double inertia = tree ? tree->inertia : shafts.dynamic(root) ? shafts.inertia[root] : 0.0;
     return inertia > 0 ? 1 / inertia : 0.0;
 }
@@ -289,7 +283,7 @@ double HeldIslands::mobility_of(std::uint32_t root) const
 /// Each force component's part of what the kicks did: its power at the mean speeds of the kicks.
 void HeldIslands::book_forces(GroupSystem& system, std::span<Isle*> isles, double h)
 {
-    world::HostTables& host = s_->world_.host();
+    world::HostTables& host = step_.world.host();
     Bodies& bodies = host.bodies;
     kept_positions_.clear(), kept_orientations_.clear(), kept_velocities_.clear(), kept_spins_.clear(), kept_momenta_.clear();
     kept_speeds_.clear(), kept_angles_.clear();

@@ -1,4 +1,4 @@
-#include "simulation/step/worker_pool.h"
+#include "simulation/advance/worker_pool.h"
 
 namespace plab::simulation
 {

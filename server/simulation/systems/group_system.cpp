@@ -1,4 +1,4 @@
-#include "simulation/groups/group_system.h"
+#include "simulation/systems/group_system.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
-// The whole step in one go for everybody: groups in batches, one batch for each thread.
+#include "simulation/advance/batches.h"
+
 #include <algorithm>
 #include <map>
 #include <tuple>
-
-#include "simulation/step/stepper.h"
 
 namespace plab::simulation
 {
@@ -83,26 +82,40 @@ void share(Batch& batch, std::span<const std::uint32_t> cluster, std::uint32_t s
 
 }  // namespace
 
-GroupSystem& Stepper::system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
+void BatchedAdvance::rebuild()
 {
-    GroupSystem& system = pool_.of(frame_, groups, shadows);
-    system.set_extra_forces(extra_);
-    return system;
+    ready_ = false;
+    split_.assign(step_.groups.clusters, 0);
 }
 
-void Stepper::plan_batches()
+void BatchedAdvance::continue_split(const std::vector<std::uint32_t>& split)
+{
+    split_ = split, split_.resize(step_.groups.clusters, 0);
+    ready_ = false;
+}
+
+std::uint64_t BatchedAdvance::take_evaluations()
+{
+    std::uint64_t sum = 0;
+    for (Batch& batch : batches_)
+        if (batch.scratch) sum += std::exchange(batch.scratch->evaluations, 0);
+    return sum;
+}
+
+void BatchedAdvance::plan()
 {
     // One batch for each thread, in whole clusters: what reads another group must share its stage times. Partition never
     // shows in the state: groups do not feel one another, and a solver whose choices depend on its whole system gets each
     // cluster by itself.
-    std::vector<Cluster> clusters = clusters_of(groups_);
+    std::vector<Cluster> clusters = clusters_of(step_.groups);
     std::size_t total = 0;
     for (Cluster& c : clusters)
     {
         const auto any = [&](auto holds)
-        { return std::any_of(c.groups.begin(), c.groups.end(), [&](std::uint32_t g) { return holds(groups_.all[g]); }); };
-        const bool alone = any([&](const Group&g) { return goes_alone(g); }), held = any([](const Group&g) { return !g.rows.empty(); });
-        c.sharing = !alone ? Sharing::Always : !held && together_command(world_, c.solver) ? Sharing::UnlessRefused : Sharing::Alone;
+        { return std::any_of(c.groups.begin(), c.groups.end(), [&](std::uint32_t g) { return holds(step_.groups.all[g]); }); };
+        const bool alone = any([&](const Group&g) { return motion_.goes_alone(g); }),
+                   held = any([](const Group&g) { return !g.rows.empty(); });
+        c.sharing = !alone ? Sharing::Always : !held && together_command(step_.world, c.solver) ? Sharing::UnlessRefused : Sharing::Alone;
         total += c.load;
     }
     std::stable_sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.sharing < b.sharing; });
@@ -113,33 +126,33 @@ void Stepper::plan_batches()
     for (const Cluster& c : clusters)
     {
         // A solver that keeps something between advances serves its clusters one after the other, in one order.
-        const bool keeps = c.solver != kNoIndex && !world_.type_of(c.solver)->info.elementwise;
+        const bool keeps = c.solver != kNoIndex && !step_.world.type_of(c.solver)->info.elementwise;
         const auto known = keeps ? home.find(c.solver) : home.end();
         Batch& batch = known != home.end() ? batches_[known->second] : lightest_batch(total);
         if (keeps) home.emplace(c.solver, static_cast<std::size_t>(&batch - batches_.data()));
         batch.load += c.load;
         if (c.sharing == Sharing::UnlessRefused)
-            share(batch, c.groups, c.solver, split_[groups_.all[c.groups.front()].cluster], shared);
+            share(batch, c.groups, c.solver, split_[step_.groups.all[c.groups.front()].cluster], shared);
         else
             batch.add(c.groups, c.solver, c.sharing == Sharing::Always);
     }
     for (Batch& batch : batches_)
     {
         batch.scratch = std::make_unique<StageScratch>();
-        batch.scratch->fit(world_);
-        batch.meter.accounts().fit(world_.components().size(), world_.tables().size());
-        batch.scratch->measure_with(batches_.size() == 1 ? meter_ : batch.meter);
-        batch.work.assign(work_.size(), 0.0);
+        batch.scratch->fit(step_.world);
+        batch.meter.accounts().fit(step_.world.components().size(), step_.world.tables().size());
+        batch.scratch->measure_with(batches_.size() == 1 ? step_.meter : batch.meter);
+        batch.work.assign(step_.work.size(), 0.0);
         for (Batch::Part& part : batch.parts)
         {
             std::sort(part.groups.begin(), part.groups.end());  // once: a part may have gathered thousands of clusters
             part.system = std::make_unique<GroupSystem>(*batch.scratch);
-            part.system->configure(frame_, part.groups);
+            part.system->configure(step_.frame, part.groups);
         }
     }
 }
 
-Batch& Stepper::lightest_batch(std::size_t total_load)
+Batch& BatchedAdvance::lightest_batch(std::size_t total_load)
 {
     const auto threads = static_cast<std::size_t>(workers_.threads());
     for (Batch& batch : batches_)
@@ -156,27 +169,27 @@ void Batch::add(std::span<const std::uint32_t> cluster, std::uint32_t solver, bo
     part.groups.insert(part.groups.end(), cluster.begin(), cluster.end());
 }
 
-void Stepper::run_batch(Batch& batch, std::vector<double>& work)
+void BatchedAdvance::run_batch(Batch& batch, std::vector<double>& work)
 {
     for (std::size_t i = 0; i < batch.parts.size(); ++i)
     {
         // The frame is new in each step; its pointers are the same.
-        batch.parts[i].system->set_frame(frame_);
+        batch.parts[i].system->set_frame(step_.frame);
         while (!run_solver(batch.parts[i], work, batch.events))
         {
             Batch::Part& rest = batch.parts.emplace_back();
             rest.solver = batch.parts[i].solver;
-            rest.groups = half_of(groups_, batch.parts[i].groups);
-            for (const std::uint32_t g : rest.groups) split_[groups_.all[g].cluster] = groups_.all[rest.groups.front()].cluster;
+            rest.groups = half_of(step_.groups, batch.parts[i].groups);
+            for (const std::uint32_t g : rest.groups) split_[step_.groups.all[g].cluster] = step_.groups.all[rest.groups.front()].cluster;
             batch.split = true;
             rest.system = std::make_unique<GroupSystem>(*batch.scratch);
-            rest.system->configure(frame_, rest.groups);
-            batch.parts[i].system->configure(frame_, batch.parts[i].groups);
+            rest.system->configure(step_.frame, rest.groups);
+            batch.parts[i].system->configure(step_.frame, batch.parts[i].groups);
         }
     }
 }
 
-void Stepper::run_batch_measured(Batch& batch)
+void BatchedAdvance::run_batch_measured(Batch& batch)
 {
     batch.meter.start();
     run_batch(batch, batch.work);
@@ -184,26 +197,26 @@ void Stepper::run_batch_measured(Batch& batch)
 }
 
 /// False if the solver refuses to advance its several clusters together.
-bool Stepper::run_solver(Batch::Part& part, std::vector<double>& work, EventSink& events)
+bool BatchedAdvance::run_solver(Batch::Part& part, std::vector<double>& work, EventSink& events)
 {
-    const auto cluster = [&](std::uint32_t g) { return groups_.all[g].cluster; };
+    const auto cluster = [&](std::uint32_t g) { return step_.groups.all[g].cluster; };
     const bool several =
         std::any_of(part.groups.begin(), part.groups.end(), [&](std::uint32_t g) { return cluster(g) != cluster(part.groups.front()); });
-    const CommandInfo* together = several ? together_command(world_, part.solver) : nullptr;
+    const CommandInfo* together = several ? together_command(step_.world, part.solver) : nullptr;
     if (!together)
     {
-        part.fine = run_solver(*part.system, part.solver, 0, frame_.step, {&work, 1}, &events);
+        part.fine = motion_.run_solver(*part.system, part.solver, 0, step_.frame.step, {&work, 1}, &events);
         return true;
     }
     CostMeter& meter = part.system->meter();
     const CostScope scope(meter, meter.of_component(part.solver));
-    part.system->begin(0, frame_.step, {&work, 1}, &events);
-    if (!call_solver(*part.system, part.solver, *together)) return false;
+    part.system->begin(0, step_.frame.step, {&work, 1}, &events);
+    if (!motion_.call_solver(*part.system, part.solver, *together)) return false;
     part.fine = part.system->finish();
     return true;
 }
 
-void Stepper::emit_in_order()
+void BatchedAdvance::emit_in_order()
 {
     // In an order that no partition shows in.
     std::vector<Event> all;
@@ -212,37 +225,36 @@ void Stepper::emit_in_order()
         std::move(batch.events.events.begin(), batch.events.events.end(), std::back_inserter(all));
         batch.events.events.clear();
     }
-    const auto key = [&](const Event& e) { return std::pair(e.time, e.component == kNoIndex ? kNoIndex : world_.rank(e.component)); };
+    const auto key = [&](const Event& e) { return std::pair(e.time, e.component == kNoIndex ? kNoIndex : step_.world.rank(e.component)); };
     std::stable_sort(all.begin(), all.end(), [&](const Event& x, const Event& y) { return key(x) < key(y); });
-    for (Event& event : all) emit(std::move(event));
+    for (Event& event : all) step_.emit(std::move(event));
 }
 
-void Stepper::advance_batches()
+void BatchedAdvance::advance()
 {
-    if (!batches_ready_) plan_batches();
+    if (!ready_) plan();
     const bool alone = batches_.size() == 1;
     if (alone)
-        run_batch(batches_.front(), work_);
+        run_batch(batches_.front(), step_.work);
     else
     {
-        const CostScope scope(meter_, waiting_ns_);
+        const CostScope scope(step_.meter, waiting_ns_);
         workers_.run(batches_.size(), [this](std::size_t b) { run_batch_measured(batches_[b]); });
     }
     emit_in_order();
     // After a split they are planned anew: parts in the order that the split itself gives, not in that of their history.
-    batches_ready_ = std::none_of(batches_.begin(), batches_.end(), [](const Batch& b) { return b.split; });
+    ready_ = std::none_of(batches_.begin(), batches_.end(), [](const Batch& b) { return b.split; });
     for (Batch& batch : batches_)
     {
         for (Batch::Part& part : batch.parts)
         {
-            if (!part.fine) freeze(*part.system);
-            part.system->add_reactions(reactions_);
-            part.system->add_reports(row_reports_);
+            if (!part.fine) motion_.freeze(*part.system);
+            motion_.take_reports(*part.system);
         }
         if (alone) continue;
-        meter_.accounts() += batch.meter.accounts();
+        step_.meter.accounts() += batch.meter.accounts();
         batch.meter.accounts().clear();
-        for (std::size_t i = 0; i < work_.size(); ++i) work_[i] += batch.work[i];
+        for (std::size_t i = 0; i < step_.work.size(); ++i) step_.work[i] += batch.work[i];
         std::fill(batch.work.begin(), batch.work.end(), 0.0);
     }
 }

@@ -14,14 +14,13 @@
 #include <vector>
 
 #include "plab/island.h"
-#include "simulation/contacts/contacts.h"
+#include "simulation/contacts/contact_book.h"
 #include "simulation/contacts/kicked_bodies.h"
 #include "simulation/contacts/midway_contacts.h"
+#include "simulation/motion/group_motion.h"
 
 namespace plab::simulation
 {
-
-class Stepper;
 
 /// How the bodies of one island move. What is kicked twice without a move
 /// between was kicked once: the last time.
@@ -84,7 +83,10 @@ private:
 class HeldIslands
 {
 public:
-    explicit HeldIslands(Stepper& stepper) : s_(&stepper), midway_(stepper) {}
+    HeldIslands(StepState& step, GroupMotion& motion, ContactBook& contacts)
+        : step_(step), motion_(motion), contacts_(contacts), midway_(step, contacts)
+    {
+    }
 
     /// After any structural change.
     void rebuild();
@@ -108,7 +110,7 @@ public:
     void pass_on(PairState& pair, std::uint32_t known, std::span<const FoundContact> found) const;
     /// The contacts in `found` are those of the present state.
     void note_state();
-    /// Takes the groups that managers advance out of `groups` into held(); both
+    /// Takes the groups that managers advance out of `groups`; both
     /// ascending.
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
     bool holds_any() const { return !held_.empty(); }
@@ -151,7 +153,9 @@ private:
     double mobility_of(std::uint32_t root) const;
     void book_forces(GroupSystem& system, std::span<Isle*> isles, double h);
 
-    Stepper* s_;
+    StepState& step_;
+    GroupMotion& motion_;
+    ContactBook& contacts_;
     bool any_ = false, holds_joints_ = false;
     std::vector<std::uint32_t> manager_of_group_;   ///< of joints that name one; kNoIndex: none
     std::vector<std::uint32_t> yielding_groups_;    ///< those that have one

@@ -1,4 +1,4 @@
-#include "simulation/groups/system_pool.h"
+#include "simulation/systems/system_pool.h"
 
 #include <algorithm>
 

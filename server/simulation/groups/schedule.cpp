@@ -1,4 +1,4 @@
-#include "simulation/step/schedule.h"
+#include "simulation/groups/schedule.h"
 
 #include <algorithm>
 #include <map>

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "simulation/groups/group_system.h"
+#include "simulation/systems/group_system.h"
 
 namespace plab::simulation
 {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "plab/number_text.h"
-#include "simulation/groups/group_system.h"
+#include "simulation/systems/group_system.h"
 
 namespace plab::simulation
 {

@@ -1,0 +1,56 @@
+/// Commands and their options. CLI11 is behind it, in command_line.cpp and main.cpp alone: its headers take a compiler longer than a
+/// command does.
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace CLI
+{
+class App;
+class Option;
+}  // namespace CLI
+
+namespace plab::control
+{
+
+/// What may be said of an option, one after the other.
+class Option
+{
+public:
+    explicit Option(CLI::Option* option) : option_(option) {}
+    Option required() const;
+    /// What stands for its value in the help.
+    Option type_name(std::string_view name) const;
+    /// `wrong_with` gives what is wrong with a text; "": nothing.
+    Option check(std::string (*wrong_with)(const std::string& text)) const;
+    Option one_of(std::initializer_list<const char*> words) const;
+    /// It may be given several times, with one value each.
+    Option repeated() const;
+    Option excludes(const Option& other) const;
+    /// The help tells the value that is there before.
+    Option show_default() const;
+
+private:
+    CLI::Option* option_;
+};
+
+class Command
+{
+public:
+    explicit Command(CLI::App& app) : app_(&app) {}
+    /// `name` with dashes is an option ("-o,--output"), without it a word by its place. T: std::string, a vector of it, a number, or an
+    /// optional one. What `value` refers to must be there until the line is parsed.
+    template <class T>
+    Option add_option(std::string_view name, T& value, std::string_view help) const;
+    /// A command of this one; global options may stand behind it. `footer` ends its help.
+    Command add_command(const std::string& name, const std::string& doc, const std::string& footer, std::function<void()> chosen) const;
+    void add_flag(std::string_view name, bool& value, std::string_view help) const;
+
+private:
+    CLI::App* app_;
+};
+
+}  // namespace plab::control

@@ -1,0 +1,86 @@
+#include "simulation/advance/advance.h"
+
+#include <algorithm>
+
+namespace plab::simulation
+{
+
+void Advance::rebuild()
+{
+    const auto stands_alone = [](const Group& g)
+    { return g.solver == kNoIndex && !(g.bodies.empty() && g.shafts.empty() && g.quantities.empty()); };
+    some_without_solver_ = std::any_of(step_.groups.all.begin(), step_.groups.all.end(), stands_alone);
+    batches_.rebuild();
+}
+
+void Advance::advance_all()
+{
+    contacts_.cache().forget_parked();
+    if (forces_.any()) forces_.begin_step();
+    hard_.begin_step();
+    if (some_without_solver_ || hard_.any_stands() || (forces_.any() && forces_.may_touch()))
+        advance(step_.all_groups, 0, step_.frame.step, step_.book(), false);
+    else
+        batches_.advance();
+    motion_.save_ends();
+}
+
+void Advance::split_by_contact(std::span<const std::uint32_t> groups)
+{
+    group_flags_.assign(step_.groups.all.size(), 0);
+    for (const std::uint32_t g : groups) group_flags_[g] = 1;
+    for (const PairState& p : contacts_.cache().pairs())
+        if (p.resting)
+            for (const Ref r : {p.a, p.b})
+                if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex && group_flags_[g]) group_flags_[g] = 2;
+    for (const std::uint32_t g : groups)
+        if (hard_.holds_joints_of(g)) group_flags_[g] = 2;
+    smooth_.clear(), in_contact_.clear();
+    for (const std::uint32_t g : groups)
+    {
+        const Group& group = step_.groups.all[g];
+        const bool moves = !(group.bodies.empty() && group.shafts.empty());
+        (group_flags_[g] == 2 && moves ? in_contact_ : smooth_).push_back(g);
+    }
+}
+
+void Advance::collect_shadows(std::span<const std::uint32_t> groups)
+{
+    group_flags_.assign(step_.groups.all.size(), 0);
+    for (const std::uint32_t g : groups) group_flags_[g] = 1;
+    shadows_.clear();
+    const auto look = [&](std::uint32_t g)
+    {
+        for (const std::uint32_t up : step_.groups.all[g].upstream)
+            if (!group_flags_[up]) group_flags_[up] = 1, shadows_.push_back(up);
+    };
+    for (const std::uint32_t g : groups) look(g);
+    for (std::size_t i = 0; i < shadows_.size(); ++i) look(shadows_[i]);
+    std::sort(shadows_.begin(), shadows_.end());
+}
+
+void Advance::advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial)
+{
+    collect_shadows(groups);
+    // Whom the members read goes along from where the members are, and comes back to where it had got to.
+    if (!shadows_.empty())
+    {
+        for (const std::uint32_t g : shadows_) motion_.rewind(g);
+        const bool together = std::all_of(shadows_.begin(), shadows_.end(), [&](std::uint32_t g) { return motion_.segment_begin(g) == 0; });
+        if (together && from > 0) motion_.advance_smooth(shadows_, {}, 0, from, {}, true);
+        for (const std::uint32_t g : shadows_)
+            if (!together && motion_.segment_begin(g) < from)
+                motion_.advance_smooth(std::span(&g, 1), {}, motion_.segment_begin(g), from, {}, true);
+    }
+    split_by_contact(groups);
+    if (forces_.any())
+    {
+        forces_.take(groups, smooth_, in_contact_, from, to);
+        forces_.advance(shadows_, from, to, book, trial);
+    }
+    if (!in_contact_.empty()) hard_.advance(in_contact_, shadows_, from, to, book, trial);
+    if (!smooth_.empty()) motion_.advance_smooth(smooth_, shadows_, from, to, book, trial);
+    for (const std::uint32_t g : shadows_) motion_.restore_end(g);
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,285 @@
+#include "simulation/contacts/contact_book.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "plab/surface.h"
+#include "simulation/contacts/contact_rules.h"
+#include "simulation/contacts/speculation.h"
+#include "simulation/motion/component_call.h"
+
+namespace plab::simulation
+{
+namespace
+{
+
+/// Of the smaller body's radius: a standing pair is never looked at as if it were closer than this.
+constexpr double kMostShare = 0.1;
+
+/// m: radius of the most curved round shape of a body, negative of what is touched from inside; infinite where it has none.
+double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
+{
+    double least = HUGE_VAL;
+    const auto add = [&](const Geometry& g)
+    {
+        const bool round = g.kind == GeometryKind::Sphere || g.kind == GeometryKind::Capsule || g.kind == GeometryKind::Cylinder;
+        if (round && g.size.x < std::fabs(least)) least = g.size.x;
+        const Surface surface = surface_of(g);
+        const bool inside = surface == Surface::Bore || surface == Surface::Bowl;
+        if (inside && surface_radius(g) < std::fabs(least)) least = -surface_radius(g);
+    };
+    for (const Ref shape : bodies.shapes[b])
+    {
+        const Geometry& g = shapes.geometry[shape.index];
+        add(g);
+        for (const std::uint32_t part : g.parts) add(shapes.geometry[part]);
+    }
+    return least;
+}
+
+const PairState* known_pair(const ContactCache& cache, const world::World& world, std::uint32_t detector, const Contact& c)
+{
+    const auto key = [&](std::uint32_t d, Ref a, Ref b) { return std::tuple(world.rank(d), world.rank(a), world.rank(b)); };
+    const auto at = std::lower_bound(cache.pairs().begin(), cache.pairs().end(), key(detector, c.a, c.b),
+                                     [&](const PairState& p, const auto& k) { return key(p.detector, p.a, p.b) < k; });
+    return at != cache.pairs().end() && at->detector == detector && at->a == c.a && at->b == c.b ? &*at : nullptr;
+}
+
+/// m: by how much two round bodies part while they slide along one another straight on for h: (v h)^2 / (2 (r_a + r_b)) in one step.
+/// That leaves them parting at twice this per step, and forces, which take it back, act a step later: up to 8 times as much.
+double opening_by_curves(double speed, double h, double radii) { return 4 * speed * speed * h * h / radii; }
+
+/// m, beyond `base`: what slides along a curve is off it by a little more than others at the end of a step, and still held: without, it
+/// would hop. Not what parts faster than the curve makes it: that bounces.
+double sliding_margin(const world::HostTables& host, Ref a, Ref b, const Vec3& normal, double base, double radius, double h)
+{
+    const Vec3 v = host.bodies.velocity[b.index] - host.bodies.velocity[a.index];
+    const double parting = dot(v, normal), along = length(v - parting * normal);
+    const double curves = std::fabs(curve_radius(host.bodies, host.shapes, a.index) + curve_radius(host.bodies, host.shapes, b.index));
+    if (!(curves > 0) || parting > 2 * along * along * h / curves) return base;
+    return base + std::min(opening_by_curves(along, h, curves), kMostShare * radius);
+}
+
+}  // namespace
+
+Errors ContactBook::rebuild()
+{
+    detectors_ = find_detectors(step_.world, step_.schedule);
+    if (Errors refused = check_contacts(step_.world, detectors_); !refused.empty()) return refused;
+    cache_.refresh(step_.world, detectors_);
+    found_.clear();
+    measure_bodies();
+    return {};
+}
+
+void ContactBook::measure_bodies()
+{
+    const world::HostTables& host = step_.world.host();
+    const auto radius_of = [&](const Geometry& g)
+    {
+        double r = 0;
+        if (g.kind == GeometryKind::Plane) return std::numeric_limits<double>::infinity();
+        if (g.kind == GeometryKind::Sphere) r = g.size.x;
+        if (g.kind == GeometryKind::Box) r = length(g.size);
+        if (g.kind == GeometryKind::Capsule) r = g.size.x + g.size.z;
+        if (g.kind == GeometryKind::Cylinder) r = std::hypot(g.size.x, g.size.z);
+        for (const Vec3& v : g.vertices) r = std::max(r, length(v));
+        return r;
+    };
+    radius_of_body_.assign(host.bodies.size(), 0.0);
+    for (std::size_t b = 0; b < radius_of_body_.size(); ++b)
+        for (const Ref shape : host.bodies.shapes[b])
+        {
+            const Geometry& g = host.shapes.geometry[shape.index];
+            radius_of_body_[b] = std::max(radius_of_body_[b], length(g.pose.p - host.bodies.center_B[b]) + radius_of(g));
+        }
+}
+
+void ContactBook::look(const Detector& detector, ContactSink& sink, std::span<const std::uint8_t> active)
+{
+    ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
+    question.context.active_bodies = active, question.call.contacts = &sink;
+    const CostScope scope(step_.meter, step_.meter.of_component(detector.component));
+    step_.meter.ran(detector.table, Phase::Detect);
+    if (const auto done = question.run(*detector.command); !done)
+        question.context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
+}
+
+void ContactBook::detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
+                         std::vector<FoundContact>& out, double margin)
+{
+    ContactCollector sink(step_.world, out);
+    sink.look_for(index, standing, only_standing, margin);
+    look(detector, sink);
+    step_.report.further_pairs += sink.further_pairs();
+}
+
+void ContactBook::detect_all(std::vector<FoundContact>& out)
+{
+    out.clear();
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        if (detectors_[d].by_rows && detectors_[d].persists())
+        {
+            detect_with_gaps(d, out);
+            continue;
+        }
+        standing_.clear();
+        double margin = 0;
+        for (const PairState& p : cache_.pairs())
+            if (p.resting && p.detector == detectors_[d].component)
+                standing_.push_back({p.a, p.b, {}}), margin = std::max(margin, standing_margin(p));
+        const std::size_t first = out.size();
+        detect(detectors_[d], d, standing_, false, out, margin);
+        // One look has one margin, that of the widest standing pair: gaps count for standing pairs only, each up to its own.
+        const auto far = [&](const FoundContact& f)
+        {
+            if (f.contact.depth > 0) return false;
+            const PairState* pair = find_pair(f);
+            return !pair || !pair->resting || f.contact.depth <= -standing_margin(*pair);
+        };
+        out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
+    }
+    sort_contacts(out, step_.world);
+}
+
+/// Contacts of pairs that stand as soon as they touch: with the gaps that count as touching, or may close within the step, and, of pairs
+/// that pressed, those that curves open.
+void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
+{
+    const Detector& detector = detectors_[index];
+    const Bodies& bodies = step_.world.host().bodies;
+    double margin = 0, fastest = 0;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) fastest = std::max(fastest, length(bodies.velocity[b]));
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+    {
+        if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) continue;
+        // The other one is round, too, of any radius.
+        const double opens = opening_by_curves(2 * fastest, step_.frame.step, curve_radius(bodies, step_.world.host().shapes, b));
+        margin = std::max(margin, kStandingShare * radius_of_body_[b] + std::min(opens, kMostShare * radius_of_body_[b]));
+    }
+    const double acceleration = detector.speculates ? number_of(detector.resolution, "acceleration") : 0.0;
+    if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, step_.frame.step));
+    const std::size_t first = out.size();
+    detect(detector, index, {}, false, out, margin);
+    // By the normal that is seen, not the one that is known: this look serves the next step as well, and a step that begins from a
+    // snapshot looks with other knowledge.
+    const auto margin_of = [&](const Contact& c)
+    {
+        const PairState* pair = known_pair(cache_, step_.world, detector.component, c);
+        const double base = standing_margin(c.a, c.b), radius = std::min(radius_of_body_[c.a.index], radius_of_body_[c.b.index]);
+        if (!pair || !pressed(*pair) || !std::isfinite(radius)) return base;
+        return sliding_margin(step_.world.host(), c.a, c.b, c.normal, base, radius, step_.frame.step);
+    };
+    const auto far = [&](const FoundContact& f)
+    {
+        if (f.contact.depth > -margin_of(f.contact)) return false;
+        return !detector.speculates || !may_close(bodies, radius_of_body_, f.contact, acceleration, step_.frame.step);
+    };
+    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
+}
+
+double ContactBook::number_of(std::uint32_t component, const char* parameter) const
+{
+    const Field* field = step_.world.table_of(component).schema().find_field(parameter);
+    const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
+    return column ? (*column)[step_.world.component(component).row] : 0.0;
+}
+
+KnownContact& ContactBook::known_contact(const FoundContact& f) { return cache_.contact_of(*find_pair(f), f.contact.feature); }
+
+PairState* ContactBook::find_pair(const FoundContact& f)
+{
+    return cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, step_.world);
+}
+
+/// m: gaps of a standing pair up to this may close within h: corners that come round are held before they are through.
+double ContactBook::gap_margin(const PairState& pair, double h) const
+{
+    const double margin = closing_margin(step_.world.host().bodies, radius_of_body_, pair.a, pair.b, pair.normal, h);
+    return margin > standing_margin(pair) ? margin : 0.0;
+}
+
+/// One look has one margin: drops what was seen beyond that of its own pair.
+void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    const auto far = [&](const FoundContact& f)
+    {
+        const PairState* pair = known_pair(cache_, step_.world, detectors_[f.detector].component, f.contact);
+        const double margin = pair ? standing_margin(*pair) : standing_margin(f.contact.a, f.contact.b);
+        return f.contact.depth <= -margin && !may_close(bodies, radius_of_body_, f.contact, 0, h);
+    };
+    out.erase(std::remove_if(out.begin(), out.end(), far), out.end());
+}
+
+void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::vector<FoundContact>& out, double h)
+{
+    const auto member = [&](Ref r)
+    {
+        const std::uint32_t g = step_.groups.of(r);
+        return g != kNoIndex && std::binary_search(groups.begin(), groups.end(), g);
+    };
+    for (std::uint32_t d = 0; d < detectors_.size(); ++d)
+    {
+        standing_.clear();
+        double margin = 0;
+        for (const PairState& p : cache_.pairs())
+        {
+            if (!p.resting || p.detector != detectors_[d].component || !(member(p.a) || member(p.b))) continue;
+            standing_.push_back({p.a, p.b, {}});
+            margin = std::max({margin, standing_margin(p), gap_margin(p, h)});
+        }
+        if (!standing_.empty()) detect(detectors_[d], d, standing_, true, out, margin);
+    }
+    drop_far(out, h);
+    sort_contacts(out, step_.world);
+    for (FoundContact& f : out)
+    {
+        f.contact.resting = true;
+        const KnownContact& known = known_contact(f);
+        f.contact.id = known.id, f.contact.impulse = known.impulse;
+        f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
+        fill_material(f);
+    }
+}
+
+double ContactBook::standing_margin(const PairState& pair) const
+{
+    const double base = standing_margin(pair.a, pair.b), radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
+    if (!pressed(pair) || !std::isfinite(radius)) return base;
+    return sliding_margin(step_.world.host(), pair.a, pair.b, pair.normal, base, radius, step_.frame.step);
+}
+
+double ContactBook::standing_margin(Ref a, Ref b) const
+{
+    const double radius = std::min(radius_of_body_[a.index], radius_of_body_[b.index]);
+    return std::isfinite(radius) ? kStandingShare * radius : 0.0;
+}
+
+double ContactBook::normal_velocity(const Contact& c) const
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    return dot(bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point), c.normal);
+}
+
+bool ContactBook::is_of_pair(const FoundContact& f, const PairState& pair) const
+{
+    return detectors_[f.detector].component == pair.detector && f.contact.a == pair.a && f.contact.b == pair.b;
+}
+
+std::size_t ContactBook::first_of_pair(const PairState& pair, std::size_t from) const
+{
+    // Both lists stand in the order of detector, a, b: one walk serves all pairs.
+    const auto key = [&](std::uint32_t detector, Ref a, Ref b)
+    { return std::tuple(step_.world.rank(detector), step_.world.rank(a), step_.world.rank(b)); };
+    const auto wanted = key(pair.detector, pair.a, pair.b);
+    while (from < found_.size() &&
+           key(detectors_[found_[from].detector].component, found_[from].contact.a, found_[from].contact.b) < wanted)
+        ++from;
+    return from;
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,103 @@
+#include "simulation/contacts/hard_contacts.h"
+
+#include <algorithm>
+
+namespace plab::simulation
+{
+
+void HardContacts::begin_step()
+{
+    if (held_.any()) held_.begin_step();
+    // A step that begins from a snapshot looks where others know: no part of what bounds this step's work.
+    step_.report.further_pairs = 0;
+}
+
+bool HardContacts::any_stands() const
+{
+    const auto& pairs = contacts_.cache().pairs();
+    return held_.holds_joints() || std::any_of(pairs.begin(), pairs.end(), [](const PairState& p) { return p.resting; });
+}
+
+void HardContacts::advance(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+                           WorkBook book, bool trial)
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    islands_.reset(step_.groups.all.size());
+    for (const PairState& p : contacts_.cache().pairs())
+        if (p.resting && bodies.dynamic(p.a.index) && bodies.dynamic(p.b.index)) islands_.join(step_.groups.of(p.a), step_.groups.of(p.b));
+    if (motion_.extra()) motion_.extra()->join(islands_);
+    groups_.assign(groups.begin(), groups.end());
+    held_.take(groups_, islands_);
+    if (held_.holds_any()) held_.advance(shadows, islands_, from, to, book, trial);
+    // Islands in the order of their first group; members keep their order.
+    done_.assign(step_.groups.all.size(), 0);
+    for (const std::uint32_t first : groups_)
+    {
+        if (done_[first]) continue;
+        island_.clear();
+        for (const std::uint32_t g : groups_)
+            if (!done_[g] && islands_.find(g) == islands_.find(first)) done_[g] = 1, island_.push_back(g);
+        std::sort(island_.begin(), island_.end());
+        impulses_.advance(island_, shadows, from, to, book, trial);
+    }
+}
+
+void HardContacts::update_pair(PairState& pair, std::span<FoundContact> found)
+{
+    bool overlaps = false;
+    const std::uint32_t known = pair.count;
+    for (FoundContact& f : found)
+    {
+        overlaps = overlaps || f.contact.depth > 0;
+        f.contact.id = contacts_.cache().contact_of(pair, f.contact.feature).id;
+    }
+    const auto is_past = [&](const KnownContact& k)
+    { return std::none_of(found.begin(), found.end(), [&](const FoundContact& f) { return f.contact.feature == k.feature; }); };
+    if (pair.resting) held_.pass_on(pair, known, found);
+    const auto past = std::remove_if(pair.contacts.begin(), pair.contacts.begin() + pair.count, is_past);
+    pair.count = static_cast<std::uint32_t>(past - pair.contacts.begin());
+    pair.overlapping = overlaps;
+    if (!found.empty()) pair.normal = found.front().contact.normal;
+}
+
+void HardContacts::finish_step()
+{
+    std::vector<FoundContact>& found = contacts_.found();
+    const double time = step_.frame.start_time + step_.frame.step;
+    if (held_.any())
+    {
+        held_.note_state();
+        held_.adopt(found, time);
+    }
+    positions_.ease_overlaps();
+    positions_.correct_positions();
+    std::vector<PairState>& pairs = contacts_.cache().pairs();
+    std::size_t kept = 0, at = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+    {
+        PairState& pair = pairs[i];
+        const std::size_t begin = contacts_.first_of_pair(pair, at);
+        bool touches = false;
+        for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair); ++at)
+            touches = touches || found[at].contact.depth > (pair.resting ? -contacts_.standing_margin(pair) : 0.0);
+        const std::span<FoundContact> own = std::span(found).subspan(begin, at - begin);
+        const bool was_held = pressed(pair);
+        const bool released = contacts_.tell_release(pair);
+        update_pair(pair, own);
+        const bool ahead = held_.keeps_ahead(pair, touches, own, time);
+        if (!touches && !ahead)
+        {
+            // What pressed in its last step, and is gone at its end, was released in between.
+            if (was_held && !released) step_.emit(contacts_.contact_event("contact.release", pair, time));
+            if (!pair.ahead) step_.emit(contacts_.contact_event("contact.end", pair, time));
+            continue;
+        }
+        step_.report.resting_pairs += pair.resting && !ahead ? 1 : 0;
+        if (kept != i) pairs[kept] = pair;
+        ++kept;
+    }
+    pairs.resize(kept);
+    for (const FoundContact& f : found) step_.report.deepest = std::max(step_.report.deepest, f.contact.depth);
+}
+
+}  // namespace plab::simulation

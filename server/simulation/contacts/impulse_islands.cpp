@@ -1,0 +1,119 @@
+#include "simulation/contacts/impulse_islands.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace plab::simulation
+{
+
+/// Whether corners of a standing pair reach the other body within the step, faster than forces alone would take them there.
+bool ImpulseIslands::meets_any(const GroupSystem& system, double h) const
+{
+    double given = 0;
+    for (std::size_t i = 0; i < system.bodies().size(); ++i) given = std::max(given, length(system.acceleration(i)) * h);
+    const double least = kNoApproach * least_gyration(step_.world.host().bodies, system.bodies()) / h;
+    const auto meets = [&](const FoundContact& f)
+    {
+        const double closing = -contacts_.normal_velocity(f.contact);
+        return closing > std::max(least, 2 * given) && closing * h > -f.contact.depth;
+    };
+    return std::any_of(touching_.begin(), touching_.end(), meets);
+}
+
+/// Such corners meet it without bounce, ahead of the step: a mean of the speeds before and after would carry them through.
+void ImpulseIslands::arrest(double h, WorkBook book)
+{
+    for (FoundContact& f : touching_) f.contact.impulse = {};
+    contacts_.respond(touching_, ImpactMode::Rest, h, book);
+    // What a blow took does not tell how hard the contact will press; the last step's impulse does.
+    for (FoundContact& f : touching_) f.contact.impulse = contacts_.known_contact(f).impulse;
+}
+
+void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
+                             WorkBook book, bool trial)
+{
+    const double h = to - from;
+    Bodies& bodies = step_.world.host().bodies;
+    Shafts& shafts = step_.world.host().shafts;
+    GroupSystem& system = motion_.system_for(island, shadows);
+    touching_.clear();
+    contacts_.touching_pairs_of(island, touching_, h);
+    system.begin(from, to, book, trial ? nullptr : &step_);
+    members_.resize(system.bodies().size());
+    std::iota(members_.begin(), members_.end(), 0u);
+    const bool led = lead_touching(system, h);
+    system.evaluate_here();
+    if (led) bend_touching(h);
+    if (!trial)
+        for (const FoundContact& f : touching_)
+            if (contacts_.is_paradox(f.contact)) contacts_.tell_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
+    if (!led && meets_any(system, h)) arrest(h, book), system.join();
+
+    moved_.kick(system, bodies, members_, h);
+    if (!trial) positions_.note_forces(system);
+    contacts_.respond(touching_, ImpactMode::Rest, h, book);
+    if (!trial) keep_impulses(touching_, from, h);
+    system.join();  // an impulse knows nothing of joints
+    const double work = moved_.move_mean(h);
+    if (led) midway_.take_back();
+    if (book.work && !system.rows()) book_rest(work, book);
+    system.move_shafts(h, shafts);
+    system.move_prescribed();
+    system.project();
+    motion_.finish_advance(system, system.all_finite(), to, trial);
+}
+
+/// Who goes along a curve and meets nobody is led half a step ahead.
+bool ImpulseIslands::lead_touching(GroupSystem& system, double h)
+{
+    const auto turns = [&](const FoundContact& f) { return midway_.turns(f.contact, h); };
+    const auto is_driven = [&](const FoundContact& f) { return midway_.is_driven(f.contact); };
+    if (system.rows() || std::none_of(touching_.begin(), touching_.end(), turns)) return false;
+    if (std::any_of(touching_.begin(), touching_.end(), is_driven)) return false;
+    system.evaluate(0, 0);
+    if (meets_any(system, h)) return false;
+    midway_.lead(system, members_, h);
+    return true;
+}
+
+void ImpulseIslands::bend_touching(double h)
+{
+    places_.resize(touching_.size());
+    std::iota(places_.begin(), places_.end(), 0u);
+    midway_.bend(places_, touching_, h);
+}
+
+/// What resting contacts did on the way that the bodies went: no more than nothing where nobody else moves. What it is more stays
+/// unexplained; ContactBook::respond() has booked it with the mean speeds of the impulses alone.
+void ImpulseIslands::book_rest(double work, WorkBook book)
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    const auto driven = [&](const FoundContact& f)
+    { return bodies.motion[f.contact.a.index] == Motion::Kinematic || bodies.motion[f.contact.b.index] == Motion::Kinematic; };
+    if (!(work > 0) || touching_.empty() || std::any_of(touching_.begin(), touching_.end(), driven)) return;
+    const std::uint32_t response = contacts_.detectors()[touching_.front().detector].response;
+    (*book.work)[response] -= book.sign * work;
+    step_.contact_energy[response].made += book.sign * work;
+}
+
+void ImpulseIslands::keep_impulses(const std::vector<FoundContact>& contacts, double from, double h)
+{
+    for (std::size_t i = 0, end = 0; i < contacts.size(); i = end)
+    {
+        const Contact& first = contacts[i].contact;
+        PairState* const pair = contacts_.find_pair(contacts[i]);
+        ContactBook::Pressing pressing;
+        for (end = i; end < contacts.size() && same_pair(contacts[end], contacts[i]); ++end)
+            if (pair) contacts_.add_point(pressing, *pair, contacts[end].contact, contacts_.normal_velocity(contacts[end].contact), h);
+        if (!pair) continue;
+        contacts_.note_release(*pair, first, pressing, from, h);
+        for (std::size_t k = i; k < end; ++k)
+        {
+            contacts_.cache().contact_of(*pair, contacts[k].contact.feature).impulse = contacts[k].contact.impulse;
+            pair->normal = contacts[k].contact.normal;
+        }
+    }
+}
+
+}  // namespace plab::simulation

@@ -1,0 +1,44 @@
+/// Islands that rest or slide on impulses of a response (ImpactMode::Rest): time stepping.
+///
+/// Speeds first, then impulses that keep contacts from closing, then positions with the mean of old and new speeds, so that a body that
+/// slides at constant deceleration is exact.
+#pragma once
+
+#include "simulation/contacts/kicked_bodies.h"
+#include "simulation/contacts/midway_contacts.h"
+#include "simulation/contacts/position_correction.h"
+
+namespace plab::simulation
+{
+
+class ImpulseIslands
+{
+public:
+    ImpulseIslands(StepState& step, GroupMotion& motion, ContactBook& contacts, PositionCorrection& positions)
+        : step_(step), motion_(motion), contacts_(contacts), positions_(positions), midway_(step, contacts)
+    {
+    }
+
+    /// `island`: groups, ascending, that standing contacts hold together.
+    void advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to, WorkBook book,
+                 bool trial);
+
+private:
+    bool meets_any(const GroupSystem& system, double h) const;
+    void arrest(double h, WorkBook book);
+    bool lead_touching(GroupSystem& system, double h);
+    void bend_touching(double h);
+    void book_rest(double work, WorkBook book);
+    void keep_impulses(const std::vector<FoundContact>& contacts, double from, double h);
+
+    StepState& step_;
+    GroupMotion& motion_;
+    ContactBook& contacts_;
+    PositionCorrection& positions_;
+    MidwayContacts midway_;
+    KickedBodies moved_;
+    std::vector<FoundContact> touching_;
+    std::vector<std::uint32_t> members_, places_;
+};
+
+}  // namespace plab::simulation
