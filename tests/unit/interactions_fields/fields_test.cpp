@@ -23,14 +23,14 @@ namespace
 constexpr Row kFirst[] = {0};
 
 /// One dynamic body, one static one and one shaft, and where the forces on them go.
-struct Scene
+struct HostTables
 {
     Bodies bodies = make_bodies(2);
     Shafts shafts = make_shafts(1);
     Wrenches wrenches{bodies, shafts};
     std::vector<double> power = {0};
 
-    Scene()
+    HostTables()
     {
         bodies.motion = {Motion::Dynamic, Motion::Static};
         bodies.mass = {2, 0};
@@ -65,7 +65,7 @@ std::pair<double, double> fall(double time, int steps, const std::function<doubl
 
 TEST_CASE("gravity pulls with m g at the centre, and at dynamic bodies only")
 {
-    Scene scene;
+    HostTables scene;
     TableFixture<GravityRows> gravity;
     gravity.rows.between[0] = kBothBodies;
     scene.bodies.velocity[0] = {0, 1, -3};
@@ -78,7 +78,7 @@ TEST_CASE("gravity pulls with m g at the centre, and at dynamic bodies only")
 
 TEST_CASE("fields leave alone who is not being advanced")
 {
-    Scene scene;
+    HostTables scene;
     const std::vector<std::uint8_t> nobody = {0, 0};
     TableFixture<GravityRows> gravity;
     TableFixture<DragRows> drag;
@@ -97,7 +97,7 @@ TEST_CASE("fields leave alone who is not being advanced")
 
 TEST_CASE("drag is linear and quadratic in the velocity against the medium")
 {
-    Scene scene;
+    HostTables scene;
     TableFixture<DragRows> drag;
     drag.rows.between[0] = {{Facet::Body, 0}, {Facet::Body, 1}, {Facet::Shaft, 0}};
     drag.rows.linear[0] = 0.5;
@@ -123,7 +123,7 @@ TEST_CASE("drag is linear and quadratic in the velocity against the medium")
 
 TEST_CASE("a load acts in full on each dynamic body and shaft")
 {
-    Scene scene;
+    HostTables scene;
     TableFixture<LoadRows> load;
     load.rows.between[0] = {{Facet::Body, 0}, {Facet::Body, 1}, {Facet::Shaft, 0}};
     load.rows.force[0] = {1, 2, 3};
@@ -148,7 +148,7 @@ TEST_CASE("a load acts in full on each dynamic body and shaft")
 TEST_CASE("a falling body with quadratic drag reaches its terminal velocity")
 {
     // m v' = m g - c v |v|: v = v_t tanh(g t / v_t), z = v_t^2/g ln cosh(g t / v_t).
-    Scene scene;
+    HostTables scene;
     scene.bodies.mass[0] = 1;
     TableFixture<GravityRows> gravity;
     TableFixture<DragRows> drag;
@@ -210,7 +210,7 @@ TEST_CASE("the air and its first derivatives have no jumps")
 
 TEST_CASE("a fan pushes with its usual drag at rest, and nothing moves with the air or at a standing fan")
 {
-    Scene scene;
+    HostTables scene;
     TableFixture<AirflowRows> airflow;
     airflow.rows.driver[0] = {Facet::Shaft, 0};
     airflow.rows.between[0] = kBothBodies;

@@ -33,7 +33,7 @@ CommandNode with_id(std::string id, CommandNode node)
 }
 
 /// "sim": a simulation command of the given stages.
-CommandNode simulation(std::vector<CommandNode> stages) { return composite("sim", "Test/Simulation", std::move(stages), 20); }
+CommandNode simulation_command(std::vector<CommandNode> stages) { return composite("sim", "Test/Simulation", std::move(stages), 20); }
 CommandNode stage(const char* name, std::vector<CommandNode> list, std::uint32_t line = 21)
 {
     return composite("", std::string("Stage/") + name, std::move(list), line);
@@ -43,7 +43,7 @@ CommandNode stage(const char* name, std::vector<CommandNode> list, std::uint32_t
 std::vector<ComponentNode> gear_scene(std::vector<CommandNode> stages)
 {
     return {shaft("a"), shaft("b"), component("g", "Constraint/AngularVelocity/Graph", {{"driver", "a"}, {"driven", "b"}}),
-            with_commands(group("i", {component("form", "Shape/Sphere")}), {simulation(std::move(stages))})};
+            with_commands(group("i", {component("form", "Shape/Sphere")}), {simulation_command(std::move(stages))})};
 }
 
 std::string gear_errors(std::vector<CommandNode> stages) { return errors_of(gear_scene(std::move(stages))); }
@@ -141,11 +141,11 @@ TEST_CASE("the paper's figure 7: a command that is a component of its own")
     CHECK(field_of(s, "300", "code") == "print('Hello pLab!')");
     CHECK(commands_of(s, "300") == "defaults");
 
-    s = compiled(scene({with_commands(group("object", {}), {simulation({stage("PreStep", {hello})})})}));
+    s = compiled(scene({with_commands(group("object", {}), {simulation_command({stage("PreStep", {hello})})})}));
     CHECK(commands_of(s, "300") == "Script/Prepare Script/Lua/Drive");
-    s = compiled(scene({with_commands(group("object", {}), {hello, simulation({stage("Step", {see_command("300")})})})}));
+    s = compiled(scene({with_commands(group("object", {}), {hello, simulation_command({stage("Step", {see_command("300")})})})}));
     CHECK(commands_of(s, "300") == "Script/Prepare Script/Lua/Force");
-    CHECK(errors_of({with_commands(group("object", {}), {simulation({stage("Rewind", {hello})})})}) ==
+    CHECK(errors_of({with_commands(group("object", {}), {simulation_command({stage("Rewind", {hello})})})}) ==
           "scene.xml:4:1: command 300 (Script/Lua): has nothing to do in Stage/Rewind");
     hello.id.clear();
     CHECK(errors_of({with_commands(group("object", {}), {hello})}) == "scene.xml:4:1: component (Script/Lua): needs an id");
@@ -164,7 +164,7 @@ TEST_CASE("a simulation command selects exactly what it lists")
 TEST_CASE("parts that the author left unwritten keep their defaults")
 {
     const auto body = [](const char* id) { return component(id, "State/RigidBody", {{"mass", "1"}}); };
-    const CommandNode run = simulation({stage("PostStep", {command("c", "CDetection/Handle")})});
+    const CommandNode run = simulation_command({stage("PostStep", {command("c", "CDetection/Handle")})});
     const model::SceneSpec s =
         compiled(scene({body("a"), body("b"), with_commands(component("c", "CDetection/Simple", {{"between", "a b"}}), {run})}));
     CHECK(commands_of(s, "c") == "CDetection/Handle");
@@ -178,7 +178,7 @@ TEST_CASE("composites are expanded in place")
         shaft("b"),
         component("g", "Constraint/AngularVelocity/Graph", {{"driver", "a"}, {"driven", "b"}}),
         with_commands(group("i", {}), {composite("both", "Both", {command("g", "Constraint/Finish"), command("f", "Shape/Draw")}),
-                                       simulation({stage("PostStep", {see_command("both")})})}),
+                                       simulation_command({stage("PostStep", {see_command("both")})})}),
         component("f", "Shape/Sphere"),
     }));
     CHECK(commands_of(s, "g") == "Constraint/Finish");
@@ -187,8 +187,8 @@ TEST_CASE("composites are expanded in place")
 
 TEST_CASE("a command is found by a prefix that fits one of its stage")
 {
-    const model::SceneSpec s = compiled(
-        scene({with_commands(component("s", "Script/Lua", {{"code", "x"}}), {simulation({stage("Step", {command("s", "Script/Lua")})})})}));
+    const model::SceneSpec s = compiled(scene({with_commands(component("s", "Script/Lua", {{"code", "x"}}),
+                                                             {simulation_command({stage("Step", {command("s", "Script/Lua")})})})}));
     CHECK(commands_of(s, "s") == "Script/Lua/Force");
     CHECK(errors_of({with_commands(component("s", "Script/Lua", {{"code", "x"}}), {command("s", "Script/Lua", 4)})}) ==
           "scene.xml:4:1: command Script/Lua: 'Script/Lua' could be 'Script/Lua/Drive' or 'Script/Lua/Force': name one "
@@ -280,7 +280,7 @@ TEST_CASE("a component has one simulation command")
 
 TEST_CASE("lists that refer to themselves, or would grow without end")
 {
-    const CommandNode run = simulation({stage("Step", {see_command("x")})});
+    const CommandNode run = simulation_command({stage("Step", {see_command("x")})});
     CHECK(errors_of({with_commands(group("o", {}), {composite("x", "X", {see_command("y")}, 4), composite("y", "Y", {see_command("x")}, 5),
                                                     run})}) == "scene.xml:4:1: command x (X): circle of commands: 'x' -> 'y' -> 'x'");
     // Each list names the next one twice: 2^40 items.
@@ -289,7 +289,7 @@ TEST_CASE("lists that refer to themselves, or would grow without end")
         commands.push_back(composite("c" + std::to_string(i), "",
                                      {see_command("c" + std::to_string(i + 1)), see_command("c" + std::to_string(i + 1))}, 4));
     commands.push_back(with_id("c40", command("s", "State/Restore", 5)));
-    commands.push_back(simulation({stage("Rewind", {see_command("c0")})}));
+    commands.push_back(simulation_command({stage("Rewind", {see_command("c0")})}));
     CHECK_FALSE(errors_of({with_commands(group("o", {component("s", "State/RigidBody", {{"mass", "1"}})}), commands)}).empty());
 }
 
@@ -299,7 +299,8 @@ TEST_CASE("a fragment cannot select or set what is in the scene already")
     CHECK(errors_of(scene({with_commands(group("o", {}), {setting(command("f", "Shape/Draw", 4), {text("SetRadius", "1", 5)})})}), &s) ==
           "scene.xml:4:1: command Shape/Draw: subject 'f' is in the running scene already: set its parameters by a "
           "request");
-    CHECK(errors_of(scene({with_commands(group("o", {}), {simulation({stage("PostStep", {command("f", "Shape/Draw", 22)})})})}), &s) ==
+    CHECK(errors_of(scene({with_commands(group("o", {}), {simulation_command({stage("PostStep", {command("f", "Shape/Draw", 22)})})})}),
+                    &s) ==
           "scene.xml:22:1: command Shape/Draw: subject 'f' is in the running scene already: it keeps the commands that "
           "it has");
     CHECK(errors_of(scene({with_commands(group("o", {}), {command("f", "Shape/Draw", 4)})}), &s).empty());

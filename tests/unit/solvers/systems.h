@@ -10,6 +10,7 @@
 
 #include "plab/registrar.h"
 #include "plab/rotation.h"
+#include "support/scene.h"
 
 namespace plab::test
 {
@@ -241,9 +242,6 @@ private:
     Law law_;
     Load load_;
 };
-
-/// The angle between two attitudes, rad.
-inline double attitude_error(const Quat& a, const Quat& b) { return length(log_rotation(conjugate(a) * b)); }
 
 inline Mat3 diagonal(const Vec3& v) { return Mat3::diagonal(v.x, v.y, v.z); }
 

@@ -94,7 +94,7 @@ private:
     std::thread thread_;
 };
 
-struct Scene
+struct Writers
 {
     Bus bus;
     std::string server = unique_name("topics");
@@ -134,16 +134,16 @@ stranger_Reading reading()
 
 TEST_CASE("list shows pLab's topics and those of strangers")
 {
-    Scene scene;
-    const wire::Entity writer = scene.bus.foreign(stranger_Reading_desc, "readings", true);
-    const auto reader = wire::make_subscriber(scene.bus.participant(), scene.server);
+    Writers writers;
+    const wire::Entity writer = writers.bus.foreign(stranger_Reading_desc, "readings", true);
+    const auto reader = wire::make_subscriber(writers.bus.participant(), writers.server);
     const Outcome out = topics({"--json"});
     REQUIRE_MESSAGE(out.code == 0, out.errors);
     Json frames, readings;
     const Json all = Json::parse(out.output);
     for (const Json& topic : all["topics"])
     {
-        if (topic["topic"] == "plab/states" && topic["partitions"][0] == scene.server) frames = topic;
+        if (topic["topic"] == "plab/states" && topic["partitions"][0] == writers.server) frames = topic;
         if (topic["topic"] == "readings") readings = topic;
     }
     CHECK(frames["type"] == "plab::v2::Frame");
@@ -209,14 +209,14 @@ TEST_CASE("what is not understood is said by name, and is measured all the same"
 
 TEST_CASE("instances that have gone are told by their key")
 {
-    Scene scene;
+    Writers writers;
     // A key as long as ids are: Cyclone DDS has a place of 16 bytes for those that it takes for short ones.
     const plab_v2_SceneObject red = object("red.arm.upper.hinge.with_a_long_name"), blue = object("blue");
-    Process process(topics_command({"print", "plab/objects", "--partition", scene.server, "--json", "-n", "3"}));
-    REQUIRE(scene.objects.write(red) == 0);
-    REQUIRE(scene.objects.write(blue) == 0);
+    Process process(topics_command({"print", "plab/objects", "--partition", writers.server, "--json", "-n", "3"}));
+    REQUIRE(writers.objects.write(red) == 0);
+    REQUIRE(writers.objects.write(blue) == 0);
     REQUIRE(process.wait_for("\"red.arm", 10s));
-    REQUIRE(scene.objects.dispose(red) == 0);
+    REQUIRE(writers.objects.dispose(red) == 0);
     REQUIRE(process.wait(10s) == 0);
     const auto all = lines(process.output());
     REQUIRE(all.size() == 3);
@@ -227,12 +227,12 @@ TEST_CASE("instances that have gone are told by their key")
 
 TEST_CASE("rate and bandwidth measure what is written")
 {
-    Scene scene;
+    Writers writers;
     std::vector<plab_v2_BodyState> bodies(100);
     plab_v2_Frame frame{};
     frame.bodies._length = frame.bodies._maximum = 100, frame.bodies._buffer = bodies.data();
-    const Ticker ticker(10ms, [&] { (void)scene.frames.write(frame); });
-    const Outcome rate = topics({"rate", "plab/states", "--partition", scene.server, "-n", "2", "--json"});
+    const Ticker ticker(10ms, [&] { (void)writers.frames.write(frame); });
+    const Outcome rate = topics({"rate", "plab/states", "--partition", writers.server, "-n", "2", "--json"});
     REQUIRE_MESSAGE(rate.code == 0, rate.errors);
     const auto reports = lines(rate.output);
     REQUIRE(reports.size() == 2);
@@ -240,20 +240,20 @@ TEST_CASE("rate and bandwidth measure what is written")
     CHECK(reports[1]["period"]["mean"].get<double>() == doctest::Approx(0.01).epsilon(0.2));
     CHECK(reports[1]["period"]["min"] <= reports[1]["period"]["mean"]);
     CHECK(reports[1]["period"]["max"] >= reports[1]["period"]["mean"]);
-    const Outcome bytes = topics({"bandwidth", "plab/states", "--partition", scene.server, "-n", "1", "--json"});
+    const Outcome bytes = topics({"bandwidth", "plab/states", "--partition", writers.server, "-n", "1", "--json"});
     REQUIRE(bytes.code == 0);
     const Json report = lines(bytes.output).at(0);
     // Encoding, six numbers, count, 100 bodies of a handle and 13 numbers (the first is aligned as it is), count.
     CHECK(report["size"]["mean"] == 4 + 48 + 4 + 108 + 99 * 112 + 4);
     CHECK(report["size"]["stddev"] == 0);
-    const Outcome human = topics({"rate", "plab/states", "--partition", scene.server, "-d", "1.2"});
+    const Outcome human = topics({"rate", "plab/states", "--partition", writers.server, "-d", "1.2"});
     CHECK(has(human.output, " /s "));
     CHECK(has(human.output, "stddev"));
 }
 
 TEST_CASE("a topic that nobody writes is 3, with the nearest name; wrong use is 2; Ctrl-C is a normal end")
 {
-    Scene scene;
+    Writers writers;
     const Outcome none = topics({"print", "plab/stats", "--timeout", "0.5"});
     CHECK(none.code == 3);
     CHECK(has(none.errors, "nobody writes 'plab/stats'"));
