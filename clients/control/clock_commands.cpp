@@ -6,7 +6,7 @@
 #include "control/request.h"
 #include "link/numbers.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -160,4 +160,4 @@ void add_clock_commands(const Command& app, Context& context)
     add_command(app, context, {"shutdown", "end the server; waits until it is gone", "  plabctl shutdown --server lab\n"}, run_shutdown);
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

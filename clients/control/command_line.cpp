@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace plab::control
+namespace plab::cli
 {
 
 Option Option::required() const { return Option(option_->required()); }
@@ -47,4 +47,4 @@ void Command::add_flag(std::string_view name, bool& value, std::string_view help
     app_->add_flag(std::string(name), value, std::string(help));
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

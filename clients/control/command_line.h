@@ -13,7 +13,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace plab::control
+namespace plab::cli
 {
 
 /// What may be said of an option, one after the other.
@@ -53,4 +53,4 @@ private:
     CLI::App* app_;
 };
 
-}  // namespace plab::control
+}  // namespace plab::cli

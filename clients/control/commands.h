@@ -3,7 +3,7 @@
 
 #include "control/context.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 void add_list_commands(const Command& app, Context& context);       // servers, objects, interactions, types
@@ -18,4 +18,4 @@ void add_recording_commands(const Command& app, Context& context);  // info, exp
 void add_record_command(const Command& app, Context& context);      // record
 void add_play_command(const Command& app, Context& context);        // play
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -154,4 +154,4 @@ std::string age_text(double seconds)
     return std::to_string(s / 3600) + " h " + std::to_string(s / 60 % 60) + " min";
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace plab::control
+namespace plab::cli
 {
 
 enum class Style : unsigned char
@@ -64,4 +64,4 @@ std::string bytes_text(std::uint64_t bytes);
 /// "5 min 12 s".
 std::string age_text(double seconds);
 
-}  // namespace plab::control
+}  // namespace plab::cli

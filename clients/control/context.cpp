@@ -2,7 +2,7 @@
 
 #include "program/interruption.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 bool Context::stopped() const { return program::is_interrupted(); }
@@ -41,4 +41,4 @@ Command add_command(const Command& app, Context& context, const CommandText& tex
     return app.add_command(text.name, text.doc, "Examples:\n" + text.examples, [&context, run = std::move(run)] { context.action = run; });
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -15,7 +15,7 @@
 #include "link/session.h"
 #include "program/progress.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 enum class Exit : int
@@ -32,7 +32,7 @@ enum class Exit : int
 /// Global options.
 struct Settings
 {
-    link::Options link;                  ///< server, domain, interface
+    link::SessionOptions link;           ///< server, domain, interface
     std::optional<double> timeout;       ///< s; see Context::timeout()
     bool progress = false;               ///< lines of progress also where standard error is no terminal
     bool json = false;                   ///< one object; a line per sample of streams
@@ -86,4 +86,4 @@ struct CommandText
 /// A sub-command whose action is `run`.
 Command add_command(const Command& app, Context& context, const CommandText& text, Context::Action run);
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -1,6 +1,6 @@
 #include "control/frames.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 Frame frame_of(const plab_v2_Frame& f)
@@ -48,4 +48,4 @@ Json json_of(const Motion& m)
             {"angular_velocity", json_of(m.angular_velocity)}};
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

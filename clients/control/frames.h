@@ -5,7 +5,7 @@
 
 #include "control/json.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 struct Motion
@@ -30,4 +30,4 @@ std::optional<Frame> next_frame(const link::Session& session, link::Seconds time
 
 Json json_of(const Motion& m);
 
-}  // namespace plab::control
+}  // namespace plab::cli

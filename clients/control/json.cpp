@@ -1,6 +1,6 @@
 #include "control/json.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -194,7 +194,7 @@ Json json_of(const link::Type& t)
 Json json_of(const link::SwapReport& s)
 {
     Json fields = Json::object();
-    for (const link::FieldFate& f : s.fields) fields[f.name] = f.fate;
+    for (const link::TransferredField& f : s.fields) fields[f.name] = f.transfer;
     return {{"component", s.component},
             {"from", s.from},
             {"to", s.to},
@@ -223,4 +223,4 @@ std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 
 void print(const Console& console, const Json& json) { console.out(line_of(json) + "\n"); }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -8,7 +8,7 @@
 #include "link/caller.h"
 #include "link/catalogue.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 using Json = nlohmann::ordered_json;
@@ -31,4 +31,4 @@ std::string line_of(const Json& json);
 /// Prints one object, on one line.
 void print(const Console& console, const Json& json);
 
-}  // namespace plab::control
+}  // namespace plab::cli

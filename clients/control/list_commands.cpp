@@ -9,7 +9,7 @@
 #include "control/table.h"
 #include "link/names.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -182,7 +182,7 @@ Exit run_interactions(Context& c)
     if (const Exit e = c.connect(); e != Exit::Done) return e;
     auto catalogue = fetch(c, link::Part::Interactions | link::Part::Metrics);
     if (!catalogue) return c.fail(Exit::NoServer, catalogue.errors());
-    const link::Snapshot& now = catalogue->now();
+    const link::CatalogueContents& now = catalogue->now();
     Json list = Json::array();
     Table table({{"interaction", Align::Left, Shrink::Middle},
                  {"algorithm", Align::Left, Shrink::Middle},
@@ -229,7 +229,7 @@ std::string lower(std::string text)
 }
 
 /// The family of the component's type; an error names ids that are near.
-Result<std::string> family_of(const link::Snapshot& now, const std::string& id)
+Result<std::string> family_of(const link::CatalogueContents& now, const std::string& id)
 {
     std::string type;
     if (const auto at = now.interactions.find(id); at != now.interactions.end()) type = at->second.type;
@@ -312,4 +312,4 @@ void add_list_commands(const Command& app, Context& context)
     types.add_option("--for", o->replaces, "what can take the place of this component").type_name("ID").excludes(family);
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

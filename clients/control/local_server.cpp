@@ -16,7 +16,7 @@
 
 extern char** environ;
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -109,14 +109,14 @@ Result<int> run_plabd(const std::vector<std::string>& arguments, const link::Sto
     auto process = plan.spawn(plabd_with(arguments));
     if (!process) return process.errors();
     int status = 0;
-    bool is_told = false;
+    bool is_stopping = false;
     for (;;)
     {
         const pid_t ended = waitpid(*process, &status, WNOHANG);
         if (ended == *process) return code_of(status);
         if (ended < 0 && errno != EINTR) return failed("cannot wait for plabd", errno);
         // Ctrl-C reaches both; another signal only this process.
-        if (!is_told && stop()) is_told = kill(*process, SIGTERM) == 0;
+        if (!is_stopping && stop()) is_stopping = kill(*process, SIGTERM) == 0;
         std::this_thread::sleep_for(kLook);
     }
 }
@@ -149,4 +149,4 @@ TemporaryFile::~TemporaryFile()
     if (!path_.empty()) (void)unlink(path_.c_str());
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

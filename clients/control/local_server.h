@@ -9,7 +9,7 @@
 #include "link/session.h"
 #include "plab/result.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 /// plabd beside this program, or the one that PATH finds.
@@ -46,4 +46,4 @@ private:
     std::string path_;
 };
 
-}  // namespace plab::control
+}  // namespace plab::cli

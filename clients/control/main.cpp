@@ -11,7 +11,7 @@
 namespace
 {
 
-using namespace plab::control;
+using namespace plab::cli;
 
 constexpr const char* kExamples = R"(Examples:
   plabctl servers                                    who is there

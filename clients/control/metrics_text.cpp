@@ -4,7 +4,7 @@
 
 #include "control/console.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -49,4 +49,4 @@ std::string error_meaning(const link::InteractionMetrics& m)
     return known.empty() ? text_of(m, "no_error") : known;
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -5,7 +5,7 @@
 
 #include "link/catalogue.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 /// "4.1 us", "418 ns (1/12)" where twelve components share what their type costs, "-" before the first step.
@@ -18,4 +18,4 @@ std::string error_unit(const link::InteractionMetrics& m);
 /// What it is, or why there is none.
 std::string error_meaning(const link::InteractionMetrics& m);
 
-}  // namespace plab::control
+}  // namespace plab::cli

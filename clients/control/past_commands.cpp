@@ -10,7 +10,7 @@
 #include "link/catalogue.h"
 #include "link/numbers.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kStart = 30;
 
 /// A snapshot as it came over the bus.
-struct Snapshot
+struct SnapshotSample
 {
     std::int64_t step = 0;
     double time = 0;
@@ -29,10 +29,10 @@ struct Snapshot
 };
 
 /// Waits for a snapshot for which `is_it` holds.
-Result<Snapshot> await_snapshot(Context& c, wire::Reader<plab_v2_Snapshot>& reader,
-                                const std::function<bool(const plab_v2_Snapshot&)>& is_it)
+Result<SnapshotSample> await_snapshot(Context& c, wire::Reader<plab_v2_Snapshot>& reader,
+                                      const std::function<bool(const plab_v2_Snapshot&)>& is_it)
 {
-    std::optional<Snapshot> out;
+    std::optional<SnapshotSample> out;
     const auto end = link::moment_after(c.timeout());
     while (!out)
     {
@@ -44,21 +44,21 @@ Result<Snapshot> await_snapshot(Context& c, wire::Reader<plab_v2_Snapshot>& read
             [&](const plab_v2_Snapshot& s, const dds_sample_info_t& info)
             {
                 if (!info.valid_data || out || !is_it(s)) return;
-                out.emplace(Snapshot{s.step, s.time, {s.data._buffer, s.data._buffer + s.data._length}});
+                out.emplace(SnapshotSample{s.step, s.time, {s.data._buffer, s.data._buffer + s.data._length}});
             });
     }
     return *std::move(out);
 }
 
 /// The present state: whoever begins to read the topic gets one.
-Result<Snapshot> present(Context& c)
+Result<SnapshotSample> present(Context& c)
 {
     auto reader = c.session().reader<plab_v2_Snapshot>();
     if (!reader) return reader.errors();
     return await_snapshot(c, *reader, [](const plab_v2_Snapshot&) { return true; });
 }
 
-Exit write_file(Context& c, const Snapshot& snapshot, const std::string& file)
+Exit write_file(Context& c, const SnapshotSample& snapshot, const std::string& file)
 {
     std::ofstream out(file, std::ios::binary | std::ios::trunc);
     out.write(reinterpret_cast<const char*>(snapshot.data.data()), static_cast<std::streamsize>(snapshot.data.size()));
@@ -300,4 +300,4 @@ void add_past_commands(const Command& app, Context& context)
     add_shadow(app, context);
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

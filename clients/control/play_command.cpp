@@ -8,7 +8,7 @@
 #include "playback/terminal.h"
 #include "program/progress.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -69,9 +69,9 @@ void show(program::Progress& line, const playback::Player& player)
 {
     if (!line.is_due()) return;
     const playback::Pace& pace = player.pace();
-    const playback::Standing standing = player.standing();
+    const playback::PlaybackState state = player.state();
     line.show(playback::bar({seconds(pace.span().from), seconds(pace.span().to), seconds(pace.position(Clock::now())), pace.rate(),
-                             pace.is_paused(), standing.time, standing.run},
+                             pace.is_paused(), state.time, state.run},
                             line.width() - 1));
 }
 
@@ -102,9 +102,9 @@ void print_end(const Context& c, const std::string& file, const playback::Player
         print(c.console, {{"file", file},
                           {"server", player.name()},
                           {"position", at},
-                          {"run", player.standing().run},
-                          {"step", player.standing().step},
-                          {"time", player.standing().time},
+                          {"run", player.state().run},
+                          {"step", player.state().step},
+                          {"time", player.state().time},
                           {"messages", player.sent()},
                           {"broken", player.broken()},
                           {"not_played", player.foreign()}});
@@ -115,7 +115,7 @@ void print_end(const Context& c, const std::string& file, const playback::Player
         c.console.say("plabctl: " + std::to_string(player.broken()) + " messages are damaged, and were left out: plabctl recover FILE");
 }
 
-Exit run_play(Context& c, playback::Options options)
+Exit run_play(Context& c, playback::PlaybackOptions options)
 {
     if (!options.name.empty() && !wire::is_server_name(options.name))
         return c.fail(Exit::Usage, "'" + options.name + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
@@ -138,7 +138,7 @@ Exit run_play(Context& c, playback::Options options)
 
 void add_play_command(const Command& app, Context& context)
 {
-    auto o = std::make_shared<playback::Options>();
+    auto o = std::make_shared<playback::PlaybackOptions>();
     const Command command = add_command(app, context, {"play", "send a recording on the bus, as its server did", kExamples},
                                         [o](Context& c) { return run_play(c, *o); });
     command.add_option("file", o->file, "a recording").required().type_name("FILE");
@@ -151,4 +151,4 @@ void add_play_command(const Command& app, Context& context)
     command.add_option("--readers", o->readers, "begin when so many read the states").check(link::check_whole).type_name("N");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -9,7 +9,7 @@
 #include "program/progress.h"
 #include "recorder/recorder.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -26,7 +26,7 @@ constexpr link::Seconds kSlice(0.1);  // how late Ctrl-C may be seen
 
 struct RecordOptions
 {
-    recorder::Options recorder;
+    recorder::RecorderOptions recorder;
     std::string compression = "zstd";
 };
 
@@ -47,7 +47,7 @@ std::string seconds_text(double seconds)
     return text.data();
 }
 
-std::string counts_text(const recorder::TapeProgress& p)
+std::string counts_text(const recorder::WriteProgress& p)
 {
     std::string out = std::to_string(p.messages) + " messages, " + bytes_text(p.bytes);
     if (p.missing > 0) out += ", " + std::to_string(p.missing) + " did not arrive";
@@ -61,14 +61,14 @@ class TroubleWatch
 public:
     void look(const Context& c, program::Progress& line, const std::optional<Error>& trouble)
     {
-        if (trouble.has_value() == is_told_) return;
-        is_told_ = trouble.has_value();
+        if (trouble.has_value() == is_reported_) return;
+        is_reported_ = trouble.has_value();
         line.clear();
         c.console.say("plabctl: " + (trouble ? printable(trouble->text()) + "; trying on" : std::string("the disk takes data again")));
     }
 
 private:
-    bool is_told_ = false;
+    bool is_reported_ = false;
 };
 
 recorder::State follow(const Context& c, recorder::Recorder& recorder, const std::string& file)
@@ -85,14 +85,14 @@ recorder::State follow(const Context& c, recorder::Recorder& recorder, const std
     while (state == recorder::State::Goes && !c.stopped() && !is_over())
     {
         state = recorder.step(kSlice);
-        const recorder::TapeProgress progress = recorder.progress();
+        const recorder::WriteProgress progress = recorder.progress();
         watch.look(c, line, progress.trouble);
         if (line.is_due()) line.show(file + ": " + seconds_text(recorder.length()) + ", " + counts_text(progress) + "  (Ctrl-C ends)");
     }
     return state;
 }
 
-void print_end(const Context& c, const std::string& file, const recorder::Recorder& recorder, const recorder::TapeProgress& p)
+void print_end(const Context& c, const std::string& file, const recorder::Recorder& recorder, const recorder::WriteProgress& p)
 {
     if (c.settings.json)
         print(c.console, {{"file", file},
@@ -112,7 +112,7 @@ void print_end(const Context& c, const std::string& file, const recorder::Record
 }
 
 /// Of a file that was ended, and has gaps.
-Exit tell_losses(const Context& c, const recorder::TapeProgress& p)
+Exit tell_losses(const Context& c, const recorder::WriteProgress& p)
 {
     if (p.dropped.messages == 0) return Exit::Done;
     c.console.say("plabctl: " + std::to_string(p.dropped.messages) + " messages are not in the file: " +
@@ -138,9 +138,9 @@ Exit run_record(Context& c, RecordOptions o)
     if (const Exit e = c.connect(); e != Exit::Done) return e;
     const std::vector<link::ServerInfo> servers = c.session().servers(c.timeout(), 1);
     if (servers.empty()) return c.fail(Exit::NoServer, "server '" + c.session().server() + "' has gone");
-    std::string& file = o.recorder.tape.file;
+    std::string& file = o.recorder.writer.file;
     if (file.empty()) file = name_with_time(c.session().server());
-    o.recorder.tape.compression = recording::compression_of(o.compression == "none" ? "" : o.compression).value();
+    o.recorder.writer.compression = recording::compression_of(o.compression == "none" ? "" : o.compression).value();
     auto recorder = recorder::Recorder::open(c.session(), servers.front(), o.recorder);
     if (!recorder) return c.fail(Exit::Failed, recorder.errors());
     const recorder::State state = follow(c, **recorder, file);
@@ -149,7 +149,7 @@ Exit run_record(Context& c, RecordOptions o)
     if (state == recorder::State::Restarted)
         c.console.say("plabctl: server '" + c.session().server() + "' was started anew: a recording is of one server's life");
     // After Ctrl-C as well: who ended it wants to know what became of the file.
-    const recorder::TapeProgress progress = (*recorder)->progress();
+    const recorder::WriteProgress progress = (*recorder)->progress();
     print_end(c, file, **recorder, progress);
     if (closed)
     {
@@ -169,8 +169,8 @@ void add_record_command(const Command& app, Context& context)
     const Command command =
         add_command(app, context, {"record", "write what a server sends into a file, until it ends or Ctrl-C", kExamples},
                     [o](Context& c) { return run_record(c, *o); });
-    command.add_option("-o,--output", o->recorder.tape.file, "default: SERVER_DATE_TIME.mcap").type_name("FILE.mcap");
-    command.add_flag("--overwrite", o->recorder.tape.overwrite, "replace a file that is there");
+    command.add_option("-o,--output", o->recorder.writer.file, "default: SERVER_DATE_TIME.mcap").type_name("FILE.mcap");
+    command.add_flag("--overwrite", o->recorder.writer.overwrite, "replace a file that is there");
     command.add_option("--topics", o->recorder.topics, "only these; default: all but plab/images").type_name("TOPIC ..");
     command.add_option("--until", o->recorder.until, "end at this simulated time").check(link::check_not_negative).type_name("SECONDS");
     command.add_option("--compression", o->compression, "none, lz4 or zstd").one_of({"none", "lz4", "zstd"}).show_default();
@@ -179,4 +179,4 @@ void add_record_command(const Command& app, Context& context)
         .type_name("HZ");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

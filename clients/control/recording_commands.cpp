@@ -11,7 +11,7 @@
 #include "recordings/export.h"
 #include "recordings/summary.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -150,4 +150,4 @@ void add_recording_commands(const Command& app, Context& context)
     recover.add_option("-o,--output", r->out, "new file; must not be there yet").type_name("FILE");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

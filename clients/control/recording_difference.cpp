@@ -8,7 +8,7 @@
 #include "control/table.h"
 #include "link/json_text.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -143,4 +143,4 @@ Json json_of(const Difference& d)
             {"objects", objects}};
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -2,7 +2,7 @@
 #include "control/recording_print.h"
 #include "recordings/log.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -132,4 +132,4 @@ Json json_of(const recording::RecoveryReport& r, const std::string& out)
             {"closed", r.was_closed}};
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

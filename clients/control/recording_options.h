@@ -4,7 +4,7 @@
 #include "control/context.h"
 #include "recordings/log.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 void add_file(const Command& command, std::string& file);
@@ -13,4 +13,4 @@ void add_span(const Command& command, recordings::Span& span);
 /// Says what could not be read. Failed if there is anything: what was asked for is not complete.
 Exit warn(const Context& context, const recordings::Troubles& troubles);
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -7,7 +7,7 @@
 #include "recordings/log.h"
 #include "recordings/words.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -198,4 +198,4 @@ void print_recovery(const Console& console, const recording::RecoveryReport& rep
     if (report.verdict != recording::Verdict::NothingUsable) console.out("written to " + printable(out) + "\n");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -7,7 +7,7 @@
 #include "recordings/diff.h"
 #include "recordings/summary.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 void print_summary(const Console& console, const recordings::Summary& summary);
@@ -20,4 +20,4 @@ Json json_of(const recording::RecoveryReport& report, const std::string& out);
 void print_difference(const Console& console, const recordings::Difference& difference);
 Json json_of(const recordings::Difference& difference);
 
-}  // namespace plab::control
+}  // namespace plab::cli

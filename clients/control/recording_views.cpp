@@ -14,7 +14,7 @@
 #include "recordings/report.h"
 #include "recordings/text_out.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -142,7 +142,7 @@ struct LogArguments
 Exit log_live(const Context& c, const LogArguments& o)
 {
     if (o.lines.span.from || o.lines.span.to) return c.fail(Exit::Usage, "--from and --to are for files: name one");
-    logger::Options options;
+    logger::LoggerOptions options;
     options.link = c.settings.link, options.filter = o.lines.filter, options.json = c.settings.json;
     options.count = c.settings.count, options.duration = c.settings.duration;
     options.timeout = c.timeout().count();
@@ -258,4 +258,4 @@ void add_recording_views(const Command& app, Context& context)
     add_log(app, context);
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -6,7 +6,7 @@
 #include "control/request.h"
 #include "control/table.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -42,21 +42,21 @@ std::string past_of(const link::Operation& op)
     return printable(out);
 }
 
-/// A line for each fate, in the order of plab.idl; ones that this version does not know come last.
+/// A line for each transfer, in the order of plab.idl; ones that this version does not know come last.
 void print_fields(const Console& console, const link::SwapReport& swap)
 {
-    std::vector<std::pair<std::string, Style>> fates{
+    std::vector<std::pair<std::string, Style>> transfers{
         {"kept", Style::Green}, {"converted", Style::Yellow}, {"given", Style::Cyan}, {"fresh", Style::Yellow}, {"lost", Style::Red}};
-    for (const link::FieldFate& f : swap.fields)
-        if (std::none_of(fates.begin(), fates.end(), [&](const auto& known) { return known.first == f.fate; }))
-            fates.emplace_back(f.fate, Style::Plain);
-    for (const auto& [fate, style] : fates)
+    for (const link::TransferredField& f : swap.fields)
+        if (std::none_of(transfers.begin(), transfers.end(), [&](const auto& known) { return known.first == f.transfer; }))
+            transfers.emplace_back(f.transfer, Style::Plain);
+    for (const auto& [transfer, style] : transfers)
     {
         std::string names;
-        for (const link::FieldFate& f : swap.fields)
-            if (f.fate == fate) names += (names.empty() ? "" : ", ") + printable(f.name);
+        for (const link::TransferredField& f : swap.fields)
+            if (f.transfer == transfer) names += (names.empty() ? "" : ", ") + printable(f.name);
         if (names.empty()) names = "-";
-        const std::string padded = fate + std::string(fate.size() < 10 ? 10 - fate.size() : 1, ' ');
+        const std::string padded = transfer + std::string(transfer.size() < 10 ? 10 - transfer.size() : 1, ' ');
         console.out("  " + console.styled(names == "-" ? Style::Dim : style, padded) + names + "\n");
     }
 }
@@ -114,4 +114,4 @@ void print_reply(const Console& console, const std::vector<link::Operation>& ope
     for (const link::SwapReport& swap : reply.swaps) print_swap(console, swap);
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

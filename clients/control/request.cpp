@@ -6,7 +6,7 @@
 #include "control/json.h"
 #include "link/numbers.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -20,7 +20,7 @@ Exit refused(const Context& context, const link::Reply& reply)
 }
 
 /// A request outlives a time-out, but not the server: until it is answered it may take effect.
-std::string fate_of_unanswered(const Context& context, const link::Caller& caller, const Timing& timing)
+std::string outcome_of_unanswered(const Context& context, const link::Caller& caller, const Timing& timing)
 {
     const std::string step = timing.at ? "step " + std::to_string(*timing.at) : "its next step";
     const std::string name = caller.last_request();
@@ -58,7 +58,7 @@ Exit send(Context& context, std::vector<link::Operation> operations, const Timin
     if (!caller) return context.fail(Exit::NoServer, caller.errors());
     const link::Request request{std::move(operations), timing.at, timing.revision};
     auto reply = caller->call(request, context.timeout(), context.stop());
-    if (!reply) return context.fail(Exit::NoServer, reply.error().text() + "; " + fate_of_unanswered(context, *caller, timing));
+    if (!reply) return context.fail(Exit::NoServer, reply.error().text() + "; " + outcome_of_unanswered(context, *caller, timing));
     if (context.settings.json)
     {
         Json json{{"server", context.session().server()}};
@@ -87,4 +87,4 @@ Result<std::string> read_text(const std::string& file)
     return text;
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

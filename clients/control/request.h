@@ -4,7 +4,7 @@
 #include "control/context.h"
 #include "link/caller.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 /// --at and --revision, which every request may carry.
@@ -24,4 +24,4 @@ void print_reply(const Console& console, const std::vector<link::Operation>& ope
 /// A file, or standard input for "-"; at most what a request may hold.
 Result<std::string> read_text(const std::string& file);
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -5,7 +5,7 @@
 #include "control/request.h"
 #include "link/catalogue.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -243,4 +243,4 @@ void add_scene_commands(const Command& app, Context& context)
     add_push(app, context);
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

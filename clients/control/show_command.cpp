@@ -8,7 +8,7 @@
 #include "control/table.h"
 #include "link/names.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -165,7 +165,7 @@ void print_type(Context& c, const link::Type& t)
     fields.print(c.console);
 }
 
-const link::Type* find_type(const link::Snapshot& now, const std::string& name)
+const link::Type* find_type(const link::CatalogueContents& now, const std::string& name)
 {
     const auto at = now.types.find(name);
     return at == now.types.end() ? nullptr : &at->second;
@@ -180,7 +180,7 @@ Json with_type(const char* kind, Json json, const link::Type* type)
     return out;
 }
 
-Exit show_object(Context& c, const link::Snapshot& now, const link::Object& o)
+Exit show_object(Context& c, const link::CatalogueContents& now, const link::Object& o)
 {
     std::optional<Frame> frame;
     if (!now.server->paused && o.motion != "static") frame = next_frame(c.session(), kForFrame);
@@ -198,7 +198,7 @@ Exit show_object(Context& c, const link::Snapshot& now, const link::Object& o)
     return Exit::Done;
 }
 
-Exit show_interaction(Context& c, const link::Snapshot& now, const link::Interaction& i)
+Exit show_interaction(Context& c, const link::CatalogueContents& now, const link::Interaction& i)
 {
     const link::InteractionMetrics* const m = now.metrics ? now.metrics->find(i.id) : nullptr;
     if (!c.settings.json)
@@ -212,7 +212,7 @@ Exit show_interaction(Context& c, const link::Snapshot& now, const link::Interac
     return Exit::Done;
 }
 
-Exit unknown(const Context& c, const link::Snapshot& now, const std::string& id)
+Exit unknown(const Context& c, const link::CatalogueContents& now, const std::string& id)
 {
     std::set<std::string> known;
     for (const auto& [name, thing] : now.objects) known.insert(name);
@@ -229,7 +229,7 @@ Exit run_show(Context& c, const std::string& id)
     auto catalogue = link::Catalogue::open(c.session());
     if (!catalogue) return c.fail(Exit::Failed, catalogue.errors());
     if (auto fetched = catalogue->fetch(c.timeout(), c.stop()); !fetched) return c.fail(Exit::NoServer, fetched.errors());
-    const link::Snapshot& now = catalogue->now();
+    const link::CatalogueContents& now = catalogue->now();
     if (const auto o = now.objects.find(id); o != now.objects.end()) return show_object(c, now, o->second);
     if (const auto i = now.interactions.find(id); i != now.interactions.end()) return show_interaction(c, now, i->second);
     if (const auto s = now.shapes.find(id); s != now.shapes.end())
@@ -265,4 +265,4 @@ void add_show_command(const Command& app, Context& context)
     command.add_option("id", *id, "component or type").required().type_name("ID");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

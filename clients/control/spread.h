@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace plab::control
+namespace plab::cli
 {
 
 class Spread
@@ -33,4 +33,4 @@ private:
     double least_ = 0, most_ = 0, mean_ = 0, squares_ = 0;
 };
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace plab::control
+namespace plab::cli
 {
 
 Limit::Limit(const Context& context) : most_(context.settings.count)
@@ -25,4 +25,4 @@ std::uint64_t Numbers::missed_before(std::uint64_t first, std::uint64_t count)
     return missed;
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

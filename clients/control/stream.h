@@ -5,7 +5,7 @@
 
 #include "control/context.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 /// -n, -d and Ctrl-C.
@@ -40,4 +40,4 @@ private:
     std::uint64_t missed_ = 0;
 };
 
-}  // namespace plab::control
+}  // namespace plab::cli

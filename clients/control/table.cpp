@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -163,4 +163,4 @@ void Lines::print(const Console& console) const
         console.out("  " + console.styled(Style::Dim, name) + std::string(width - columns_of(name) + kGap, ' ') + text + "\n");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -6,7 +6,7 @@
 
 #include "control/console.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 enum class Align : unsigned char
@@ -74,4 +74,4 @@ private:
     std::vector<std::pair<std::string, std::string>> lines_;
 };
 
-}  // namespace plab::control
+}  // namespace plab::cli

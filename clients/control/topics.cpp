@@ -3,7 +3,7 @@
 #include "control/table.h"
 #include "link/json_text.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -123,4 +123,4 @@ void add_topics_command(const Command& app, Context& context)
     command.add_flag("--full", arguments->full, "print: do not cut long lists short");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

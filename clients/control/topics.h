@@ -4,7 +4,7 @@
 #include "control/context.h"
 #include "link/discovery.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 void add_topics_command(const Command& app, Context& context);
@@ -22,4 +22,4 @@ Exit print_rate(Context& context, const TopicsArguments& arguments);       ///< 
 Exit print_bandwidth(Context& context, const TopicsArguments& arguments);  ///< same
 Exit print_samples(Context& context, const TopicsArguments& arguments);    ///< -n counts samples
 
-}  // namespace plab::control
+}  // namespace plab::cli

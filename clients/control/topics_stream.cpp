@@ -7,7 +7,7 @@
 #include "control/topics.h"
 #include "link/json_text.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -258,4 +258,4 @@ Exit print_samples(Context& context, const TopicsArguments& arguments)
     return context.fail(Exit::NoServer, "no sample of '" + arguments.topic + "' came");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -6,7 +6,7 @@
 #include "link/caller.h"
 #include "link/numbers.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -100,4 +100,4 @@ void add_wait_command(const Command& app, Context& context)
     command.add_option("--time", o->time, "until this simulated time").check(link::check_not_negative).type_name("SECONDS");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

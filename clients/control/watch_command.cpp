@@ -8,7 +8,7 @@
 #include "link/names.h"
 #include "link/numbers.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -121,7 +121,7 @@ void add_ids(const std::map<std::string, T>& things, std::vector<std::string>& o
 }
 
 /// Whom the samples of a stream are about, as far as the scene has them now.
-std::vector<std::string> known_to(const std::string& stream, const link::Snapshot& now)
+std::vector<std::string> known_to(const std::string& stream, const link::CatalogueContents& now)
 {
     std::vector<std::string> out;
     if (stream != "metrics") add_ids(now.objects, out);
@@ -138,7 +138,7 @@ link::Parts parts_for(const WatchOptions& o)
 
 /// States and metrics of nobody would be empty for ever: that is an error. What collides or happens may be of a component that is
 /// added later: that is told, and waited for.
-Exit check_names(const Context& c, const WatchOptions& o, const link::Snapshot& now)
+Exit check_names(const Context& c, const WatchOptions& o, const link::CatalogueContents& now)
 {
     const std::vector<std::string> known = known_to(o.stream, now);
     const bool is_error = o.stream == "states" || o.stream == "metrics";
@@ -202,4 +202,4 @@ void add_watch_command(const Command& app, Context& context)
         .type_name("SECONDS");
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -3,7 +3,7 @@
 #include "control/metrics_text.h"
 #include "control/table.h"
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -171,4 +171,4 @@ void WatchPrinter::gap(const char* what, std::uint64_t missed, std::uint64_t bef
     console_.say("plabctl: missed " + std::to_string(missed) + " " + what + " before number " + std::to_string(before));
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -6,7 +6,7 @@
 #include "control/context.h"
 #include "control/frames.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 /// What `watch` leaves out.
@@ -36,4 +36,4 @@ private:
     bool has_title_ = false;
 };
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace plab::control
+namespace plab::cli
 {
 namespace
 {
@@ -43,4 +43,4 @@ Exit Work::interrupted(const std::string& consequence)
     return Exit::Interrupted;
 }
 
-}  // namespace plab::control
+}  // namespace plab::cli

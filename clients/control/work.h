@@ -10,7 +10,7 @@
 #include "idl/recording/source.h"
 #include "program/progress.h"
 
-namespace plab::control
+namespace plab::cli
 {
 
 class Work
@@ -34,4 +34,4 @@ private:
     int pass_ = 1;  ///< over the file: some work reads it more than once
 };
 
-}  // namespace plab::control
+}  // namespace plab::cli

@@ -12,9 +12,9 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-std::vector<FieldFate> fates_of(const plab_v2_SwapReport& swap)
+std::vector<TransferredField> transferred_fields(const plab_v2_SwapReport& swap)
 {
-    std::vector<FieldFate> out;
+    std::vector<TransferredField> out;
     for (std::uint32_t i = 0; i < swap.fields._length; ++i) out.push_back({swap.fields._buffer[i].name, swap.fields._buffer[i].fate});
     return out;
 }
@@ -31,8 +31,8 @@ Reply reply_of(const plab_v2_Reply& r)
     for (std::uint32_t i = 0; i < r.swaps._length; ++i)
     {
         const plab_v2_SwapReport& s = r.swaps._buffer[i];
-        out.swaps.push_back(
-            {s.component_id, s.from_type, s.to_type, fates_of(s), s.energy_before, outcome_of(s.with_old), outcome_of(s.with_new)});
+        out.swaps.push_back({s.component_id, s.from_type, s.to_type, transferred_fields(s), s.energy_before, outcome_of(s.with_old),
+                             outcome_of(s.with_new)});
     }
     return out;
 }

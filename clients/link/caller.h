@@ -23,9 +23,9 @@ struct Request
     std::optional<std::uint64_t> revision;
 };
 
-struct FieldFate
+struct TransferredField
 {
-    std::string name, fate;
+    std::string name, transfer;
 };
 struct StepOutcome
 {
@@ -36,7 +36,7 @@ struct StepOutcome
 struct SwapReport
 {
     std::string component, from, to;
-    std::vector<FieldFate> fields;
+    std::vector<TransferredField> fields;
     double energy_before = 0;
     StepOutcome with_old, with_new;
 };

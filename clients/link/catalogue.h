@@ -37,7 +37,7 @@ constexpr Parts operator|(Parts a, Part b) { return a | static_cast<Parts>(b); }
 constexpr bool has(Parts parts, Part part) { return (parts & static_cast<Parts>(part)) != 0; }
 inline constexpr Parts kEverything = 127;
 
-struct Snapshot
+struct CatalogueContents
 {
     std::optional<ServerInfo> server;  ///< empty: it has gone
     std::optional<Scene> scene;
@@ -62,7 +62,7 @@ public:
     /// Waits for a change until `timeout`; takes it.
     bool wait(Seconds timeout);
 
-    const Snapshot& now() const { return now_; }
+    const CatalogueContents& now() const { return now_; }
     /// Counts changes of what there is (the server's state and metrics left out): for caches of who draws or prints.
     std::uint64_t version() const { return version_; }
     /// The server showed itself and has gone since: ended, or silent for longer than its lease.
@@ -86,7 +86,7 @@ private:
     wire::Reader<plab_v2_Type> types_;
     wire::Reader<plab_v2_Metrics> metrics_;
     wire::Entity waitset_;
-    Snapshot now_;
+    CatalogueContents now_;
     std::map<std::uint32_t, std::string> handles_;
     std::uint64_t version_ = 0;
     bool was_there_ = false;

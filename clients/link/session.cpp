@@ -44,9 +44,9 @@ ServerInfo server_of(const plab_v2_Server& s)
     return out;
 }
 
-Result<Options> options_from_environment()
+Result<SessionOptions> options_from_environment()
 {
-    Options options;
+    SessionOptions options;
     auto domain = wire::domain_from_environment();
     if (!domain) return domain.errors();
     options.domain = *domain;
@@ -54,7 +54,7 @@ Result<Options> options_from_environment()
     return options;
 }
 
-Result<Session> Session::join(const Options& options)
+Result<Session> Session::join(const SessionOptions& options)
 {
     if (!options.server.empty() && !wire::is_server_name(options.server))
         return reason("'" + options.server + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
@@ -77,7 +77,7 @@ Result<void> Session::enter(const std::string& server)
     return {};
 }
 
-Result<Session> Session::find(const Options& options, Seconds timeout)
+Result<Session> Session::find(const SessionOptions& options, Seconds timeout)
 {
     auto session = join(options);
     if (!session) return session;
@@ -85,7 +85,7 @@ Result<Session> Session::find(const Options& options, Seconds timeout)
     return session;
 }
 
-Result<void> Session::find_server(const Options& options, Seconds timeout, const Stop& stop)
+Result<void> Session::find_server(const SessionOptions& options, Seconds timeout, const Stop& stop)
 {
     const auto end = moment_after(timeout);
     std::vector<ServerInfo> seen;

@@ -18,14 +18,14 @@ namespace plab::link
 /// Asked several times a second by what waits: true ends the waiting.
 using Stop = std::function<bool()>;
 
-struct Options
+struct SessionOptions
 {
     std::string server;  ///< name; empty: the only one that is there
     wire::DomainOptions domain;
 };
 
 /// PLAB_SERVER, PLAB_DOMAIN and PLAB_INTERFACE, where they are set.
-Result<Options> options_from_environment();
+Result<SessionOptions> options_from_environment();
 
 /// What is known of a server without asking it.
 struct ServerInfo
@@ -68,11 +68,11 @@ class Session
 {
 public:
     /// Joins the domain, without regard to servers.
-    static Result<Session> join(const Options& options);
+    static Result<Session> join(const SessionOptions& options);
     /// Joins, and looks for the server (by name, or the only one) until `timeout`. The reason says which ones there are.
-    static Result<Session> find(const Options& options, Seconds timeout);
+    static Result<Session> find(const SessionOptions& options, Seconds timeout);
     /// The second half of find(), for a session that has joined.
-    Result<void> find_server(const Options& options, Seconds timeout, const Stop& stop = {});
+    Result<void> find_server(const SessionOptions& options, Seconds timeout, const Stop& stop = {});
 
     /// Servers that have shown themselves until `timeout`, by name: this session's, or all while it belongs to none. Returns
     /// early once `enough` have.

@@ -7,7 +7,7 @@
 namespace plab::logger
 {
 
-End follow(const Options& options, const link::Stop& interrupted)
+End follow(const LoggerOptions& options, const link::Stop& interrupted)
 {
     using Clock = std::chrono::steady_clock;
     constexpr link::Seconds kLook(0.1);  // how late an interruption may be seen

@@ -14,6 +14,6 @@ struct End
 };
 
 /// Joins, finds the server and writes its lines until `interrupted`, the number of entries or the time of `options`.
-End follow(const Options& options, const link::Stop& interrupted);
+End follow(const LoggerOptions& options, const link::Stop& interrupted);
 
 }  // namespace plab::logger

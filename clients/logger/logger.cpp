@@ -21,7 +21,7 @@ Result<void> subscribe(const link::Session& session, const wire::Entity& waitset
 
 }  // namespace
 
-Result<Logger> Logger::make(const link::Session& session, const Options& options, Output output)
+Result<Logger> Logger::make(const link::Session& session, const LoggerOptions& options, Output output)
 {
     Logger out(std::move(output));
     out.options_ = options;

@@ -15,7 +15,7 @@ namespace plab::logger
 class Logger
 {
 public:
-    static Result<Logger> make(const link::Session& session, const Options& options, Output output);
+    static Result<Logger> make(const link::Session& session, const LoggerOptions& options, Output output);
 
     /// Waits up to `longest`, then writes and flushes the lines whose turn has come (order.h). Good: go on.
     Output::State step(link::Seconds longest);
@@ -39,7 +39,7 @@ private:
     void write(const std::vector<Line>& lines);
     void say_server(ServerChange change, const link::ServerInfo& info);
 
-    Options options_;
+    LoggerOptions options_;
     Output output_;
     std::unique_ptr<Lines> lines_;
     wire::Reader<plab_v2_Server> server_;

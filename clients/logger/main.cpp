@@ -9,7 +9,7 @@ using namespace plab;
 
 int main(int argc, char** argv)
 {
-    logger::Options options;
+    logger::LoggerOptions options;
     if (const auto parsed = logger::parse_options(argc, argv, options))
     {
         (parsed->exit_code == 0 ? std::cout : std::cerr) << parsed->text;

@@ -21,7 +21,7 @@ constexpr const char* kExamples =
     "A server that ends is waited for; what was missed has a line of its own. Exit codes: 0 done, 1 cannot write,\n"
     "2 wrong use, 3 no server, 130 Ctrl-C, 143 SIGTERM.";
 
-void add_options(CLI::App& app, Options& options, std::string& severity)
+void add_options(CLI::App& app, LoggerOptions& options, std::string& severity)
 {
     app.add_option("--server", options.link.server, "name of the server; without it, the only one (PLAB_SERVER)");
     app.add_option("--domain", options.link.domain.id, "DDS domain, 0 to 232 (PLAB_DOMAIN)")->check(CLI::Range(0, 232));
@@ -43,7 +43,7 @@ void add_options(CLI::App& app, Options& options, std::string& severity)
 
 }  // namespace
 
-std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options& options)
+std::optional<ParseEnd> parse_options(int argc, const char* const* argv, LoggerOptions& options)
 {
     if (auto from_environment = link::options_from_environment(); from_environment)
         options.link = from_environment.take();

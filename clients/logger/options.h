@@ -10,9 +10,9 @@
 namespace plab::logger
 {
 
-struct Options
+struct LoggerOptions
 {
-    link::Options link;
+    link::LoggerOptions link;
     double timeout = 5;  ///< s to wait for the server at the start; 0: as long as it takes
     std::string out;     ///< file to append to; empty: standard output
     bool json = false;
@@ -28,6 +28,6 @@ struct ParseEnd
     int exit_code = 0;
     std::string text;
 };
-std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options& options);
+std::optional<ParseEnd> parse_options(int argc, const char* const* argv, LoggerOptions& options);
 
 }  // namespace plab::logger

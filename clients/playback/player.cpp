@@ -35,7 +35,7 @@ std::string seconds_text(std::uint64_t time)
 }
 
 /// The part of the recording that is asked for.
-Result<Span> choose_span(const recording::Reader& reader, const Options& options)
+Result<Span> choose_span(const recording::Reader& reader, const PlaybackOptions& options)
 {
     const Span all = span_of(reader.index());
     Span out = all;
@@ -62,7 +62,7 @@ Result<std::string> choose_name(const recording::Reader& reader, const std::stri
 
 }  // namespace
 
-Result<std::unique_ptr<Player>> Player::open(const Options& options)
+Result<std::unique_ptr<Player>> Player::open(const PlaybackOptions& options)
 {
     auto reader = recording::open_recording(options.file);
     if (!reader) return reader.errors();
@@ -70,7 +70,7 @@ Result<std::unique_ptr<Player>> Player::open(const Options& options)
     if (!span) return span.errors();
     const auto name = choose_name(*reader, options.name);
     if (!name) return name.errors();
-    auto front = Front::open(options.domain.id, *name, options.version, options.file);
+    auto front = ServerFacade::open(options.domain.id, *name, options.version, options.file);
     if (!front) return front.errors();
     const Pace pace(*span, options.rate, options.paused, Clock::now());
     std::unique_ptr<Player> out(new Player(reader.take(), front.take(), pace, options));
@@ -78,34 +78,34 @@ Result<std::unique_ptr<Player>> Player::open(const Options& options)
     return out;
 }
 
-Player::Player(recording::Reader reader, Front front, const Pace& pace, const Options& options)
+Player::Player(recording::Reader reader, ServerFacade front, const Pace& pace, const PlaybackOptions& options)
     : reader_(std::move(reader)),
-      front_(std::move(front)),
+      facade_(std::move(front)),
       pace_(pace),
       loop_(options.loop),
       frames_(recording::make_peek(wire::topic_of<plab_v2_Frame>())),
       statuses_(recording::make_peek(wire::topic_of<plab_v2_Server>())),
       wanted_readers_(options.readers)
 {
-    changes_.server = front_.name();
+    changes_.server = facade_.name();
     if (const auto about = reader_.metadata(recording::kAbout); about && about->values.contains("states"))
         moved_only_ = about->values.at("states") == "moved";
 }
 
-Result<void> Player::join(const Options& options)
+Result<void> Player::join(const PlaybackOptions& options)
 {
     auto participant = wire::join(options.domain);
     if (!participant) return participant.errors();
     participant_ = participant.take();
-    auto publisher = wire::make_publisher(participant_, front_.name());
+    auto publisher = wire::make_publisher(participant_, facade_.name());
     if (!publisher) return publisher.errors();
-    auto subscriber = wire::make_subscriber(participant_, front_.name());
+    auto subscriber = wire::make_subscriber(participant_, facade_.name());
     if (!subscriber) return subscriber.errors();
     publisher_ = publisher.take(), subscriber_ = subscriber.take();
     if (auto made = make_tracks(); !made) return made;
-    if (auto joined = front_.join(participant_, publisher_, subscriber_); !joined) return joined;
+    if (auto joined = facade_.join(participant_, publisher_, subscriber_); !joined) return joined;
     waitset_ = wire::Entity(dds_create_waitset(participant_.get()));
-    const dds_entity_t condition = dds_create_readcondition(front_.requests().get(), DDS_ANY_STATE);
+    const dds_entity_t condition = dds_create_readcondition(facade_.requests().get(), DDS_ANY_STATE);
     if (const auto code = dds_waitset_attach(waitset_.get(), condition, 0); code < 0) return wire::failed("cannot wait for requests", code);
     return {};
 }
@@ -139,12 +139,12 @@ Player::~Player()
 {
     const Clock::time_point end = Clock::now() + kGoodbye;
     const auto left = [&] { return std::max<dds_duration_t>(0, std::chrono::nanoseconds(end - Clock::now()).count()); };
-    std::set<Place> all;
-    for (const auto& [place, bytes] : shelf_.entries()) all.insert(place);
+    std::set<InstanceKey> all;
+    for (const auto& [place, bytes] : retained_.entries()) all.insert(place);
     dispose(all);
     // What has not arrived by then is lost: a reader that hangs must not hold up the end.
     for (const auto& [topic, track] : tracks_) track->flush(left());
-    front_.leave(left());
+    facade_.leave(left());
 }
 
 std::uint32_t Player::readers() const
@@ -156,9 +156,9 @@ std::uint32_t Player::readers() const
 /// Many look at the catalogue before they read states.
 void Player::show_scene()
 {
-    if (!shelf_.entries().empty()) return;
+    if (!retained_.entries().empty()) return;
     put_status(pace_.span().from);
-    put_catalogue(shelf_at(reader_, pace_.span().from));
+    put_catalogue(retained_at(reader_, pace_.span().from));
 }
 
 void Player::begin(Clock::time_point now)
@@ -170,8 +170,8 @@ void Player::begin(Clock::time_point now)
 
 Result<void> Player::step(Clock::time_point now)
 {
-    if (const auto why = front_.look_for_rival()) return reason(*why);
-    front_.answer(standing_);
+    if (const auto why = facade_.look_for_rival()) return reason(*why);
+    facade_.answer(state_);
     if (!has_begun_ && readers() < wanted_readers_)
     {
         show_scene();
@@ -211,7 +211,7 @@ void Player::wait(Clock::time_point latest)
 {
     std::optional<Clock::time_point> due;
     if (has_begun_) due = pace_.when(fetch() ? next_->message.log_time : pace_.span().to);
-    const Clock::time_point until = std::min({latest, due.value_or(latest), told_ + kHeartbeat});
+    const Clock::time_point until = std::min({latest, due.value_or(latest), published_at_ + kHeartbeat});
     const std::chrono::nanoseconds left = until - Clock::now();
     if (left.count() > 0) (void)dds_waitset_wait(waitset_.get(), nullptr, 0, left.count());
 }
@@ -252,8 +252,8 @@ std::uint64_t Player::run_at(std::uint64_t time) const
     const auto run = [](recording::Peek& peek, const Result<std::optional<recording::Kept>>& kept) -> std::uint64_t
     {
         if (!kept || !*kept) return 0;
-        const auto glance = peek.at((*kept)->data);
-        return glance ? glance->run : 0;
+        const auto header = peek.at((*kept)->data);
+        return header ? header->run : 0;
     };
     const std::uint64_t of_status = run(*statuses_, reader_.last_at(wire::topic_of<plab_v2_Server>().name, time));
     const std::uint64_t of_frame = run(*frames_, reader_.last_at(wire::topic_of<plab_v2_Frame>().name, time));
@@ -262,22 +262,22 @@ std::uint64_t Player::run_at(std::uint64_t time) const
 
 void Player::tell_status(Clock::time_point now, bool at_once)
 {
-    if (!at_once && now - told_ < kHeartbeat) return;
-    const double gone = link::Seconds(now - told_).count();
+    if (!at_once && now - published_at_ < kHeartbeat) return;
+    const double gone = link::Seconds(now - published_at_).count();
     const std::uint64_t position = pace_.position(now);
-    const double advance = static_cast<double>(position) - static_cast<double>(told_position_);
-    if (!at_once) standing_.rate_reached = std::max(0.0, advance * 1e-9 / gone);
-    told_ = now, told_position_ = position;
-    standing_.is_paused = pace_.is_paused(), standing_.rate_asked = pace_.rate();
+    const double advance = static_cast<double>(position) - static_cast<double>(published_position_);
+    if (!at_once) state_.rate_reached = std::max(0.0, advance * 1e-9 / gone);
+    published_at_ = now, published_position_ = position;
+    state_.is_paused = pace_.is_paused(), state_.rate_asked = pace_.rate();
     const auto shift = [&](const char* topic)
     {
         const Track* const track = track_of(topic);
         return track == nullptr ? 0 : track->number_shift();
     };
-    standing_.run_shift = changes_.run_shift;
-    standing_.event_shift = shift(wire::topic_of<plab_v2_Events>().name);
-    standing_.collision_shift = shift(wire::topic_of<plab_v2_Collisions>().name);
-    front_.send(standing_);
+    state_.run_shift = changes_.run_shift;
+    state_.event_shift = shift(wire::topic_of<plab_v2_Events>().name);
+    state_.collision_shift = shift(wire::topic_of<plab_v2_Collisions>().name);
+    facade_.send(state_);
 }
 
 Track* Player::track_of(const std::string& topic)

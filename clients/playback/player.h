@@ -11,15 +11,15 @@
 #include "idl/domain.h"
 #include "idl/recording/reader.h"
 #include "link/session.h"
-#include "playback/front.h"
 #include "playback/pace.h"
-#include "playback/shelf.h"
+#include "playback/retained_samples.h"
+#include "playback/server_facade.h"
 #include "playback/track.h"
 
 namespace plab::playback
 {
 
-struct Options
+struct PlaybackOptions
 {
     std::string file;
     std::string name;            ///< of the server; empty: the recorded one's
@@ -39,7 +39,7 @@ public:
     using Clock = std::chrono::steady_clock;
 
     /// Opens the file, takes the name and joins the bus. Nothing is sent before the first step().
-    static Result<std::unique_ptr<Player>> open(const Options& options);
+    static Result<std::unique_ptr<Player>> open(const PlaybackOptions& options);
     ~Player();
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
@@ -59,8 +59,8 @@ public:
     void seek(std::uint64_t time, Clock::time_point now);
 
     const Pace& pace() const { return pace_; }
-    const std::string& name() const { return front_.name(); }
-    Standing standing() const { return standing_; }
+    const std::string& name() const { return facade_.name(); }
+    PlaybackState state() const { return state_; }
     std::uint64_t sent() const { return sent_; }
     /// Messages that are damaged, or no samples of their topic.
     std::uint64_t broken() const { return broken_; }
@@ -68,8 +68,8 @@ public:
     const std::vector<std::string>& foreign() const { return foreign_; }
 
 private:
-    Player(recording::Reader reader, Front front, const Pace& pace, const Options& options);
-    Result<void> join(const Options& options);
+    Player(recording::Reader reader, ServerFacade front, const Pace& pace, const PlaybackOptions& options);
+    Result<void> join(const PlaybackOptions& options);
     Result<void> make_tracks();
     void show_scene();
     void begin(Clock::time_point now);
@@ -78,7 +78,7 @@ private:
     void jump_back(std::uint64_t time, Clock::time_point now);
     std::uint64_t run_at(std::uint64_t time) const;
     void jump(std::uint64_t time);
-    void put_catalogue(Shelf wanted);
+    void put_catalogue(RetainedSamples wanted);
     void put_status(std::uint64_t until);
     void put_latest(const std::string& topic, std::uint64_t until);
     void put_frame(std::uint64_t until);
@@ -88,7 +88,7 @@ private:
     void send_entry(const recording::Found& found);
     void send(const std::string& topic, recording::ByteView bytes);
     void take_gone(recording::ByteView bytes);
-    void dispose(const std::set<Place>& places);
+    void dispose(const std::set<InstanceKey>& places);
     void note_place(recording::Peek& peek, recording::ByteView bytes);
     void look_at_readers();
     bool has_newcomers(const std::string& topic);
@@ -96,7 +96,7 @@ private:
     Track* track_of(const std::string& topic);
 
     recording::Reader reader_;
-    Front front_;
+    ServerFacade facade_;
     Pace pace_;
     bool loop_, moved_only_ = false;
     Changes changes_;
@@ -112,16 +112,16 @@ private:
     std::uint64_t jumped_to_ = 0;           ///< the catalogue of this time is on the bus already
     std::uint32_t wanted_readers_;
     bool has_begun_ = false, is_over_ = false;
-    Shelf shelf_;                                ///< what is on the bus
-    std::uint64_t shelf_shift_ = 0;              ///< run_shift with which it was written
-    std::set<Place> doomed_;                     ///< gone in the recording, and disposed of unless it is back in the same moment
+    RetainedSamples retained_;                   ///< what is on the bus
+    std::uint64_t retained_shift_ = 0;           ///< run_shift with which it was written
+    std::set<InstanceKey> doomed_;               ///< gone in the recording, and disposed of unless it is back in the same moment
     std::uint64_t highest_run_ = 0;              ///< on the bus
     std::map<std::string, std::uint32_t> seen_;  ///< readers so far, of topics that newcomers get at once
 
-    Standing standing_;
+    PlaybackState state_;
     std::uint64_t sent_ = 0, broken_ = 0;
-    Clock::time_point told_{};
-    std::uint64_t told_position_ = 0;
+    Clock::time_point published_at_{};
+    std::uint64_t published_position_ = 0;
 };
 
 }  // namespace plab::playback

@@ -46,7 +46,7 @@ void Player::jump(std::uint64_t time)
     cursor_.emplace(reader_.messages({topics_, time, pace_.span().to}));
     for (const auto& [topic, track] : tracks_) track->jump();
     doomed_.clear();
-    put_catalogue(shelf_at(reader_, time));
+    put_catalogue(retained_at(reader_, time));
     position_ = jumped_to_ = time;
     put_status(time);
     if (time == 0) return;
@@ -56,23 +56,23 @@ void Player::jump(std::uint64_t time)
 }
 
 /// Makes the bus show what is wanted; what does not change is not sent again, unless a new run begins.
-void Player::put_catalogue(Shelf wanted)
+void Player::put_catalogue(RetainedSamples wanted)
 {
-    std::set<Place> leaving;
-    for (const auto& [place, bytes] : shelf_.entries())
+    std::set<InstanceKey> leaving;
+    for (const auto& [place, bytes] : retained_.entries())
         if (!wanted.has(place)) leaving.insert(place);
     dispose(leaving);
-    const bool is_new_run = shelf_shift_ != changes_.run_shift;
+    const bool is_new_run = retained_shift_ != changes_.run_shift;
     // The scene comes after what it counts.
     for (const bool wants_scene : {false, true})
         for (const auto& [place, bytes] : wanted.entries())
         {
             if ((place.first == scene()) != wants_scene) continue;
-            const auto old = shelf_.entries().find(place);
-            if (is_new_run || old == shelf_.entries().end() || old->second != bytes) send(place.first, bytes);
+            const auto old = retained_.entries().find(place);
+            if (is_new_run || old == retained_.entries().end() || old->second != bytes) send(place.first, bytes);
         }
-    shelf_ = std::move(wanted);
-    shelf_shift_ = changes_.run_shift;
+    retained_ = std::move(wanted);
+    retained_shift_ = changes_.run_shift;
 }
 
 void Player::put_status(std::uint64_t until)
@@ -84,10 +84,10 @@ void Player::put_status(std::uint64_t until)
         recording::Cursor cursor = reader_.messages({{status()}, until, pace_.span().to});
         const auto first = cursor.next();
         if (!first || !*first) return;
-        if (!front_.use((*first)->message.data)) ++broken_;
+        if (!facade_.use((*first)->message.data)) ++broken_;
         return note_place(*statuses_, (*first)->message.data);
     }
-    if (!last || !front_.use((*last)->data))
+    if (!last || !facade_.use((*last)->data))
         ++broken_;
     else
         note_place(*statuses_, (*last)->data);
@@ -150,7 +150,7 @@ void Player::send_next()
         if (!is_same_moment) dispose(std::exchange(doomed_, {}));
         if (topic == status())
         {
-            if (!front_.use(bytes)) ++broken_;
+            if (!facade_.use(bytes)) ++broken_;
             note_place(*statuses_, bytes);
         }
         else if (track_of(topic) != nullptr)
@@ -164,7 +164,7 @@ void Player::send_entry(const recording::Found& found)
 {
     if (found.message.log_time == jumped_to_) return;  // the jump brought it
     const std::string& topic = found.channel->topic;
-    const auto place = shelf_.put(topic, found.message.data);
+    const auto place = retained_.put(topic, found.message.data);
     if (!place)
     {
         ++broken_;
@@ -187,14 +187,14 @@ void Player::send(const std::string& topic, recording::ByteView bytes)
 void Player::take_gone(recording::ByteView bytes)
 {
     if (position_ == jumped_to_) return;
-    auto places = shelf_.remove(bytes);
+    auto places = retained_.remove(bytes);
     if (places)
         doomed_.merge(*places);
     else
         ++broken_;
 }
 
-void Player::dispose(const std::set<Place>& places)
+void Player::dispose(const std::set<InstanceKey>& places)
 {
     for (const auto& [topic, key] : places)
         if (Track* const track = track_of(topic)) track->dispose(topic == scene() ? changes_.server : key);
@@ -202,11 +202,11 @@ void Player::dispose(const std::set<Place>& places)
 
 void Player::note_place(recording::Peek& peek, recording::ByteView bytes)
 {
-    const auto glance = peek.at(bytes);
-    if (!glance || !glance->time) return;
-    standing_.run = glance->run + changes_.run_shift;
-    standing_.step = glance->step, standing_.time = *glance->time;
-    highest_run_ = std::max(highest_run_, standing_.run);
+    const auto header = peek.at(bytes);
+    if (!header || !header->time) return;
+    state_.run = header->run + changes_.run_shift;
+    state_.step = header->step, state_.time = *header->time;
+    highest_run_ = std::max(highest_run_, state_.run);
 }
 
 /// Newcomers get what a server would give them at once: of one that stands still its state, and a snapshot.

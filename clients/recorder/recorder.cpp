@@ -53,7 +53,7 @@ std::string joined(const std::vector<std::string>& words)
     return out;
 }
 
-recording::Metadata about(const link::ServerInfo& server, const Options& options)
+recording::Metadata about(const link::ServerInfo& server, const RecorderOptions& options)
 {
     recording::Metadata out{recording::kAbout, {}};
     out.values = {{"format", std::to_string(recording::kFormat)},
@@ -90,23 +90,24 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
     return out;
 }
 
-Recorder::Recorder(const Options& options, const link::ServerInfo& server, std::unique_ptr<Tape> tape)
-    : options_(options), started_ns_(server.started_ns), tape_(std::move(tape)), run_(server.run)
+Recorder::Recorder(const RecorderOptions& options, const link::ServerInfo& server, std::unique_ptr<AsyncWriter> writer)
+    : options_(options), started_ns_(server.started_ns), writer_(std::move(writer)), run_(server.run)
 {
     // The recording begins now, whichever sample comes first.
     (void)timeline_.at(server.run, server.time);
 }
 
-Result<std::unique_ptr<Recorder>> Recorder::open(const link::Session& session, const link::ServerInfo& server, const Options& options)
+Result<std::unique_ptr<Recorder>> Recorder::open(const link::Session& session, const link::ServerInfo& server,
+                                                 const RecorderOptions& options)
 {
     auto topics = choose_topics(options.topics);
     if (!topics) return topics.errors();
     // Without plab/server nobody would see the server go.
     const wire::Topic* const presence = &wire::topic_of<plab_v2_Server>();
     if (std::find(topics->begin(), topics->end(), presence) == topics->end()) topics->insert(topics->begin(), presence);
-    auto tape = Tape::open(options.tape, about(server, options));
-    if (!tape) return tape.errors();
-    std::unique_ptr<Recorder> out(new Recorder(options, server, tape.take()));
+    auto writer = AsyncWriter::open(options.writer, about(server, options));
+    if (!writer) return writer.errors();
+    std::unique_ptr<Recorder> out(new Recorder(options, server, writer.take()));
     if (auto subscribed = out->subscribe(session, *topics); !subscribed) return subscribed.errors();
     return out;
 }
@@ -135,18 +136,18 @@ State Recorder::step(link::Seconds longest)
     (void)dds_waitset_wait(waitset_.get(), nullptr, 0, link::duration_of(longest));
     take_all();
     const auto now = Clock::now();
-    write(partings_.take(now));
-    if (now - told_ >= kTellEvery) told_ = now, tell_gaps();
+    write(disposals_.take(now));
+    if (now - reported_at_ >= kTellEvery) reported_at_ = now, tell_gaps();
     return state_;
 }
 
-Result<TapeProgress> Recorder::close()
+Result<WriteProgress> Recorder::close()
 {
     if (state_ == State::Goes) take_all();
     // What was said last is believed, but for the goodbye of a server.
-    if (state_ == State::Goes || state_ == State::Done) write(partings_.take(Clock::time_point::max()));
+    if (state_ == State::Goes || state_ == State::Done) write(disposals_.take(Clock::time_point::max()));
     tell_gaps();
-    return tape_->close();
+    return writer_->close();
 }
 
 /// Each topic comes for itself; the order in which the server wrote is in the time stamps of its one writing thread. In any
@@ -183,33 +184,33 @@ void Recorder::look_at(Arrived& sample)
     if (sample.is_gone) return look_at_gone(sample);
     if (!sample.has_value) return;
     Track& track = *sample.track;
-    const auto glance = track.peek->at(sample.data);
-    if (!glance)
+    const auto header = track.peek->at(sample.data);
+    if (!header)
     {
         ++broken_;
         return;
     }
-    if (is_topic<plab_v2_Server>(*track.topic)) note_server(*glance);
+    if (is_topic<plab_v2_Server>(*track.topic)) note_server(*header);
     if (state_ != State::Goes) return;
-    const std::uint64_t log_time = glance->time && glance->run > 0 ? timeline_.at(glance->run, *glance->time) : timeline_.now();
-    run_ = std::max(run_, glance->run);
-    if (glance->entries > 0) note_gap(track, *glance, sample.writer, log_time);
+    const std::uint64_t log_time = header->time && header->run > 0 ? timeline_.at(header->run, *header->time) : timeline_.now();
+    run_ = std::max(run_, header->run);
+    if (header->entries > 0) note_gap(track, *header, sample.writer, log_time);
     track.last_log_time = log_time;
-    const auto stamp_ns = static_cast<std::uint64_t>(glance->stamp_ns > 0 ? glance->stamp_ns : sample.written_ns);
-    if (!is_left_out(track, *glance)) keep(track, *glance, {track.topic, log_time, stamp_ns, std::move(sample.data)});
+    const auto stamp_ns = static_cast<std::uint64_t>(header->stamp_ns > 0 ? header->stamp_ns : sample.written_ns);
+    if (!is_left_out(track, *header)) keep(track, *header, {track.topic, log_time, stamp_ns, std::move(sample.data)});
     const bool tells_time = is_topic<plab_v2_Frame>(*track.topic) || is_topic<plab_v2_Server>(*track.topic);
-    if (options_.until && tells_time && *glance->time >= *options_.until - kSameTime) state_ = State::Done;
+    if (options_.until && tells_time && *header->time >= *options_.until - kSameTime) state_ = State::Done;
 }
 
-void Recorder::keep(const Track& track, const recording::Glance& glance, Message&& message)
+void Recorder::keep(const Track& track, const recording::SampleHeader& header, Message&& message)
 {
-    if (!glance.key.empty()) write(partings_.take_before_return(track.topic->name, glance.key));
-    if (!has_blueprint_ && !glance.blueprint.empty())
+    if (!header.key.empty()) write(disposals_.take_before_return(track.topic->name, header.key));
+    if (!has_blueprint_ && !header.blueprint.empty())
     {
         has_blueprint_ = true;
-        tape_->attach(message.log_time, "blueprint.xml", "text/xml", glance.blueprint);
+        writer_->attach(message.log_time, "blueprint.xml", "text/xml", header.blueprint);
     }
-    (void)tape_->put(std::move(message));  // what finds no room is counted there
+    (void)writer_->put(std::move(message));  // what finds no room is counted there
 }
 
 void Recorder::look_at_gone(const Arrived& sample)
@@ -218,52 +219,52 @@ void Recorder::look_at_gone(const Arrived& sample)
     if (is_topic<plab_v2_Server>(topic))
     {
         state_ = State::Gone;
-        partings_.forget();
+        disposals_.forget();
         return;
     }
     const std::string key = recording::key_of_gone(sample.data);
     // Metrics and replies have no instances that a scene could lose.
     if (key.empty() || is_topic<plab_v2_Reply>(topic)) return;
-    partings_.add({topic.name, key, run_, timeline_.now(), static_cast<std::uint64_t>(sample.written_ns)}, Clock::now());
+    disposals_.add({topic.name, key, run_, timeline_.now(), static_cast<std::uint64_t>(sample.written_ns)}, Clock::now());
 }
 
-void Recorder::note_server(const recording::Glance& glance)
+void Recorder::note_server(const recording::SampleHeader& header)
 {
-    if (glance.started_ns == started_ns_) return;
+    if (header.started_ns == started_ns_) return;
     state_ = State::Restarted;
-    partings_.forget();
+    disposals_.forget();
 }
 
-void Recorder::note_gap(Track& track, const recording::Glance& glance, std::uint64_t writer, std::uint64_t log_time)
+void Recorder::note_gap(Track& track, const recording::SampleHeader& header, std::uint64_t writer, std::uint64_t log_time)
 {
-    const auto missing = track.numbers.note(writer, glance.first, glance.entries);
+    const auto missing = track.numbers.note(writer, header.first, header.entries);
     track.missing.add({missing.count, 0, track.last_log_time, log_time});
 }
 
-bool Recorder::is_left_out(const Track& track, const recording::Glance& glance)
+bool Recorder::is_left_out(const Track& track, const recording::SampleHeader& header)
 {
     const bool is_asked_for =
         options_.topics.empty() || std::find(options_.topics.begin(), options_.topics.end(), track.topic->name) != options_.topics.end();
     if (!is_asked_for) return true;
     if (!options_.state_rate || !is_topic<plab_v2_Frame>(*track.topic)) return false;
-    if (!next_frame_ || next_frame_->first != glance.run) next_frame_ = {glance.run, *glance.time};
-    if (*glance.time < next_frame_->second - kSameTime) return true;
+    if (!next_frame_ || next_frame_->first != header.run) next_frame_ = {header.run, *header.time};
+    if (*header.time < next_frame_->second - kSameTime) return true;
     // On a grid of its own: a frame that is late does not make all that follow late.
     const double interval = 1 / *options_.state_rate;
-    next_frame_->second += interval * std::max(1.0, std::ceil((*glance.time + kSameTime - next_frame_->second) / interval));
+    next_frame_->second += interval * std::max(1.0, std::ceil((*header.time + kSameTime - next_frame_->second) / interval));
     return false;
 }
 
-void Recorder::write(const std::vector<Parting>& partings)
+void Recorder::write(const std::vector<Disposal>& disposals)
 {
-    for (const Parting& p : partings)
+    for (const Disposal& p : disposals)
     {
         plab_v2_Gone gone{};
         std::string topic = p.topic, key = p.key;
         gone.run = p.run, gone.topic_name = topic.data(), gone.component_id = key.data();
         const auto bytes = encoder_.encode(gone);
         if (!bytes) continue;  // two texts and a number are always a sample
-        (void)tape_->put({&wire::topic_of<plab_v2_Gone>(), p.log_time, p.publish_time, recording::Bytes(bytes->begin(), bytes->end())});
+        (void)writer_->put({&wire::topic_of<plab_v2_Gone>(), p.log_time, p.publish_time, recording::Bytes(bytes->begin(), bytes->end())});
     }
 }
 
@@ -272,7 +273,7 @@ void Recorder::tell_gaps()
     for (Track& track : tracks_)
     {
         if (track.missing.messages == 0) continue;
-        tape_->put_gap(track.missing, std::string(track.topic->name) + ": did not arrive from the bus");
+        writer_->put_gap(track.missing, std::string(track.topic->name) + ": did not arrive from the bus");
         track.missing = {};
     }
 }

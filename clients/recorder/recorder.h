@@ -6,19 +6,19 @@
 #include <set>
 
 #include "idl/recording/cdr.h"
-#include "idl/recording/glance.h"
+#include "idl/recording/sample_header.h"
 #include "idl/recording/timeline.h"
 #include "link/discovery.h"
 #include "link/sequence.h"
-#include "recorder/partings.h"
-#include "recorder/tape.h"
+#include "recorder/async_writer.h"
+#include "recorder/pending_disposals.h"
 
 namespace plab::recorder
 {
 
-struct Options
+struct RecorderOptions
 {
-    TapeOptions tape;
+    AsyncWriterOptions writer;
     std::vector<std::string> topics;   ///< none: all but images
     std::optional<double> until;       ///< s, simulated: the recording ends there
     std::optional<double> state_rate;  ///< frames per simulated second at the most; none: all that come
@@ -39,14 +39,15 @@ class Recorder
 {
 public:
     /// Opens the file and subscribes to everything. The session must outlive it.
-    static Result<std::unique_ptr<Recorder>> open(const link::Session& session, const link::ServerInfo& server, const Options& options);
+    static Result<std::unique_ptr<Recorder>> open(const link::Session& session, const link::ServerInfo& server,
+                                                  const RecorderOptions& options);
 
     /// Waits for samples up to `longest`, and takes those that are there.
     State step(link::Seconds longest);
     /// Ends the file. An error: not all of it could be written.
-    Result<TapeProgress> close();
+    Result<WriteProgress> close();
 
-    TapeProgress progress() const { return tape_->progress(); }
+    WriteProgress progress() const { return writer_->progress(); }
     /// s, of the recording's time line.
     double length() const { return static_cast<double>(timeline_.now()) * 1e-9; }
     /// Samples that were no samples of their topic.
@@ -66,7 +67,7 @@ private:
         std::uint64_t last_log_time = 0;
     };
 
-    Recorder(const Options& options, const link::ServerInfo& server, std::unique_ptr<Tape> tape);
+    Recorder(const RecorderOptions& options, const link::ServerInfo& server, std::unique_ptr<AsyncWriter> writer);
     Result<void> subscribe(const link::Session& session, const std::vector<const wire::Topic*>& topics);
     /// A sample that has come and is not looked at yet.
     struct Arrived
@@ -81,29 +82,29 @@ private:
     void take_all();
     void take(Track& track);
     void look_at(Arrived& sample);
-    void keep(const Track& track, const recording::Glance& glance, Message&& message);
+    void keep(const Track& track, const recording::SampleHeader& header, Message&& message);
     void look_at_gone(const Arrived& sample);
-    void note_server(const recording::Glance& glance);
-    void note_gap(Track& track, const recording::Glance& glance, std::uint64_t writer, std::uint64_t log_time);
-    bool is_left_out(const Track& track, const recording::Glance& glance);
-    void write(const std::vector<Parting>& partings);
+    void note_server(const recording::SampleHeader& header);
+    void note_gap(Track& track, const recording::SampleHeader& header, std::uint64_t writer, std::uint64_t log_time);
+    bool is_left_out(const Track& track, const recording::SampleHeader& header);
+    void write(const std::vector<Disposal>& disposals);
     void tell_gaps();
 
-    Options options_;
+    RecorderOptions options_;
     std::int64_t started_ns_ = 0;  ///< of the server that is recorded
-    std::unique_ptr<Tape> tape_;
+    std::unique_ptr<AsyncWriter> writer_;
     std::vector<Track> tracks_;  ///< all of them, from subscribe() on
     std::vector<Arrived> arrived_;
     wire::Entity waitset_;
     recording::Timeline timeline_;
-    Partings partings_;
+    PendingDisposals disposals_;
     recording::Encoder encoder_;
     State state_ = State::Goes;
     std::uint64_t run_ = 0;
     std::optional<std::pair<std::uint64_t, double>> next_frame_;  ///< run, s: for state_rate
     bool has_blueprint_ = false;
     std::uint64_t broken_ = 0;
-    Clock::time_point told_{};
+    Clock::time_point reported_at_{};
 };
 
 }  // namespace plab::recorder

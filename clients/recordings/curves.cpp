@@ -13,12 +13,12 @@ namespace
 using figures::Moment;
 
 /// Each quantity with its series.
-class Courses
+class TimeSeriesSet
 {
 public:
-    Courses(const Log& log, const std::vector<Quantity>& quantities, const Extent& extent) : log_(&log)
+    TimeSeriesSet(const Log& log, const std::vector<Quantity>& quantities, const Extent& extent) : log_(&log)
     {
-        for (const Quantity& q : quantities) courses_.push_back({q, Thinned(extent.begin, extent.end), {}, {}});
+        for (const Quantity& q : quantities) series_.push_back({q, Thinned(extent.begin, extent.end), {}, {}});
     }
 
     void note(const Entry& entry)
@@ -30,12 +30,12 @@ public:
     std::vector<figures::Curve> take()
     {
         std::vector<figures::Curve> out;
-        for (Course& c : courses_) out.push_back({c.quantity.name(), c.quantity.unit, c.series.take()});
+        for (TimeSeries& c : series_) out.push_back({c.quantity.name(), c.quantity.unit, c.series.take()});
         return out;
     }
 
 private:
-    struct Course
+    struct TimeSeries
     {
         Quantity quantity;
         Thinned series;
@@ -44,7 +44,7 @@ private:
     };
 
     /// True at the first sample of a run.
-    bool begin_run(Course& c, std::uint64_t run) const
+    bool begin_run(TimeSeries& c, std::uint64_t run) const
     {
         if (c.run == run) return false;
         if (c.run) c.series.interrupt();
@@ -55,7 +55,7 @@ private:
     void note_frame(const plab_v2_Frame& frame, double time)
     {
         merged_.note(frame);
-        for (Course& c : courses_)
+        for (TimeSeries& c : series_)
         {
             if (c.quantity.source != Quantity::Source::Object) continue;
             (void)begin_run(c, frame.run);
@@ -71,7 +71,7 @@ private:
 
     void note_metrics(const plab_v2_Metrics& metrics, double time)
     {
-        for (Course& c : courses_)
+        for (TimeSeries& c : series_)
         {
             if (c.quantity.source == Quantity::Source::Object) continue;
             if (begin_run(c, metrics.run) && is_measured(c.quantity)) continue;
@@ -83,7 +83,7 @@ private:
     }
 
     const Log* log_;
-    std::vector<Course> courses_;
+    std::vector<TimeSeries> series_;
     Merged merged_;
 };
 
@@ -174,10 +174,10 @@ std::vector<figures::Curve> curves_of(const Log& log, const std::vector<Quantity
     std::vector<std::string> topics;
     if (std::any_of(quantities.begin(), quantities.end(), is_of(Quantity::Source::Object))) topics.push_back("plab/states");
     if (!std::all_of(quantities.begin(), quantities.end(), is_of(Quantity::Source::Object))) topics.push_back("plab/metrics");
-    Courses courses(log, quantities, extent_of(log, span));
+    TimeSeriesSet series_set(log, quantities, extent_of(log, span));
     Stream stream = log.stream(topics, span);
-    while (const Entry* entry = stream.next()) courses.note(*entry);
-    return courses.take();
+    while (const Entry* entry = stream.next()) series_set.note(*entry);
+    return series_set.take();
 }
 
 std::vector<Moment> moments_of(const Log& log, const Span& span, bool all_events)

@@ -24,7 +24,7 @@ public:
 
     void note(const Entry& entry)
     {
-        if (const auto place = place_of(entry)) note_run(place->run);
+        if (const auto place = position_of(entry)) note_run(place->run);
         if (const auto* events = entry.as<plab_v2_Events>())
         {
             note_gap(*events, event_numbers_, entry.channel->topic);

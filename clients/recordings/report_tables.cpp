@@ -80,12 +80,12 @@ std::string sentence_of(const Swap& swap, const std::vector<Segment>& segments)
         if (s.begin >= at && after == nullptr && s.algorithm == swap.to) after = &s;
     }
     if (before == nullptr || after == nullptr) return out + ".";
-    std::vector<std::string> told;
+    std::vector<std::string> sentences;
     if (before->mean_cost > 0 || after->mean_cost > 0)
-        told.push_back(microseconds(before->mean_cost) + " per step before, " + microseconds(after->mean_cost) + " after");
+        sentences.push_back(microseconds(before->mean_cost) + " per step before, " + microseconds(after->mean_cost) + " after");
     if (before->largest_error > 0 || after->largest_error > 0)
-        told.push_back("largest error " + with_unit(*before) + " before, " + with_unit(*after) + " after");
-    for (std::size_t i = 0; i < told.size(); ++i) out += (i == 0 ? ": " : "; ") + told[i];
+        sentences.push_back("largest error " + with_unit(*before) + " before, " + with_unit(*after) + " after");
+    for (std::size_t i = 0; i < sentences.size(); ++i) out += (i == 0 ? ": " : "; ") + sentences[i];
     return out + ".";
 }
 

@@ -10,9 +10,9 @@ namespace
 
 /// Steps and times of most types; collisions, events and hashes tell the step only.
 template <class T>
-Place place_in(const T& sample)
+RunPosition place_in(const T& sample)
 {
-    Place out;
+    RunPosition out;
     if constexpr (requires { sample.run; }) out.run = sample.run;
     if constexpr (requires { sample.step; }) out.step = sample.step;
     if constexpr (requires { sample.time; }) out.time = sample.time;
@@ -41,10 +41,10 @@ std::string cause_in(const plab_v2_Journal& journal)
 
 }  // namespace
 
-std::optional<Place> place_of(const Entry& entry)
+std::optional<RunPosition> position_of(const Entry& entry)
 {
     return std::visit(
-        [](const auto& content) -> std::optional<Place>
+        [](const auto& content) -> std::optional<RunPosition>
         {
             if constexpr (std::is_same_v<std::decay_t<decltype(content)>, std::monostate>)
                 return {};
@@ -68,7 +68,7 @@ Run& Runs::at(std::uint64_t number, std::uint64_t log_time)
 
 void Runs::note(const Entry& entry)
 {
-    const auto place = place_of(entry);
+    const auto place = position_of(entry);
     if (!place) return;
     Run& run = at(place->run, entry.log_time);
     run.end = std::max(run.end, entry.log_time);

@@ -12,14 +12,14 @@ namespace plab::recordings
 {
 
 /// When a message says that something is; nothing where it does not say.
-struct Place
+struct RunPosition
 {
     std::uint64_t run = 0;
     std::optional<std::int64_t> step;
     std::optional<double> time;  ///< s, simulated
 };
 /// Nothing: the message is about no run (types, requests).
-std::optional<Place> place_of(const Entry& entry);
+std::optional<RunPosition> position_of(const Entry& entry);
 
 struct Run
 {

@@ -28,13 +28,13 @@ public:
     std::vector<Segment> take()
     {
         std::vector<Segment> out;
-        for (auto& [component, course] : courses_)
-            for (Segment& segment : course.segments) out.push_back(std::move(segment));
+        for (auto& [component, series] : series_)
+            for (Segment& segment : series.segments) out.push_back(std::move(segment));
         return out;
     }
 
 private:
-    struct Course
+    struct TimeSeries
     {
         std::vector<Segment> segments;
         double last_work = 0;        ///< J since the run began
@@ -43,29 +43,29 @@ private:
 
     void note(const plab_v2_InteractionMetrics& m, const plab_v2_Metrics& all, double time)
     {
-        Course& course = courses_[m.component_id];
-        const bool is_new_run = course.segments.empty() || course.segments.back().run != all.run;
-        if (is_new_run || course.segments.back().algorithm != m.requested)
+        TimeSeries& series = series_[m.component_id];
+        const bool is_new_run = series.segments.empty() || series.segments.back().run != all.run;
+        if (is_new_run || series.segments.back().algorithm != m.requested)
         {
-            Segment& segment = course.segments.emplace_back();
-            course.measured = 0;
+            Segment& segment = series.segments.emplace_back();
+            series.measured = 0;
             segment.component = m.component_id, segment.algorithm = m.requested, segment.run = all.run, segment.begin = time;
         }
-        if (is_new_run) course.last_work = m.work;
-        Segment& now = course.segments.back();
+        if (is_new_run) series.last_work = m.work;
+        Segment& now = series.segments.back();
         now.resolved = m.resolved, now.end = time;
         ++now.samples;
         // The first sample of a run measures what was before it (is_measured in quantity.h).
-        if (all.step_ns > 0 && !is_new_run) now.mean_cost += (m.cost_ns - now.mean_cost) / static_cast<double>(++course.measured);
+        if (all.step_ns > 0 && !is_new_run) now.mean_cost += (m.cost_ns - now.mean_cost) / static_cast<double>(++series.measured);
         // A residual until the first shadow step, then what that measures: figures of two units are no largest one.
         if (const std::string unit = unit_of_error(m); std::exchange(now.error_unit, unit) != unit) now.largest_error = 0;
         // A comparison with what is no number is false.
         if (!(std::fabs(m.error) <= now.largest_error)) now.largest_error = std::fabs(m.error);
-        now.work += m.work - course.last_work;
-        course.last_work = m.work;
+        now.work += m.work - series.last_work;
+        series.last_work = m.work;
     }
 
-    std::map<std::string, Course> courses_;
+    std::map<std::string, TimeSeries> series_;
 };
 
 }  // namespace

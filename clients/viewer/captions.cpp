@@ -19,7 +19,7 @@ std::string shortened(std::string line)
 }
 
 /// Ids, the most expensive ones if there are too many; in the order of ids.
-std::vector<std::string> choose(const link::Snapshot& scene)
+std::vector<std::string> choose(const link::CatalogueContents& scene)
 {
     std::vector<std::pair<double, std::string>> ranked;
     for (const auto& [id, interaction] : scene.interactions)
@@ -40,7 +40,7 @@ std::vector<std::string> choose(const link::Snapshot& scene)
 
 }  // namespace
 
-void Captions::use(const link::Snapshot& scene)
+void Captions::use(const link::CatalogueContents& scene)
 {
     const std::uint64_t run = scene.scene ? scene.scene->run : 0;
     if (run != run_) algorithms_.clear();

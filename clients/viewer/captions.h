@@ -21,7 +21,7 @@ public:
     static constexpr std::size_t kLongestLine = 72;  ///< characters
 
     /// The scene has changed. Which interactions are shown stays the same until the next change.
-    void use(const link::Snapshot& scene);
+    void use(const link::CatalogueContents& scene);
 
     /// From the top: title and time, then "id: algorithm" as it was in this state.
     std::vector<std::string> lines(const State& state) const;

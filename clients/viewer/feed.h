@@ -11,7 +11,9 @@ namespace plab::view
 class Feed
 {
 public:
-    Feed(Source& source, const Options& options, link::Stop stop) : source_(source), stop_(std::move(stop)), timeout_(options.timeout) {}
+    Feed(Source& source, const ViewerOptions& options, link::Stop stop) : source_(source), stop_(std::move(stop)), timeout_(options.timeout)
+    {
+    }
 
     /// Waits for the next moment. None: end() says why.
     std::optional<Moment> next();

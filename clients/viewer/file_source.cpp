@@ -176,8 +176,8 @@ bool FileSource::is_of_later(const recording::Found& found)
 {
     const auto peek = peeks_.find(found.channel->topic);
     if (peek == peeks_.end()) return false;
-    const auto glance = peek->second->at(found.message.data);
-    return glance && (glance->run > frame_->run || (glance->run == frame_->run && glance->step > frame_->step));
+    const auto header = peek->second->at(found.message.data);
+    return header && (header->run > frame_->run || (header->run == frame_->run && header->step > frame_->step));
 }
 
 void FileSource::apply(const recording::Found& found)
@@ -221,7 +221,7 @@ void FileSource::show(std::uint64_t time)
     if (!is_changed_) return;
     is_changed_ = false;
     now_.metrics = metrics_at(reader_, time);
-    shown_ = std::make_shared<const link::Snapshot>(now_);
+    shown_ = std::make_shared<const link::CatalogueContents>(now_);
 }
 
 std::optional<link::ServerInfo> FileSource::server() const

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "idl/recording/cdr.h"
-#include "idl/recording/glance.h"
 #include "idl/recording/reader.h"
+#include "idl/recording/sample_header.h"
 #include "idl/recording/whole_frame.h"
 #include "viewer/source.h"
 
@@ -22,7 +22,7 @@ public:
     std::optional<Moment> pop(link::Seconds timeout) override;
     std::optional<std::string> closed() const override { return closed_; }
     std::uint64_t given_up() const override { return 0; }
-    std::shared_ptr<const link::Snapshot> scene() const override { return shown_; }
+    std::shared_ptr<const link::CatalogueContents> scene() const override { return shown_; }
     std::optional<link::ServerInfo> server() const override;
 
 private:
@@ -49,12 +49,12 @@ private:
     recording::Decoder decoder_;
     recording::Sample<plab_v2_Frame> frame_;
     recording::WholeFrame whole_;
-    link::Snapshot now_;
+    link::CatalogueContents now_;
     bool is_changed_ = true, any_ = false;
     std::uint64_t run_ = 0, revision_ = 0;
     double time_ = 0;
     std::uint64_t broken_ = 0;
-    std::shared_ptr<const link::Snapshot> shown_;
+    std::shared_ptr<const link::CatalogueContents> shown_;
     std::optional<std::string> closed_;
 };
 

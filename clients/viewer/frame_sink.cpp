@@ -37,7 +37,7 @@ private:
     Film film_;
 };
 
-Result<std::unique_ptr<FrameSink>> open_film(const Options& options)
+Result<std::unique_ptr<FrameSink>> open_film(const ViewerOptions& options)
 {
     auto ffmpeg = find_ffmpeg();
     if (!ffmpeg) return ffmpeg.errors();
@@ -48,7 +48,7 @@ Result<std::unique_ptr<FrameSink>> open_film(const Options& options)
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSink>> open_frame_sink(const Options& options)
+Result<std::unique_ptr<FrameSink>> open_frame_sink(const ViewerOptions& options)
 {
     if (options.task == Task::Film) return open_film(options);
     std::error_code error;

@@ -19,6 +19,6 @@ public:
 };
 
 /// For Task::Frames and Task::Film: makes the folder, or starts ffmpeg.
-Result<std::unique_ptr<FrameSink>> open_frame_sink(const Options& options);
+Result<std::unique_ptr<FrameSink>> open_frame_sink(const ViewerOptions& options);
 
 }  // namespace plab::view

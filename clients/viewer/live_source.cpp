@@ -42,7 +42,7 @@ LiveSource::~LiveSource()
     thread_.join();
 }
 
-std::shared_ptr<const link::Snapshot> LiveSource::scene() const
+std::shared_ptr<const link::CatalogueContents> LiveSource::scene() const
 {
     const std::lock_guard lock(mutex_);
     return scene_;
@@ -86,14 +86,14 @@ void LiveSource::take_frames()
 void LiveSource::take_catalogue()
 {
     (void)catalogue_->update();
-    const link::Snapshot& now = catalogue_->now();
+    const link::CatalogueContents& now = catalogue_->now();
     const std::lock_guard lock(mutex_);
     server_ = now.server;
     // Costs come with the metrics, which are no change of the scene: their first ones decide what captions show.
     const bool first_costs = scene_ && !scene_->metrics && now.metrics;
     if (scene_ && version_ == catalogue_->version() && !first_costs) return;
     version_ = catalogue_->version();
-    scene_ = std::make_shared<const link::Snapshot>(now);
+    scene_ = std::make_shared<const link::CatalogueContents>(now);
 }
 
 void LiveSource::hand_over()

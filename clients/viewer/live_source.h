@@ -19,7 +19,7 @@ public:
     std::optional<Moment> pop(link::Seconds timeout) override { return moments_.pop(timeout); }
     std::optional<std::string> closed() const override { return moments_.closed(); }
     std::uint64_t given_up() const override { return moments_.given_up(); }
-    std::shared_ptr<const link::Snapshot> scene() const override;
+    std::shared_ptr<const link::CatalogueContents> scene() const override;
     /// They come at least once a second.
     std::optional<link::ServerInfo> server() const override;
 
@@ -42,7 +42,7 @@ private:
     bool any_frame_ = false;
 
     mutable std::mutex mutex_;  ///< of the following two
-    std::shared_ptr<const link::Snapshot> scene_;
+    std::shared_ptr<const link::CatalogueContents> scene_;
     std::optional<link::ServerInfo> server_;
 
     std::jthread thread_;  ///< last: it uses all of the above

@@ -7,7 +7,7 @@
 int main(int argc, char** argv)
 {
     plab::program::catch_signals();
-    plab::view::Options options;
+    plab::view::ViewerOptions options;
     if (const auto end = plab::view::parse_options(argc, argv, options))
     {
         std::fputs(end->message.c_str(), end->code == 0 ? stdout : stderr);

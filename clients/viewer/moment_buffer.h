@@ -18,7 +18,7 @@ namespace plab::view
 struct Moment
 {
     State state;
-    std::shared_ptr<const link::Snapshot> scene;
+    std::shared_ptr<const link::CatalogueContents> scene;
 };
 
 /// Of the states between two times of a regular grid only the first and the last are of use.

@@ -46,7 +46,7 @@ std::optional<double> parse_number(std::string_view text)
     return value;
 }
 
-void add_pictures(CLI::App& app, Options& options, Texts& texts)
+void add_pictures(CLI::App& app, ViewerOptions& options, Texts& texts)
 {
     app.add_option("--png", texts.png, "write one picture")->type_name("FILE")->group("Pictures");
     app.add_option("--shot", texts.shots, "one picture of the first state at or after T (may be repeated)")
@@ -87,7 +87,7 @@ void add_pictures(CLI::App& app, Options& options, Texts& texts)
         ->group("Pictures");
 }
 
-void add_view(CLI::App& app, Options& options, Texts& texts)
+void add_view(CLI::App& app, ViewerOptions& options, Texts& texts)
 {
     auto* const camera = app.add_option("--camera", options.view.camera, "camera of the scene")->type_name("NAME")->group("View");
     auto* const from = app.add_option("--from", texts.from, "where to look from")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
@@ -111,7 +111,7 @@ void add_view(CLI::App& app, Options& options, Texts& texts)
     app.add_flag("--no-ground", texts.no_ground, "no grid at z = 0")->group("View");
 }
 
-void add_server(CLI::App& app, Options& options, Texts& texts)
+void add_server(CLI::App& app, ViewerOptions& options, Texts& texts)
 {
     app.add_option("--server", options.link.server, "name of the server; default: the only one")->type_name("NAME")->group("Server");
     app.add_option("--domain", options.link.domain.id, "DDS domain")->check(CLI::Range(0, 232))->group("Server");
@@ -139,7 +139,7 @@ Result<void> take_vectors(const Texts& texts, ViewChoice& view)
     return {};
 }
 
-Result<void> take_shots(const Texts& texts, Options& options)
+Result<void> take_shots(const Texts& texts, ViewerOptions& options)
 {
     if (!texts.png.empty()) options.shots.push_back({options.at, {}, texts.png});
     for (const std::string& text : texts.shots)
@@ -154,7 +154,7 @@ Result<void> take_shots(const Texts& texts, Options& options)
     return {};
 }
 
-Result<void> take_task(const Texts& texts, Options& options)
+Result<void> take_task(const Texts& texts, ViewerOptions& options)
 {
     if (auto shots = take_shots(texts, options); !shots) return shots;
     const int tasks = int(!options.shots.empty()) + int(!texts.frames.empty()) + int(!texts.film.empty());
@@ -201,7 +201,7 @@ Result<Shot> parse_shot(const std::string& text)
     return Shot{time, named ? when.substr(sign + 1) : "", text.substr(equal + 1)};
 }
 
-std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options& options)
+std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerOptions& options)
 {
     auto environment = link::options_from_environment();
     if (!environment) return ParseEnd{2, "plab-view: " + environment.error().reason + "\n"};

@@ -36,7 +36,7 @@ enum class Task : std::uint8_t
     Film,
 };
 
-struct Options
+struct ViewerOptions
 {
     Task task = Task::Shots;
     std::vector<Shot> shots;         ///< Task::Shots, by time
@@ -51,7 +51,7 @@ struct Options
     std::uint32_t width = 1280, height = 720;
     bool captions = true, ground = true;
     bool progress = false;  ///< lines of progress also where standard error is no terminal
-    link::Options link;
+    link::ViewerOptions link;
     link::Seconds timeout{10};
 
     double frames_per_simulated_second() const { return frames_per_second / rate; }
@@ -65,7 +65,7 @@ struct ParseEnd
 };
 
 /// Nothing: `options` is filled.
-std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options& options);
+std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerOptions& options);
 
 /// "T[@CAMERA]=FILE"
 Result<Shot> parse_shot(const std::string& text);

@@ -3,12 +3,12 @@
 namespace plab::view
 {
 
-Painter::Painter(const Options& options, std::unique_ptr<render::Renderer> renderer)
+Painter::Painter(const ViewerOptions& options, std::unique_ptr<render::Renderer> renderer)
     : model_({options.captions, options.ground}), viewpoint_(options.view), renderer_(std::move(renderer))
 {
 }
 
-Result<Painter> Painter::make(const Options& options)
+Result<Painter> Painter::make(const ViewerOptions& options)
 {
     auto renderer = render::make_renderer(options.width, options.height);
     if (!renderer) return renderer.errors();

@@ -11,13 +11,13 @@ namespace plab::view
 class Painter
 {
 public:
-    static Result<Painter> make(const Options& options);
+    static Result<Painter> make(const ViewerOptions& options);
 
     /// The picture, valid until the next call. `camera`: of the scene; empty: the view that the options choose.
     Result<const render::Picture*> paint(const Moment& moment, const std::string& camera = {});
 
 private:
-    Painter(const Options& options, std::unique_ptr<render::Renderer> renderer);
+    Painter(const ViewerOptions& options, std::unique_ptr<render::Renderer> renderer);
 
     SceneModel model_;
     Viewpoint viewpoint_;

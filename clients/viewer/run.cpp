@@ -29,7 +29,7 @@ std::string in_seconds(double value)
     return text;
 }
 
-program::ProgressTo progress_to(const Options& options)
+program::ProgressTo progress_to(const ViewerOptions& options)
 {
     return options.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal;
 }
@@ -61,7 +61,7 @@ Result<void> take_shot(const Shot& shot, const Moment& moment, Painter& painter)
     return {};
 }
 
-Outcome take_shots(const Options& options, Feed& feed, Painter& painter)
+Outcome take_shots(const ViewerOptions& options, Feed& feed, Painter& painter)
 {
     program::Progress progress(progress_to(options));
     std::optional<Moment> moment;
@@ -81,7 +81,7 @@ Outcome take_shots(const Options& options, Feed& feed, Painter& painter)
 }
 
 /// What the pictures do not show by themselves.
-void tell_doubts(const Options& options, const Sequence& sequence, std::uint64_t given_up, program::Progress& progress)
+void tell_doubts(const ViewerOptions& options, const Sequence& sequence, std::uint64_t given_up, program::Progress& progress)
 {
     if (sequence.runs() > 1) say(progress, "the scene was loaded or reset meanwhile: times start anew in the frames");
     if (given_up > 0)
@@ -107,7 +107,7 @@ Outcome judge(const Sequence& sequence, const Feed& feed)
 }
 
 /// What was drawn until then is kept, and marked as what it is.
-Outcome interrupted(const Options& options, const Sequence& sequence)
+Outcome interrupted(const ViewerOptions& options, const Sequence& sequence)
 {
     std::string message = "interrupted";
     if (const auto total = sequence.total(); total && sequence.drawn() > 0)
@@ -115,7 +115,7 @@ Outcome interrupted(const Options& options, const Sequence& sequence)
     return {Exit::Interrupted, message};
 }
 
-Outcome make_sequence(const Options& options, Source& source, Feed& feed, const link::Stop& stop, Painter& painter, FrameSink& sink)
+Outcome make_sequence(const ViewerOptions& options, Source& source, Feed& feed, const link::Stop& stop, Painter& painter, FrameSink& sink)
 {
     program::Progress progress(progress_to(options));
     const auto begin = std::chrono::steady_clock::now();
@@ -147,7 +147,7 @@ Outcome make_sequence(const Options& options, Source& source, Feed& feed, const 
     return outcome;
 }
 
-Outcome draw(const Options& options, Source& source, const link::Stop& stop, Painter& painter)
+Outcome draw(const ViewerOptions& options, Source& source, const link::Stop& stop, Painter& painter)
 {
     Feed feed(source, options, stop);
     if (options.task == Task::Shots) return take_shots(options, feed, painter);
@@ -157,11 +157,14 @@ Outcome draw(const Options& options, Source& source, const link::Stop& stop, Pai
 }
 
 /// Nothing before it is drawn.
-std::optional<double> first_time(const Options& options) { return options.task == Task::Shots ? options.shots.front().at : options.at; }
+std::optional<double> first_time(const ViewerOptions& options)
+{
+    return options.task == Task::Shots ? options.shots.front().at : options.at;
+}
 
 }  // namespace
 
-Outcome run(const Options& options, const link::Stop& stop)
+Outcome run(const ViewerOptions& options, const link::Stop& stop)
 {
     // What can fail without a server fails before anybody waits for one.
     if (options.task == Task::Film)

@@ -8,6 +8,6 @@ namespace plab::view
 {
 
 /// `stop`: nobody wants the rest.
-Outcome run(const Options& options, const link::Stop& stop);
+Outcome run(const ViewerOptions& options, const link::Stop& stop);
 
 }  // namespace plab::view

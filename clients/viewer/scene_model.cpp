@@ -87,7 +87,7 @@ Axle axle_of_inertia(double inertia)
     return {radius, std::clamp(radius / 4, 0.02, 0.1)};
 }
 
-State state_of_catalogue(const link::Snapshot& scene, const link::ServerInfo& server)
+State state_of_catalogue(const link::CatalogueContents& scene, const link::ServerInfo& server)
 {
     State out{server.run, server.revision, server.step, server.time, {}, {}};
     for (const auto& [id, object] : scene.objects)
@@ -103,7 +103,7 @@ State state_of_catalogue(const link::Snapshot& scene, const link::ServerInfo& se
     return out;
 }
 
-void SceneModel::use(std::shared_ptr<const link::Snapshot> scene)
+void SceneModel::use(std::shared_ptr<const link::CatalogueContents> scene)
 {
     if (scene == scene_) return;
     scene_ = std::move(scene);

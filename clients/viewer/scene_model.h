@@ -25,7 +25,7 @@ public:
     explicit SceneModel(const Look& look) : look_(look) {}
 
     /// From now on the scene is this. Cheap if it is the one that is in use.
-    void use(std::shared_ptr<const link::Snapshot> scene);
+    void use(std::shared_ptr<const link::CatalogueContents> scene);
 
     /// Everything that can be seen at this state; valid until the next call. The view is for the caller to choose.
     render::Drawing& draw(const State& state);
@@ -60,7 +60,7 @@ private:
     std::optional<Pose> pose_of(const Prop& prop, const State& state) const;
 
     Look look_;
-    std::shared_ptr<const link::Snapshot> scene_;
+    std::shared_ptr<const link::CatalogueContents> scene_;
     std::vector<Prop> props_;
     std::vector<std::string> mesh_ids_;  ///< of shapes, as in drawing_.meshes
     Captions captions_;
@@ -68,7 +68,7 @@ private:
 };
 
 /// Poses as the catalogue has them, for a server that is paused and sends no states.
-State state_of_catalogue(const link::Snapshot& scene, const link::ServerInfo& server);
+State state_of_catalogue(const link::CatalogueContents& scene, const link::ServerInfo& server);
 
 /// Colour of an object that names none: one of a few that go together, always the same for one id.
 Vec3 color_of_id(const std::string& id);

@@ -25,7 +25,7 @@ public:
     /// Moments that were left out because nobody took them.
     virtual std::uint64_t given_up() const = 0;
     /// The newest that is known of the scene and the server.
-    virtual std::shared_ptr<const link::Snapshot> scene() const = 0;
+    virtual std::shared_ptr<const link::CatalogueContents> scene() const = 0;
     /// The server's own words on itself.
     virtual std::optional<link::ServerInfo> server() const = 0;
 };

@@ -63,18 +63,18 @@ Result<void> ChunkData::load(const Source& source, std::uint64_t offset, const L
 
 Result<void> ChunkData::load_compressed(const Source& source, std::uint64_t offset, const Limits& limits)
 {
-    Bytes front(kRecordHead + kLongestChunkFront);
-    auto got = source.read(offset, front);
+    Bytes head(kRecordHead + kLongestChunkHead);
+    auto got = source.read(offset, head);
     if (!got) return got.errors();
-    front.resize(*got);
-    if (front.size() < kRecordHead) return reason("the file ends here");
-    const RecordHead head = parse_head(front);
+    head.resize(*got);
+    if (head.size() < kRecordHead) return reason("the file ends here");
+    const RecordHead head = parse_head(head);
     if (head.opcode != Opcode::Chunk) return reason("a " + name_of(head.opcode) + " record stands here");
     auto size = source.size();
     if (!size) return size.errors();
     if (head.length > *size - offset - kRecordHead) return reason("the file ends within it");
 
-    const ByteView body = ByteView(front).subspan(kRecordHead);
+    const ByteView body = ByteView(head).subspan(kRecordHead);
     const auto header = parse_chunk_header(body.first(std::min<std::uint64_t>(body.size(), head.length)), head.length);
     if (!header) return reason("its header does not fit its length");
     if (header->uncompressed_size > limits.chunk_bytes || header->compressed_size > limits.chunk_bytes)
@@ -82,7 +82,7 @@ Result<void> ChunkData::load_compressed(const Source& source, std::uint64_t offs
     header_ = *header;
     length_ = kRecordHead + head.length;
     compressed_.resize(header_.compressed_size);
-    auto read = source.read(offset + kRecordHead + size_of_front(header_), compressed_);
+    auto read = source.read(offset + kRecordHead + size_of_head(header_), compressed_);
     if (!read) return read.errors();
     return *read == compressed_.size() ? Result<void>() : reason("the file ends within it");
 }

@@ -27,9 +27,9 @@ std::uint64_t most_decompressed(Compression compression, ByteView in)
     constexpr std::uint64_t kMostOfLz4 = 256, kMostOfZstd = 65536;  // per byte: runs of one value in the largest blocks
     if (compression == Compression::None) return in.size();
     if (compression == Compression::Lz4) return in.size() * kMostOfLz4;
-    const unsigned long long told = ZSTD_getFrameContentSize(in.data(), in.size());
-    if (told == ZSTD_CONTENTSIZE_ERROR) return 0;
-    return told == ZSTD_CONTENTSIZE_UNKNOWN ? in.size() * kMostOfZstd : told;
+    const unsigned long long size = ZSTD_getFrameContentSize(in.data(), in.size());
+    if (size == ZSTD_CONTENTSIZE_ERROR) return 0;
+    return size == ZSTD_CONTENTSIZE_UNKNOWN ? in.size() * kMostOfZstd : size;
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ private:
 
     Result<void> take_chunk(std::uint64_t at, const RecordHead& head)
     {
-        auto bytes = front(at, head, kLongestChunkFront);
+        auto bytes = head(at, head, kLongestChunkHead);
         if (!bytes) return bytes.errors();
         const auto header = parse_chunk_header(*bytes, head.length);
         if (!header) return damage(at, "the header of a Chunk record does not fit its length");
@@ -90,9 +90,9 @@ private:
 
     Result<void> take_message_index(std::uint64_t at, const RecordHead& head)
     {
-        auto bytes = front(at, head, 6);
+        auto bytes = head(at, head, 6);
         if (!bytes) return bytes.errors();
-        const auto index = parse_message_index_front(*bytes, head.length);
+        const auto index = parse_message_index_head(*bytes, head.length);
         if (!index || !chunk_) return damage(at, "a MessageIndex record is damaged, or follows no chunk");
         chunk_channels_.insert(index->channel);
         index_.statistics.channel_messages[index->channel] += index->messages;

@@ -171,24 +171,24 @@ std::optional<ParsedAttachment> parse_attachment(ByteView body)
     return out;
 }
 
-std::optional<ChunkHeader> parse_chunk_header(ByteView front, std::uint64_t body_length)
+std::optional<ChunkHeader> parse_chunk_header(ByteView head, std::uint64_t body_length)
 {
-    FieldReader in(front);
+    FieldReader in(head);
     ChunkHeader out;
     fields(in, out);
     if (in.failed() || out.compression.size() > kLongestCompression || out.start_time > out.end_time) return std::nullopt;
-    const std::size_t front_size = size_of_front(out);
-    if (body_length < front_size || out.compressed_size != body_length - front_size) return std::nullopt;
+    const std::size_t head_size = size_of_head(out);
+    if (body_length < head_size || out.compressed_size != body_length - head_size) return std::nullopt;
     return out;
 }
 
-std::size_t size_of_front(const ChunkHeader& header) { return 8 + 8 + 8 + 4 + 4 + header.compression.size() + 8; }
+std::size_t size_of_head(const ChunkHeader& header) { return 8 + 8 + 8 + 4 + 4 + header.compression.size() + 8; }
 
-std::optional<MessageIndexFront> parse_message_index_front(ByteView front, std::uint64_t body_length)
+std::optional<MessageIndexHead> parse_message_index_head(ByteView head, std::uint64_t body_length)
 {
     constexpr std::uint64_t kEntry = 16;
-    FieldReader in(front);
-    MessageIndexFront out;
+    FieldReader in(head);
+    MessageIndexHead out;
     out.channel = in.u16();
     const std::uint32_t length = in.u32();
     if (in.failed() || body_length != 6u + std::uint64_t{length} || length % kEntry != 0) return std::nullopt;

@@ -94,20 +94,20 @@ std::optional<ParsedAttachment> parse_attachment(ByteView body);
 
 /// The front of a chunk, from as much of its body as is at hand; `body_length`: all of it. Nothing if the parts do not
 /// add up to body_length.
-std::optional<ChunkHeader> parse_chunk_header(ByteView front, std::uint64_t body_length);
+std::optional<ChunkHeader> parse_chunk_header(ByteView head, std::uint64_t body_length);
 /// Bytes of a chunk's body before its records.
-std::size_t size_of_front(const ChunkHeader& header);
+std::size_t size_of_head(const ChunkHeader& header);
 /// Longest name of a compression that is read.
 inline constexpr std::size_t kLongestCompression = 16;
 /// Bytes that are enough for parse_chunk_header.
-inline constexpr std::size_t kLongestChunkFront = 8 + 8 + 8 + 4 + 4 + kLongestCompression + 8;
+inline constexpr std::size_t kLongestChunkHead = 8 + 8 + 8 + 4 + 4 + kLongestCompression + 8;
 
 /// A message index by its front; all of it is 6 + 16 * messages bytes.
-struct MessageIndexFront
+struct MessageIndexHead
 {
     ChannelId channel = 0;
     std::uint64_t messages = 0;
 };
-std::optional<MessageIndexFront> parse_message_index_front(ByteView front, std::uint64_t body_length);
+std::optional<MessageIndexHead> parse_message_index_head(ByteView head, std::uint64_t body_length);
 
 }  // namespace plab::recording

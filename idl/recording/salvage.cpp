@@ -145,10 +145,10 @@ private:
 
     Result<Inspected> inspect_message_index(std::uint64_t at, const RecordHead& head)
     {
-        constexpr std::size_t kFront = 6;
-        auto front = window_.view(at + kRecordHead, std::min<std::uint64_t>(kFront, head.length));
-        if (!front) return front.errors();
-        if (parse_message_index_front(*front, head.length)) return Inspected{Worth::Useless, ""};
+        constexpr std::size_t kHead = 6;
+        auto head = window_.view(at + kRecordHead, std::min<std::uint64_t>(kHead, head.length));
+        if (!head) return head.errors();
+        if (parse_message_index_head(*head, head.length)) return Inspected{Worth::Useless, ""};
         return Inspected{Worth::Bad, "a MessageIndex record that does not fit its length"};
     }
 

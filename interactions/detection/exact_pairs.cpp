@@ -15,14 +15,14 @@ constexpr Vec3 kNoDirection{0, 0, 1};
 
 /// A sphere whose centre is `out` m (< 0: inside) from the nearest point of a solid's surface; n points from solid to
 /// sphere.
-Touch sphere_touch(double radius, const Vec3& nearest, const Vec3& n, double outside)
+ContactPoint sphere_contact_point(double radius, const Vec3& nearest, const Vec3& n, double outside)
 {
     const double depth = radius - outside;
     return {nearest - n * (0.5 * depth), -n, depth, 0};
 }
 }  // namespace
 
-void sphere_sphere(double radius_a, const Vec3& a, double radius_b, const Vec3& b, Touches& out)
+void sphere_sphere(double radius_a, const Vec3& a, double radius_b, const Vec3& b, ContactPoints& out)
 {
     const Vec3 r = b - a;
     const double distance = length(r);
@@ -31,14 +31,14 @@ void sphere_sphere(double radius_a, const Vec3& a, double radius_b, const Vec3& 
     out.add({a + n * (radius_a - 0.5 * depth), n, depth, 0});
 }
 
-void sphere_plane(double radius, const Vec3& center, const Pose& X_plane, Touches& out)
+void sphere_plane(double radius, const Vec3& center, const Pose& X_plane, ContactPoints& out)
 {
     const Vec3 n = rotate(X_plane.q, {0, 0, 1});
     const double outside = dot(n, center - X_plane.p);
-    out.add(sphere_touch(radius, center - n * outside, n, outside));
+    out.add(sphere_contact_point(radius, center - n * outside, n, outside));
 }
 
-void sphere_box(double radius, const Vec3& center, const Vec3& half, const Pose& X_box, Touches& out)
+void sphere_box(double radius, const Vec3& center, const Vec3& half, const Pose& X_box, ContactPoints& out)
 {
     const Vec3 c = rotate_back(X_box.q, center - X_box.p);
     Vec3 nearest, n;
@@ -55,10 +55,10 @@ void sphere_box(double radius, const Vec3& center, const Vec3& half, const Pose&
         nearest[face] = n[face] * half[face];
         outside = std::fabs(c[face]) - half[face];
     }
-    out.add(sphere_touch(radius, X_box * nearest, rotate(X_box.q, n), outside));
+    out.add(sphere_contact_point(radius, X_box * nearest, rotate(X_box.q, n), outside));
 }
 
-void box_plane(const Vec3& half, const Pose& X_box, const Pose& X_plane, Touches& out)
+void box_plane(const Vec3& half, const Pose& X_box, const Pose& X_plane, ContactPoints& out)
 {
     const Vec3 n = rotate(X_plane.q, {0, 0, 1});
     for (std::uint32_t i = 0; i < 8; ++i)
@@ -69,7 +69,7 @@ void box_plane(const Vec3& half, const Pose& X_box, const Pose& X_plane, Touches
     }
 }
 
-void hull_plane(const Hull& hull, const Pose& X_hull, const Pose& X_plane, Touches& out)
+void hull_plane(const Hull& hull, const Pose& X_hull, const Pose& X_plane, ContactPoints& out)
 {
     const Vec3 n = rotate(X_plane.q, {0, 0, 1});
     Spread spread(n, out.margin());
@@ -82,7 +82,7 @@ void hull_plane(const Hull& hull, const Pose& X_hull, const Pose& X_plane, Touch
     spread.take(out);
 }
 
-void capsule_plane(const Solid& capsule, const Pose& X_plane, Touches& out)
+void capsule_plane(const Solid& capsule, const Pose& X_plane, ContactPoints& out)
 {
     const Vec3 n = rotate(X_plane.q, {0, 0, 1}), u = capsule.axis(2);
     for (std::uint32_t i = 0; i < 2; ++i)
@@ -93,7 +93,7 @@ void capsule_plane(const Solid& capsule, const Pose& X_plane, Touches& out)
     }
 }
 
-void cylinder_plane(const Solid& cylinder, const Pose& X_plane, Touches& out)
+void cylinder_plane(const Solid& cylinder, const Pose& X_plane, ContactPoints& out)
 {
     const Vec3 n = rotate(X_plane.q, {0, 0, 1}), u = cylinder.axis(2);
     const auto offer = [&](const Vec3& p, std::uint32_t feature)

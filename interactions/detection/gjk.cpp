@@ -128,9 +128,9 @@ Vec3 solve_where_regular(Mat3 M, Vec3 r)
     return x;
 }
 
-struct Feet
+struct ClosestPoints
 {
-    Foot a, b;
+    ClosestPoint a, b;
     double squared = 0;  ///< of the distance
 };
 
@@ -150,15 +150,15 @@ public:
         };
         collect(face_a_, &Support::a), collect(face_b_, &Support::b);
     }
-    Feet from(const Vec3& p_start) const;
-    Vec3 normal_of(const Feet& feet) const;
+    ClosestPoints from(const Vec3& p_start) const;
+    Vec3 normal_of(const ClosestPoints& closest_points) const;
 
 private:
-    Feet feet_of(const Vec3& p) const
+    ClosestPoints closest_points_of(const Vec3& p) const
     {
-        Feet out;
-        out.b = B_.foot(p, face_b_);
-        out.a = A_.foot(out.b.p, face_a_);
+        ClosestPoints out;
+        out.b = B_.closest_point(p, face_b_);
+        out.a = A_.closest_point(out.b.p, face_a_);
         out.squared = length_squared(out.b.p - out.a.p);
         return out;
     }
@@ -169,17 +169,17 @@ private:
 };
 
 /// Alternating projections never part the points; Newton's step makes them quick where they crawl.
-Feet Polish::from(const Vec3& p_start) const
+ClosestPoints Polish::from(const Vec3& p_start) const
 {
     constexpr int kMost = 24;
     Vec3 p = p_start;
-    Feet now = feet_of(p);
+    ClosestPoints now = closest_points_of(p);
     for (int i = 0; i < kMost; ++i)
     {
         const Vec3 step = now.a.p - p;
         if (length(step) <= 2 * kEpsilon * scale_) break;
         const Vec3 newton = solve_where_regular(Mat3::identity() - now.a.J * now.b.J, step);
-        const Feet ahead = feet_of(p + newton), plain = feet_of(now.a.p);
+        const ClosestPoints ahead = closest_points_of(p + newton), plain = closest_points_of(now.a.p);
         const bool better = is_finite(newton) && ahead.squared <= plain.squared;
         p = better ? p + newton : now.a.p;
         if (better && length(newton) <= 2 * kEpsilon * scale_) break;
@@ -188,7 +188,7 @@ Feet Polish::from(const Vec3& p_start) const
     return now;
 }
 
-Vec3 Polish::normal_of(const Feet& f) const
+Vec3 Polish::normal_of(const ClosestPoints& f) const
 {
     const Vec3 across = f.b.p - f.a.p;
     if (f.a.flat == 2) return f.a.axis;
@@ -251,11 +251,11 @@ NearestPair nearest_pair(const Solid& A, const Solid& B)
     if (found.simplex.encloses) return out;
 
     const Polish polish(A, B, found.simplex);
-    const Feet feet = polish.from(found.simplex.nearest_a);
-    out.a = feet.a.p, out.b = feet.b.p;
-    const double distance = std::sqrt(feet.squared);
-    if (feet.a.flat == 3 || feet.b.flat == 3 || distance <= 4 * kEpsilon * scale) return out;
-    out.normal = polish.normal_of(feet);
+    const ClosestPoints closest_points = polish.from(found.simplex.nearest_a);
+    out.a = closest_points.a.p, out.b = closest_points.b.p;
+    const double distance = std::sqrt(closest_points.squared);
+    if (closest_points.a.flat == 3 || closest_points.b.flat == 3 || distance <= 4 * kEpsilon * scale) return out;
+    out.normal = polish.normal_of(closest_points);
     out.gap = dot(out.normal, out.b - out.a);
     out.apart = out.gap > 0;
     return out;

@@ -5,16 +5,16 @@
 #include <optional>
 
 #include "box_axes.h"
-#include "patch.h"
 #include "separation.h"
 #include "spread.h"
+#include "supporting_face.h"
 
 namespace plab::detection
 {
 namespace
 {
 /// A face takes part if it faces the other solid within 0.1 rad, or within 1.2 rad where the other's face does so.
-constexpr double kFacing = 0.995, kLeaning = 0.3;
+constexpr double kParallel = 0.995, kLeaning = 0.3;
 /// Shares of the solids' size: corners on the border count as inside, as far as no depth feels it (kDepthError), so that
 /// stacks of equal boxes keep their features; points that near to another are the same.
 constexpr double kOnBorder = 1e-9, kDepthError = 1e-15, kSamePlace = 1e-6;
@@ -24,7 +24,7 @@ constexpr std::uint32_t kCornerMask = (1u << 18) - 1, kEdgeMask = (1u << 9) - 1;
 class Collector
 {
 public:
-    Collector(const Solid& A, const Solid& B, const Vec3& n, bool few, Touches& out)
+    Collector(const Solid& A, const Solid& B, const Vec3& n, bool few, ContactPoints& out)
         : radius_a_(A.radius()), radius_b_(B.radius()), n_(n), out_(out), first_(out.all().size()), size_(A.extent() + B.extent())
     {
         if (!few) spread_.emplace(n, out.margin());
@@ -53,14 +53,14 @@ private:
     bool is_taken(const Vec3& point) const
     {
         const double near = kSamePlace * size_;
-        for (const Touch& t : out_.all().subspan(first_))
+        for (const ContactPoint& t : out_.all().subspan(first_))
             if (length_squared(t.point - point) < near * near) return true;
         return false;
     }
 
     double radius_a_, radius_b_;
     Vec3 n_;
-    Touches& out_;
+    ContactPoints& out_;
     std::optional<Spread> spread_;  // where many points may come
     std::size_t first_;
     double size_;
@@ -68,36 +68,36 @@ private:
 };
 
 /// Where the line through p along n meets the plane of a flat patch.
-Vec3 dropped(const Vec3& p, const Vec3& n, const Patch& onto)
+Vec3 dropped(const Vec3& p, const Vec3& n, const SupportingFace& onto)
 {
     return p + n * (dot(onto.normal, onto.origin() - p) / dot(onto.normal, n));
 }
 
 /// Sine of the angle between a line or a flat patch X and the flat patch Y.
-double lean_of(const Patch& X, const Patch& Y)
+double lean_of(const SupportingFace& X, const SupportingFace& Y)
 {
-    if (X.kind == Patch::Kind::Line) return std::fabs(dot(normalized(X.corners[1].p - X.corners[0].p), Y.normal));
+    if (X.kind == SupportingFace::Kind::Line) return std::fabs(dot(normalized(X.corners[1].p - X.corners[0].p), Y.normal));
     return length(cross(X.normal, Y.normal));
 }
 
 /// Edges of X (a line or a face) on the flat patch Y.
-void lay_edges(const Patch& X, const Patch& Y, bool x_is_a, Collector& out)
+void lay_edges(const SupportingFace& X, const SupportingFace& Y, bool x_is_a, Collector& out)
 {
     const Vec3& n = out.normal();
-    const bool line = X.kind == Patch::Kind::Line;
+    const bool line = X.kind == SupportingFace::Kind::Line;
     const std::size_t count = X.corners.size(), edges = line ? 1 : count;
     const auto offer = [&](const Vec3& x, const Vec3& y, std::uint32_t feature)
     { x_is_a ? out.offer(x, y, feature) : out.offer(y, x, feature); };
     const auto edge_of_y = [&](int k)
-    { return Y.kind == Patch::Kind::Face ? Y.corners[static_cast<std::size_t>(k)].id : static_cast<std::uint32_t>(k); };
+    { return Y.kind == SupportingFace::Kind::Face ? Y.corners[static_cast<std::size_t>(k)].id : static_cast<std::uint32_t>(k); };
 
     const double tolerance = out.tolerance(lean_of(X, Y));
     Vec3 y0 = dropped(X.corners[0].p, n, Y);
     for (std::size_t i = 0; i < edges; ++i)
     {
-        const PatchCorner &p = X.corners[i], &q = X.corners[(i + 1) % count];
+        const FaceCorner &p = X.corners[i], &q = X.corners[(i + 1) % count];
         const Vec3 y1 = dropped(q.p, n, Y);
-        const Patch::Cut cut = Y.cut(y0, y1, tolerance);
+        const SupportingFace::Cut cut = Y.cut(y0, y1, tolerance);
         const auto crossing = [&](double t, int k)
         {
             const std::uint32_t f = x_is_a ? crossing_feature(p.id, edge_of_y(k)) : crossing_feature(edge_of_y(k), p.id);
@@ -115,7 +115,7 @@ void lay_edges(const Patch& X, const Patch& Y, bool x_is_a, Collector& out)
 }
 
 /// Corners of X (a face, or the points that stand for a rim) on the flat patch Y.
-void lay_corners(const Patch& X, const Patch& Y, bool x_is_a, Collector& out)
+void lay_corners(const SupportingFace& X, const SupportingFace& Y, bool x_is_a, Collector& out)
 {
     const Vec3& n = out.normal();
     const double tolerance = out.tolerance(lean_of(X, Y));
@@ -126,9 +126,9 @@ void lay_corners(const Patch& X, const Patch& Y, bool x_is_a, Collector& out)
         const std::uint32_t f = corner_feature(x_is_a, id);
         x_is_a ? out.offer(p, y, f) : out.offer(y, p, f);
     };
-    if (X.kind == Patch::Kind::Face)
-        for (const PatchCorner& c : X.corners) lay(c.p, c.id);
-    if (X.kind != Patch::Kind::Disc) return;
+    if (X.kind == SupportingFace::Kind::Face)
+        for (const FaceCorner& c : X.corners) lay(c.p, c.id);
+    if (X.kind != SupportingFace::Kind::Disc) return;
     const RimPoints rim = rim_points(*X.solid, X.upper, x_is_a ? n : -n);
     for (std::uint32_t i = rim.count; i-- > 0;) lay(rim.p[i], rim.id[i] + (X.upper ? 8 : 0));
 }
@@ -140,14 +140,14 @@ struct FaceFrame
     double level = 0;
     std::array<double, kMostCorners> limit;  ///< p is inside edge k if corners[k].inward . p >= limit[k]
 
-    FaceFrame(const Patch& face, const Vec3& n) : along(face.normal / dot(face.normal, n)), level(dot(along, face.corners[0].p))
+    FaceFrame(const SupportingFace& face, const Vec3& n) : along(face.normal / dot(face.normal, n)), level(dot(along, face.corners[0].p))
     {
         for (std::size_t k = 0; k < face.corners.size(); ++k) limit[k] = dot(face.corners[k].inward, face.corners[k].p);
     }
 };
 
 /// Face on face: as lay_edges(X on Y) and lay_corners(Y on X), with each corner dropped and measured once.
-void lay_faces(const Patch& X, const Patch& Y, Collector& out)
+void lay_faces(const SupportingFace& X, const SupportingFace& Y, Collector& out)
 {
     const Vec3& n = out.normal();
     const FaceFrame onto_y(Y, n), onto_x(X, n);
@@ -163,8 +163,8 @@ void lay_faces(const Patch& X, const Patch& Y, Collector& out)
     for (std::size_t i = 0; i < nx; ++i)
     {
         const std::size_t j = i + 1 < nx ? i + 1 : 0;
-        const PatchCorner &p = X.corners[i], &q = X.corners[j];
-        const Patch::Cut cut = cut_by({&inside[i * ny], ny}, {&inside[j * ny], ny}, tolerance);
+        const FaceCorner &p = X.corners[i], &q = X.corners[j];
+        const SupportingFace::Cut cut = cut_by({&inside[i * ny], ny}, {&inside[j * ny], ny}, tolerance);
         if (cut.empty()) continue;
         const auto offer = [&](const Vec3& x, std::uint32_t feature)
         { out.offer(x, x + n * (onto_y.level - dot(onto_y.along, x)), feature, true); };
@@ -173,7 +173,7 @@ void lay_faces(const Patch& X, const Patch& Y, Collector& out)
             offer(p.p + cut.begin * (q.p - p.p), crossing_feature(p.id, Y.corners[static_cast<std::size_t>(cut.edge_begin)].id));
         if (cut.end < 1) offer(p.p + cut.end * (q.p - p.p), crossing_feature(p.id, Y.corners[static_cast<std::size_t>(cut.edge_end)].id));
     }
-    for (const PatchCorner& c : Y.corners)
+    for (const FaceCorner& c : Y.corners)
     {
         const Vec3 x = c.p + n * (onto_x.level - dot(onto_x.along, c.p));
         bool covered = true;
@@ -183,9 +183,9 @@ void lay_faces(const Patch& X, const Patch& Y, Collector& out)
 }
 
 /// Where the rims of two ends cross, seen along the normal; taken as circles, which they are when they face one another.
-void lay_rims(const Patch& X, const Patch& Y, Collector& out)
+void lay_rims(const SupportingFace& X, const SupportingFace& Y, Collector& out)
 {
-    if (-dot(X.normal, Y.normal) < kFacing) return;
+    if (-dot(X.normal, Y.normal) < kParallel) return;
     const Vec3& n = out.normal();
     const Vec3 center = X.origin(), across = dropped(Y.origin(), n, X) - center;
     const double r = X.solid->size().x, s = Y.solid->size().x, d = length(across);
@@ -200,14 +200,14 @@ void lay_rims(const Patch& X, const Patch& Y, Collector& out)
 }
 
 /// Two edges side by side: the ends of what they share.
-void lay_lines(const Patch& X, const Patch& Y, Collector& out)
+void lay_lines(const SupportingFace& X, const SupportingFace& Y, Collector& out)
 {
     const Vec3 a = X.corners[0].p, u = X.corners[1].p - a, b = Y.corners[0].p, v = Y.corners[1].p - b;
     const double uu = length_squared(u), vv = length_squared(v);
-    if (length_squared(cross(u, v)) > (1 - kFacing) * 2 * uu * vv) return;
-    const auto lay = [&](const Patch& P, const Vec3& q, const Vec3& w, double ww, bool p_is_a)
+    if (length_squared(cross(u, v)) > (1 - kParallel) * 2 * uu * vv) return;
+    const auto lay = [&](const SupportingFace& P, const Vec3& q, const Vec3& w, double ww, bool p_is_a)
     {
-        for (const PatchCorner& c : P.corners)
+        for (const FaceCorner& c : P.corners)
         {
             const double t = dot(c.p - q, w) / ww;
             if (t < -kOnBorder || t > 1 + kOnBorder) continue;
@@ -218,9 +218,9 @@ void lay_lines(const Patch& X, const Patch& Y, Collector& out)
     lay(X, b, v, vv, true), lay(Y, a, u, uu, false);
 }
 
-void lay_patches(const Patch& X, const Patch& Y, Collector& out)
+void lay_patches(const SupportingFace& X, const SupportingFace& Y, Collector& out)
 {
-    using Kind = Patch::Kind;
+    using Kind = SupportingFace::Kind;
     if (X.kind == Kind::Line && Y.kind == Kind::Line) return lay_lines(X, Y, out);
     if (X.kind == Kind::Corner || Y.kind == Kind::Corner || !(X.flat() || Y.flat())) return;
     if (X.kind == Kind::Face && Y.kind == Kind::Face) return lay_faces(X, Y, out);
@@ -281,14 +281,15 @@ RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
     return out;
 }
 
-void add_manifold(const Solid& A, const Solid& B, const Separation& s, Touches& out)
+void add_manifold(const Solid& A, const Solid& B, const Separation& s, ContactPoints& out)
 {
     if (!(s.gap < out.margin() || s.gap < 0)) return;
-    std::array<PatchCorner, kMostCorners> room_a, room_b;
-    Patch X = facing_patch(A, s.normal, kFacing, room_a), Y = facing_patch(B, -s.normal, kFacing, room_b);
-    if (X.flat() && !Y.flat()) Y = facing_patch(B, -s.normal, kLeaning, room_b);
-    if (Y.flat() && !X.flat()) X = facing_patch(A, s.normal, kLeaning, room_a);
-    const bool few = X.corners.size() + Y.corners.size() <= 8 && X.kind != Patch::Kind::Disc && Y.kind != Patch::Kind::Disc;
+    std::array<FaceCorner, kMostCorners> room_a, room_b;
+    SupportingFace X = supporting_face(A, s.normal, kParallel, room_a), Y = supporting_face(B, -s.normal, kParallel, room_b);
+    if (X.flat() && !Y.flat()) Y = supporting_face(B, -s.normal, kLeaning, room_b);
+    if (Y.flat() && !X.flat()) X = supporting_face(A, s.normal, kLeaning, room_a);
+    const bool few =
+        X.corners.size() + Y.corners.size() <= 8 && X.kind != SupportingFace::Kind::Disc && Y.kind != SupportingFace::Kind::Disc;
     Collector collector(A, B, s.normal, few, out);
     lay_patches(X, Y, collector);
     // Corners on corners, edges that cross: nothing is as near as the nearest points.
@@ -298,15 +299,15 @@ void add_manifold(const Solid& A, const Solid& B, const Separation& s, Touches& 
     collector.finish();
 }
 
-void box_box(const Solid& A, const Solid& B, Touches& out)
+void box_box(const Solid& A, const Solid& B, ContactPoints& out)
 {
     const Vec3 origin = A.pose().p;
     const BoxAxis axis = find_box_axis(A.size(), axes_of(A), origin, B.size(), axes_of(B), B.pose().p, out.margin());
     if (!(axis.gap < out.margin() || axis.gap < 0)) return;
-    std::array<PatchCorner, 4> room_a, room_b;
-    const Patch X = box_face(A, axis.normal, room_a), Y = box_face(B, -axis.normal, room_b);
-    const bool facing = dot(X.normal, axis.normal) >= kFacing || dot(Y.normal, axis.normal) <= -kFacing;
-    if (axis.edge_a >= 0 && !facing) return add_manifold(A, B, edge_pair(A, B, axis), out);
+    std::array<FaceCorner, 4> room_a, room_b;
+    const SupportingFace X = box_face(A, axis.normal, room_a), Y = box_face(B, -axis.normal, room_b);
+    const bool parallel = dot(X.normal, axis.normal) >= kParallel || dot(Y.normal, axis.normal) <= -kParallel;
+    if (axis.edge_a >= 0 && !parallel) return add_manifold(A, B, edge_pair(A, B, axis), out);
     Collector collector(A, B, axis.normal, true, out);
     lay_patches(X, Y, collector);
     const bool reached = collector.deepest() >= -axis.gap - std::max(1e-3 * std::fabs(axis.gap), 1e-12 * (A.extent() + B.extent()));

@@ -1,8 +1,8 @@
 /// Points of contact of two solids, from the parts of their surfaces that face one another.
 #pragma once
 
+#include "contact_points.h"
 #include "solid.h"
-#include "touches.h"
 
 namespace plab::detection
 {
@@ -28,9 +28,9 @@ std::uint32_t mirrored_feature(std::uint32_t feature);
 /// The surfaces that face one another along s.normal (of the solids' signed distance) are laid over one another along it:
 /// corners of each on the other, and where edges cross. Each point has its own depth along the normal; the deepest has
 /// that of `s`. At most 9 are kept, the outermost ones and the deepest.
-void add_manifold(const Solid& A, const Solid& B, const Separation& s, Touches& out);
+void add_manifold(const Solid& A, const Solid& B, const Separation& s, ContactPoints& out);
 
 /// Two boxes by their 15 axes: the quick way to the same.
-void box_box(const Solid& A, const Solid& B, Touches& out);
+void box_box(const Solid& A, const Solid& B, ContactPoints& out);
 
 }  // namespace plab::detection

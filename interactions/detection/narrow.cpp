@@ -27,7 +27,7 @@ bool in_order(const Collider& a, const Pose& X_a, const Collider& b, const Pose&
     return !(key(b, X_b) < key(a, X_a));
 }
 
-void collide_with_plane(const Collider& a, const Pose& X_a, const Pose& X_plane, Touches& out)
+void collide_with_plane(const Collider& a, const Pose& X_a, const Pose& X_plane, ContactPoints& out)
 {
     switch (a.kind())
     {
@@ -51,9 +51,9 @@ void collide_with_plane(const Collider& a, const Pose& X_a, const Pose& X_plane,
 }
 
 /// Of round and pointed solids: one point.
-void add_nearest(const Separation& s, Touches& out) { out.add({(s.point_a + s.point_b) * 0.5, s.normal, -s.gap, 0}); }
+void add_nearest(const Separation& s, ContactPoints& out) { out.add({(s.point_a + s.point_b) * 0.5, s.normal, -s.gap, 0}); }
 
-void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out)
+void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, ContactPoints& out)
 {
     using enum ColliderKind;
     if (b.kind() == Plane) return collide_with_plane(a, X_a, X_b, out);
@@ -89,14 +89,14 @@ Separation separation(const Collider& a, const Pose& X_a, const Collider& b, con
     return b.kind() == ColliderKind::Plane ? separation_from_plane(A, X_b) : separation_of(A, Solid(b, X_b));
 }
 
-void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out)
+void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, ContactPoints& out)
 {
     if (!meets(a.kind(), b.kind())) return;
     if (in_order(a, X_a, b, X_b)) return collide_ordered(a, X_a, b, X_b, out);
     const std::size_t before = out.all().size();
     collide_ordered(b, X_b, a, X_a, out);
     const bool has_sides = a.kind() != ColliderKind::Plane && !is_surface(a.kind()) && b.kind() != ColliderKind::Sphere;
-    for (Touch& t : out.all().subspan(before))
+    for (ContactPoint& t : out.all().subspan(before))
     {
         t.normal = -t.normal;
         if (has_sides) t.feature = mirrored_feature(t.feature);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collider.h"
-#include "touches.h"
+#include "contact_points.h"
 
 namespace plab::detection
 {
@@ -15,6 +15,6 @@ Separation separation(const Collider& a, const Pose& X_a, const Collider& b, con
 
 /// Adds the points where `a` at X_a and `b` at X_b overlap. Both poses are relative to an origin near by, so that
 /// distances keep their digits far from the origin of W. The answer depends on nothing but the arguments.
-void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, Touches& out);
+void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, ContactPoints& out);
 
 }  // namespace plab::detection

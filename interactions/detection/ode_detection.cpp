@@ -52,7 +52,7 @@ Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bo
         report_complaints(context, row, *scene);
     scene->detect(context, bodies, sink);
     if (!sink.reach().empty()) return {};  // who is near was asked, nobody looked for contacts
-    if (!sink.only_standing()) rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());
+    if (!sink.only_persistent()) rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());
     rows.penetration[row] = scene->penetration();
     return {};
 }

@@ -161,26 +161,27 @@ bool OdeScene::may_meet(const Member& a, const Member& b, const StepContext& con
     return context.active({Facet::Body, a.body}) || context.active({Facet::Body, b.body});
 }
 
-void OdeScene::collect_standing(const StepContext& context, const ContactSink& sink)
+void OdeScene::collect_persistent(const StepContext& context, const ContactSink& sink)
 {
-    standing_.clear();
-    for (const StandingPair& pair : sink.standing())
+    persistent_.clear();
+    for (const PersistentPair& pair : sink.persistent())
     {
         if (pair.a.index >= member_of_body_.size() || pair.b.index >= member_of_body_.size()) continue;
-        Standing s{member_of_body_[pair.a.index], member_of_body_[pair.b.index], pair.shift};
+        PersistentQuery s{member_of_body_[pair.a.index], member_of_body_[pair.b.index], pair.shift};
         if (s.a == kNoIndex || s.b == kNoIndex || !may_meet(members_[s.a], members_[s.b], context)) continue;
         if (s.a > s.b) std::swap(s.a, s.b), s.shift = -s.shift;
-        standing_.push_back(s);
+        persistent_.push_back(s);
     }
-    const auto key = [](const Standing& s) { return std::tie(s.a, s.b); };
-    std::sort(standing_.begin(), standing_.end(), [&](const Standing& x, const Standing& y) { return key(x) < key(y); });
+    const auto key = [](const PersistentQuery& s) { return std::tie(s.a, s.b); };
+    std::sort(persistent_.begin(), persistent_.end(), [&](const PersistentQuery& x, const PersistentQuery& y) { return key(x) < key(y); });
 }
 
-bool OdeScene::is_standing(std::uint32_t a, std::uint32_t b) const
+bool OdeScene::is_persistent(std::uint32_t a, std::uint32_t b) const
 {
-    const auto before = [](const Standing& s, const BroadPhase::Pair& p) { return std::tie(s.a, s.b) < std::tie(p.first, p.second); };
-    const auto at = std::lower_bound(standing_.begin(), standing_.end(), BroadPhase::Pair{a, b}, before);
-    return at != standing_.end() && at->a == a && at->b == b;
+    const auto before = [](const PersistentQuery& s, const BroadPhase::Pair& p)
+    { return std::tie(s.a, s.b) < std::tie(p.first, p.second); };
+    const auto at = std::lower_bound(persistent_.begin(), persistent_.end(), BroadPhase::Pair{a, b}, before);
+    return at != persistent_.end() && at->a == a && at->b == b;
 }
 
 Pose OdeScene::place(const Part& part, const Vec3& p_OC, const Bodies& bodies) const
@@ -199,28 +200,28 @@ void OdeScene::look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shif
     const Vec3 origin = bodies.position[ma.body];
     const Pose X_a = place(pa, {}, bodies);
     const Pose X_b = place(pb, (bodies.position[mb.body] - origin) + shift, bodies);
-    touches_.clear(margin_);
-    collide(ca, X_a, cb, X_b, touches_);
-    further_pairs_ += further_pairs_of(ca, cb, touches_.triangles()) + (parts_met_++ > 0 ? 1.0 : 0.0);
-    for (Touch touch : touches_.all())
+    contact_points_.clear(margin_);
+    collide(ca, X_a, cb, X_b, contact_points_);
+    further_pairs_ += further_pairs_of(ca, cb, contact_points_.triangles()) + (parts_met_++ > 0 ? 1.0 : 0.0);
+    for (ContactPoint contact_point : contact_points_.all())
     {
-        touch.point += origin;
-        touch.feature = feature_of(part_a - ma.first_part, part_b - mb.first_part, touch.feature);
-        found_.push_back(touch);
+        contact_point.point += origin;
+        contact_point.feature = feature_of(part_a - ma.first_part, part_b - mb.first_part, contact_point.feature);
+        found_.push_back(contact_point);
     }
 }
 
 void OdeScene::flush(const Member& a, const Member& b, double shift, ContactSink& sink)
 {
-    const auto key = [](const Touch& t) { return std::tie(t.feature, t.point.x, t.point.y, t.point.z); };
-    std::sort(found_.begin(), found_.end(), [&](const Touch& s, const Touch& t) { return key(s) < key(t); });
+    const auto key = [](const ContactPoint& t) { return std::tie(t.feature, t.point.x, t.point.y, t.point.z); };
+    std::sort(found_.begin(), found_.end(), [&](const ContactPoint& s, const ContactPoint& t) { return key(s) < key(t); });
     std::uint32_t next = 0;
-    for (const Touch& touch : found_)
+    for (const ContactPoint& contact_point : found_)
     {
         Contact c;
         c.a = {Facet::Body, a.body}, c.b = {Facet::Body, b.body};
-        c.feature = std::max(touch.feature, next);
-        c.point = touch.point, c.normal = touch.normal, c.depth = touch.depth - shift;
+        c.feature = std::max(contact_point.feature, next);
+        c.point = contact_point.point, c.normal = contact_point.normal, c.depth = contact_point.depth - shift;
         next = c.feature + 1;
         penetration_ = std::max(penetration_, c.depth);
         sink.add(c);
@@ -276,18 +277,18 @@ void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactS
     if (!sink.reach().empty()) return report_near(context, sink);
     penetration_ = 0, further_pairs_ = 0;
     margin_ = sink.margin();
-    collect_standing(context, sink);
-    look_at_standing(bodies, sink);
-    if (!sink.only_standing()) look_at_near(context, bodies, sink);
+    collect_persistent(context, sink);
+    query_persistent(bodies, sink);
+    if (!sink.only_persistent()) query_near(context, bodies, sink);
     sink.took(further_pairs_);
 }
 
-void OdeScene::look_at_standing(const Bodies& bodies, ContactSink& sink)
+void OdeScene::query_persistent(const Bodies& bodies, ContactSink& sink)
 {
-    for (std::size_t i = 0; i < standing_.size(); ++i)
+    for (std::size_t i = 0; i < persistent_.size(); ++i)
     {
-        const Standing& s = standing_[i];
-        if (i > 0 && s.a == standing_[i - 1].a && s.b == standing_[i - 1].b) continue;
+        const PersistentQuery& s = persistent_[i];
+        if (i > 0 && s.a == persistent_[i - 1].a && s.b == persistent_[i - 1].b) continue;
         const Member &a = members_[s.a], &b = members_[s.b];
         for (std::uint32_t p = a.first_part; p < a.end_part; ++p)
             for (std::uint32_t q = b.first_part; q < b.end_part; ++q) look(p, q, s.shift, bodies);
@@ -295,7 +296,7 @@ void OdeScene::look_at_standing(const Bodies& bodies, ContactSink& sink)
     }
 }
 
-void OdeScene::look_at_near(const StepContext& context, const Bodies& bodies, ContactSink& sink)
+void OdeScene::query_near(const StepContext& context, const Bodies& bodies, ContactSink& sink)
 {
     const auto& near = broad_.find_pairs(margin_);
     pairs_ = near.size();
@@ -303,7 +304,7 @@ void OdeScene::look_at_near(const StepContext& context, const Bodies& bodies, Co
     for (std::size_t i = 0; i < near.size(); ++i)
     {
         const auto [a, b] = members(near[i]);
-        if (may_meet(members_[a], members_[b], context) && !is_standing(a, b)) look(near[i].first, near[i].second, {}, bodies);
+        if (may_meet(members_[a], members_[b], context) && !is_persistent(a, b)) look(near[i].first, near[i].second, {}, bodies);
         if (i + 1 == near.size() || members(near[i + 1]) != BroadPhase::Pair{a, b}) flush(members_[a], members_[b], 0, sink);
     }
 }

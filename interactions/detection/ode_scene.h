@@ -49,7 +49,7 @@ private:
         std::uint32_t collider = 0;
         Pose in_body;  // X_BS
     };
-    struct Standing
+    struct PersistentQuery
     {
         std::uint32_t a = 0, b = 0;  // members
         Vec3 shift;
@@ -66,12 +66,12 @@ private:
     void move_member(Member& member, const Bodies& bodies);
     bool may_meet(const Member& a, const Member& b, const StepContext& context) const;
     void report_near(const StepContext& context, ContactSink& sink);
-    void collect_standing(const StepContext& context, const ContactSink& sink);
-    bool is_standing(std::uint32_t a, std::uint32_t b) const;
+    void collect_persistent(const StepContext& context, const ContactSink& sink);
+    bool is_persistent(std::uint32_t a, std::uint32_t b) const;
     Pose place(const Part& part, const Vec3& p_OC, const Bodies& bodies) const;
     void look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shift, const Bodies& bodies);
-    void look_at_standing(const Bodies& bodies, ContactSink& sink);
-    void look_at_near(const StepContext& context, const Bodies& bodies, ContactSink& sink);
+    void query_persistent(const Bodies& bodies, ContactSink& sink);
+    void query_near(const StepContext& context, const Bodies& bodies, ContactSink& sink);
     void flush(const Member& a, const Member& b, double shift, ContactSink& sink);
 
     // What it was made from.
@@ -87,9 +87,9 @@ private:
 
     // Scratch of one look.
     std::vector<std::uint32_t> member_of_body_;
-    std::vector<Standing> standing_;
-    Touches touches_;
-    std::vector<Touch> found_;
+    std::vector<PersistentQuery> persistent_;
+    ContactPoints contact_points_;
+    std::vector<ContactPoint> found_;
     NearSweep sweep_;
     std::vector<std::uint32_t> asked_;    // parts of the bodies that are advanced
     std::vector<BroadPhase::Pair> near_;  // members

@@ -150,12 +150,13 @@ void meet_edge(const Vec3& p, const Vec3& q, double radius, std::uint32_t number
         const std::uint32_t feature = crossing_feature(number, which++);
         const double begin = p.z - rim.z, end = q.z - rim.z;
         if (!((begin < 0) != (end < 0))) continue;
-        const Vec3 x = p + (begin / (begin - end)) * (q - p), foot = on_rim(rim, x), tangent{-foot.y / rim.radius, foot.x / rim.radius, 0};
+        const Vec3 x = p + (begin / (begin - end)) * (q - p), closest = on_rim(rim, x),
+                   tangent{-closest.y / rim.radius, closest.x / rim.radius, 0};
         Vec3 m = normalized(cross(q - p, tangent));
         if (m == Vec3{}) continue;
-        if (m.x * foot.x + m.y * foot.y < 0) m = -m;
-        const double apart = dot(foot - x, m), gap = apart - radius - apart * apart / (2 * rim.radius);
-        if (gap < out.limit() && gap > -rim.radius) out.offer({gap, foot - (apart - radius) * m, foot, m, feature});
+        if (m.x * closest.x + m.y * closest.y < 0) m = -m;
+        const double apart = dot(closest - x, m), gap = apart - radius - apart * apart / (2 * rim.radius);
+        if (gap < out.limit() && gap > -rim.radius) out.offer({gap, closest - (apart - radius) * m, closest, m, feature});
     }
 }
 
@@ -213,10 +214,10 @@ void meet_round_wall(const Solid& K, const Collider& collider, MeetingSink& out)
                             // On its way in: no nearer to the wall than to the rim.
                             for (const Rim& rim : wall.rims())
                             {
-                                const Vec3 foot = on_rim(rim, p);
-                                const double gap = length(foot - p);
+                                const Vec3 closest = on_rim(rim, p);
+                                const double gap = length(closest - p);
                                 if (gap > 0 && gap < out.limit() && length(wall.from_middle(p)) < wall.radius())
-                                    out.offer({gap, p, foot, (foot - p) / gap, feature});
+                                    out.offer({gap, p, closest, (closest - p) / gap, feature});
                             }
                             return;
                         }

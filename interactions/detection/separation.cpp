@@ -93,18 +93,18 @@ void leave(const Solid& S, const Vec3& c, double& outside, Vec3& n)
 }
 
 /// The nearest point of a hull to a point outside lies on a face that sees it.
-Foot foot_on_hull(const Solid& S, const Vec3& q)
+ClosestPoint closest_point_on_hull(const Solid& S, const Vec3& q)
 {
     const Hull& hull = S.hull();
     const Vec3 c = S.to_local(q);
-    Foot best;
+    ClosestPoint best;
     double least = HUGE_VAL;
     for (std::size_t f = 0; f < hull.faces.size(); ++f)
     {
         if (dot(hull.normals[f], c) <= hull.offsets[f]) continue;
         const auto& v = hull.faces[f];
-        const Foot foot = foot_on_facelet(c, {{hull.vertices[v[0]], hull.vertices[v[1]], hull.vertices[v[2]]}, 3});
-        if (const double d = length_squared(c - foot.p); d < least) least = d, best = foot;
+        const ClosestPoint closest = closest_point_on_facelet(c, {{hull.vertices[v[0]], hull.vertices[v[1]], hull.vertices[v[2]]}, 3});
+        if (const double d = length_squared(c - closest.p); d < least) least = d, best = closest;
     }
     best.p = S.from_local(best.p), best.axis = S.from_local_direction(best.axis);
     return best;
@@ -122,11 +122,11 @@ Separation point_solid(const Solid& P, const Solid& S)
     Vec3 nearest = q - outside * n;
     if (outside > 0)
     {
-        const Foot foot = S.core() == Core::Hull ? foot_on_hull(S, q) : S.foot(q, {});
-        nearest = foot.p;
+        const ClosestPoint closest = S.core() == Core::Hull ? closest_point_on_hull(S, q) : S.closest_point(q, {});
+        nearest = closest.p;
         const double distance = length(q - nearest);
-        if (foot.flat == 2)
-            n = foot.axis, outside = dot(n, q - nearest);
+        if (closest.flat == 2)
+            n = closest.axis, outside = dot(n, q - nearest);
         else if (distance > 0)
             n = (q - nearest) / distance, outside = distance;
     }
@@ -165,8 +165,8 @@ Separation separation_of(const Solid& A, const Solid& B)
     if (A.core() == Core::Point && B.core() == Core::Point) return of_points(A.pose().p, A.radius(), B.pose().p, B.radius(), kNoDirection);
     if (A.core() == Core::Point && B.core() == Core::Segment)
     {
-        const Foot foot = B.foot(A.pose().p, {});
-        return of_points(A.pose().p, A.radius(), foot.p, B.radius(), any_perpendicular(B.axis(2)), foot.axis);
+        const ClosestPoint closest = B.closest_point(A.pose().p, {});
+        return of_points(A.pose().p, A.radius(), closest.p, B.radius(), any_perpendicular(B.axis(2)), closest.axis);
     }
     if (line_a && line_b)
         return A.core() == Core::Segment && B.core() == Core::Segment ? segment_segment(A, B) : flipped(separation_of(B, A));

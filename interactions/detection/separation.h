@@ -1,8 +1,8 @@
 /// Signed distance of two solids: closed forms where there are any, else nearest points or least depth.
 #pragma once
 
+#include "contact_points.h"
 #include "solid.h"
-#include "touches.h"
 
 namespace plab::detection
 {

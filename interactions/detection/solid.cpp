@@ -18,7 +18,7 @@ Vec3 furthest(const Hull& hull, const Vec3& d_S)
     return *best;
 }
 
-Foot foot_on_edge(const Vec3& q, const Vec3& a, const Vec3& b)
+ClosestPoint closest_point_on_edge(const Vec3& q, const Vec3& a, const Vec3& b)
 {
     const Vec3 e = b - a;
     const double along = dot(q - a, e), all = length_squared(e);
@@ -99,25 +99,25 @@ Vec3 Solid::support(const Vec3& d) const
     return from_local(p);
 }
 
-Foot Solid::foot(const Vec3& q, const Facelet& facelet) const
+ClosestPoint Solid::closest_point(const Vec3& q, const Facelet& facelet) const
 {
     switch (core_)
     {
         case Core::Segment:
-            return foot_on_segment(q);
+            return closest_point_on_segment(q);
         case Core::Box:
-            return foot_on_box(q);
+            return closest_point_on_box(q);
         case Core::Cylinder:
-            return foot_on_cylinder(q);
+            return closest_point_on_cylinder(q);
         case Core::Hull:
-            return foot_on_facelet(q, facelet);
+            return closest_point_on_facelet(q, facelet);
         case Core::Point:
             break;
     }
     return {X_.p, {}, 0, {}};
 }
 
-Foot Solid::foot_on_segment(const Vec3& q) const
+ClosestPoint Solid::closest_point_on_segment(const Vec3& q) const
 {
     const Vec3 u = axis(2);
     const double along = dot(u, q - X_.p);
@@ -125,7 +125,7 @@ Foot Solid::foot_on_segment(const Vec3& q) const
     return {X_.p + along * u, outer(u, u), 1, u};
 }
 
-Foot Solid::foot_on_box(const Vec3& q) const
+ClosestPoint Solid::closest_point_on_box(const Vec3& q) const
 {
     const Vec3 l = to_local(q);
     Vec3 p, free;
@@ -138,13 +138,13 @@ Foot Solid::foot_on_box(const Vec3& q) const
         else
             free[k] = 1, ++flat, open = k;
     }
-    Foot out{from_local(p), turned(R_, Mat3::diagonal(free.x, free.y, free.z)), flat, {}};
+    ClosestPoint out{from_local(p), turned(R_, Mat3::diagonal(free.x, free.y, free.z)), flat, {}};
     if (flat == 1) out.axis = axis(open);
     if (flat == 2) out.axis = axis(clamped) * (l[clamped] < 0 ? -1.0 : 1.0);
     return out;
 }
 
-Foot Solid::foot_on_cylinder(const Vec3& q) const
+ClosestPoint Solid::closest_point_on_cylinder(const Vec3& q) const
 {
     const Vec3 l = to_local(q);
     const double across = std::sqrt(l.x * l.x + l.y * l.y);
@@ -158,17 +158,17 @@ Foot Solid::foot_on_cylinder(const Vec3& q) const
     else
         J = Mat3::diagonal(1, 1, 0);
     if (!beyond_end) J(2, 2) = 1;
-    Foot out{from_local(p), turned(R_, J), 3, {}};
+    ClosestPoint out{from_local(p), turned(R_, J), 3, {}};
     if (beyond_side && beyond_end) out.flat = 1, out.axis = from_local_direction(around);
     if (beyond_side && !beyond_end) out.flat = 2, out.axis = from_local_direction(radial);
     if (!beyond_side && beyond_end) out.flat = 2, out.axis = axis(2) * (l.z < 0 ? -1.0 : 1.0);
     return out;
 }
 
-Foot foot_on_facelet(const Vec3& q, const Facelet& f)
+ClosestPoint closest_point_on_facelet(const Vec3& q, const Facelet& f)
 {
     if (f.count == 1) return {f.corner[0], {}, 0, {}};
-    if (f.count == 2) return foot_on_edge(q, f.corner[0], f.corner[1]);
+    if (f.count == 2) return closest_point_on_edge(q, f.corner[0], f.corner[1]);
     const Vec3 e1 = f.corner[1] - f.corner[0], e2 = f.corner[2] - f.corner[0];
     Vec3 n = cross(e1, e2);
     const double area = length(n);
@@ -180,9 +180,9 @@ Foot foot_on_facelet(const Vec3& q, const Facelet& f)
         const double above = dot(n, q - f.corner[0]);
         if (inside) return {q - above * n, Mat3::identity() - outer(n, n), 2, above < 0 ? -n : n};
     }
-    Foot best = foot_on_edge(q, f.corner[0], f.corner[1]);
+    ClosestPoint best = closest_point_on_edge(q, f.corner[0], f.corner[1]);
     for (std::size_t i = 1; i < 3; ++i)
-        if (const Foot other = foot_on_edge(q, f.corner[i], f.corner[(i + 1) % 3]);
+        if (const ClosestPoint other = closest_point_on_edge(q, f.corner[i], f.corner[(i + 1) % 3]);
             length_squared(other.p - q) < length_squared(best.p - q))
             best = other;
     return best;

@@ -16,7 +16,7 @@ enum class Core : std::uint8_t
 };
 
 /// The nearest point of a solid (or of a part of its surface) to a point outside.
-struct Foot
+struct ClosestPoint
 {
     Vec3 p;
     Mat3 J;        ///< derivative of p by the point outside; symmetric, eigenvalues in [0, 1)  or 1
@@ -60,13 +60,13 @@ public:
     /// The point of the core furthest in direction d.
     Vec3 support(const Vec3& d) const;
     /// The point of the core nearest to q; of a hull, that of `facelet`.
-    Foot foot(const Vec3& q, const Facelet& facelet) const;
+    ClosestPoint closest_point(const Vec3& q, const Facelet& facelet) const;
 
 private:
     Solid() = default;
-    Foot foot_on_segment(const Vec3& q) const;
-    Foot foot_on_box(const Vec3& q) const;
-    Foot foot_on_cylinder(const Vec3& q) const;
+    ClosestPoint closest_point_on_segment(const Vec3& q) const;
+    ClosestPoint closest_point_on_box(const Vec3& q) const;
+    ClosestPoint closest_point_on_cylinder(const Vec3& q) const;
 
     Core core_ = Core::Point;
     double radius_ = 0, extent_ = 0;
@@ -77,6 +77,6 @@ private:
 };
 
 /// The point of a facelet nearest to q.
-Foot foot_on_facelet(const Vec3& q, const Facelet& facelet);
+ClosestPoint closest_point_on_facelet(const Vec3& q, const Facelet& facelet);
 
 }  // namespace plab::detection

@@ -24,25 +24,26 @@ public:
     void offer(const Meeting& m) override
     {
         if (!(m.gap < margin_ || m.gap < 0)) return;
-        const Touch touch{m.on_surface - m.normal * (0.5 * m.gap), m.normal, -m.gap, m.feature};
+        const ContactPoint contact_point{m.on_surface - m.normal * (0.5 * m.gap), m.normal, -m.gap, m.feature};
         for (std::size_t i = 0; i < count_; ++i)
         {
-            Touch& known = touches_[i];
-            const bool same_place = length_squared(known.point - touch.point) < near_ * near_ && dot(known.normal, touch.normal) > kOneSide;
-            if (!same_place && known.feature != touch.feature) continue;
+            ContactPoint& known = contact_points_[i];
+            const bool same_place =
+                length_squared(known.point - contact_point.point) < near_ * near_ && dot(known.normal, contact_point.normal) > kOneSide;
+            if (!same_place && known.feature != contact_point.feature) continue;
             const std::uint32_t first = known.feature;
-            if (touch.depth > known.depth) known = touch, known.feature = first;
+            if (contact_point.depth > known.depth) known = contact_point, known.feature = first;
             return;
         }
-        if (count_ == touches_.size()) thin_out();
-        if (count_ < touches_.size()) touches_[count_++] = touch;
+        if (count_ == contact_points_.size()) thin_out();
+        if (count_ < contact_points_.size()) contact_points_[count_++] = contact_point;
     }
-    std::span<Touch> take()
+    std::span<ContactPoint> take()
     {
         if (count_ > kMany) thin_out();
-        std::sort(touches_.begin(), touches_.begin() + static_cast<std::ptrdiff_t>(count_),
-                  [](const Touch& a, const Touch& b) { return a.feature < b.feature; });
-        return {touches_.data(), count_};
+        std::sort(contact_points_.begin(), contact_points_.begin() + static_cast<std::ptrdiff_t>(count_),
+                  [](const ContactPoint& a, const ContactPoint& b) { return a.feature < b.feature; });
+        return {contact_points_.data(), count_};
     }
 
 private:
@@ -51,7 +52,7 @@ private:
     /// Sides in the order in which they were found; what no room is left for is the last sides'.
     void thin_out()
     {
-        std::array<Touch, 64> all = touches_;
+        std::array<ContactPoint, 64> all = contact_points_;
         std::array<std::uint8_t, 64> taken{};
         const std::size_t total = count_;
         count_ = 0;
@@ -61,13 +62,13 @@ private:
             Spread spread(all[i].normal, margin_);
             for (std::size_t k = i; k < total; ++k)
                 if (!taken[k] && dot(all[i].normal, all[k].normal) > kOneSide) taken[k] = 1, spread.offer(all[k]);
-            Touches kept(margin_);
+            ContactPoints kept(margin_);
             spread.take(kept);
-            for (const Touch& t : kept.all()) touches_[count_++] = t;
+            for (const ContactPoint& t : kept.all()) contact_points_[count_++] = t;
         }
     }
 
-    std::array<Touch, 64> touches_{};
+    std::array<ContactPoint, 64> contact_points_{};
     std::size_t count_ = 0;
     double margin_, near_;
 };
@@ -91,29 +92,29 @@ void meet(const Solid& K, const Collider& surface, MeetingSink& out)
 
 /// A ball goes from triangle to triangle: its contacts are numbered within patches of triangles that go over into one another,
 /// so that one that slides keeps its number.
-void number_by_patch(std::span<Touch> touches, const TriangleSurface& surface)
+void number_by_patch(std::span<ContactPoint> contact_points, const TriangleSurface& surface)
 {
     std::array<std::uint32_t, 64> patch{};
-    for (std::size_t i = 0; i < touches.size(); ++i)
+    for (std::size_t i = 0; i < contact_points.size(); ++i)
     {
-        patch[i] = surface.triangles()[touches[i].feature].patch;
+        patch[i] = surface.triangles()[contact_points[i].feature].patch;
         const auto before = static_cast<std::uint32_t>(std::count(patch.begin(), patch.begin() + static_cast<std::ptrdiff_t>(i), patch[i]));
-        touches[i].feature = (patch[i] & 0xfffu) << 6 | before;
+        contact_points[i].feature = (patch[i] & 0xfffu) << 6 | before;
     }
 }
 
 Pose seen_from(const Pose& X_surface, const Pose& X) { return {rotate_back(X_surface.q, X.p - X_surface.p), conjugate(X_surface.q) * X.q}; }
 }  // namespace
 
-void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface, Touches& out)
+void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface, ContactPoints& out)
 {
     const Solid K(a, seen_from(X_surface, X_a));
     Gathering found(out.margin(), K.extent() + K.radius());
     meet(K, surface, found);
-    const std::span<Touch> touches = found.take();
+    const std::span<ContactPoint> contact_points = found.take();
     out.note_triangles(found.triangles());
-    if (K.core() == Core::Point && surface.kind() == ColliderKind::Triangles) number_by_patch(touches, surface.triangles());
-    for (Touch t : touches)
+    if (K.core() == Core::Point && surface.kind() == ColliderKind::Triangles) number_by_patch(contact_points, surface.triangles());
+    for (ContactPoint t : contact_points)
     {
         t.point = X_surface * t.point, t.normal = rotate(X_surface.q, t.normal);
         out.add(t);

@@ -3,9 +3,9 @@
 /// Both answer in the frame S of the surface. Normals point from the solid into what lies behind the surface.
 #pragma once
 
+#include "contact_points.h"
 #include "manifold.h"
 #include "solid.h"
-#include "touches.h"
 
 namespace plab::detection
 {
@@ -41,7 +41,7 @@ void meet_round_wall(const Solid& K, const Collider& wall, MeetingSink& out);
 void meet_triangles(const Solid& K, const Collider& surface, MeetingSink& out);
 
 /// K in the frame W of X_surface; both as narrow.h has it.
-void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface, Touches& out);
+void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface, ContactPoints& out);
 /// Infinite for what is behind the surface altogether, or out of its way.
 Separation separation_from_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface);
 

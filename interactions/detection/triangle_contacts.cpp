@@ -30,7 +30,7 @@ constexpr double kMuchNearer = 4, kShallow = 1e-4;
 constexpr double kAtEnd = 1e-12;
 
 /// Where a triangle is nearest to a point (C. Ericson, Real-time collision detection, 2005, 5.1.5).
-struct TriangleFoot
+struct TriangleClosestPoint
 {
     enum class At : std::uint8_t
     {
@@ -43,9 +43,9 @@ struct TriangleFoot
     std::size_t which = 0;  ///< corner or edge of the triangle
 };
 
-TriangleFoot foot_on(const Surface& s, const Surface::Triangle& t, const Vec3& q)
+TriangleClosestPoint closest_point_on(const Surface& s, const Surface::Triangle& t, const Vec3& q)
 {
-    using enum TriangleFoot::At;
+    using enum TriangleClosestPoint::At;
     const Vec3 &a = s.point(t.corner[0]), &b = s.point(t.corner[1]), &c = s.point(t.corner[2]);
     const Vec3 ab = b - a, ac = c - a, aq = q - a, bq = q - b, cq = q - c;
     const double d1 = dot(ab, aq), d2 = dot(ac, aq), d3 = dot(ab, bq), d4 = dot(ac, bq), d5 = dot(ab, cq), d6 = dot(ac, cq);
@@ -72,51 +72,51 @@ public:
             [&](std::uint32_t t)
             {
                 ++visited_;
-                const TriangleFoot foot = foot_on(s_, s_.triangles()[t], c_);
-                const double distance = length(foot.p - c_);
+                const TriangleClosestPoint closest = closest_point_on(s_, s_.triangles()[t], c_);
+                const double distance = length(closest.p - c_);
                 if (distance < least || (distance == least && (nearest_ == Surface::kNone || t < nearest_)))
-                    least = distance, nearest_ = t, foot_ = foot;
+                    least = distance, nearest_ = t, closest_ = closest;
             });
     }
     bool found() const { return nearest_ != Surface::kNone; }
     std::size_t visited() const { return visited_; }  ///< triangles
     std::uint32_t triangle() const { return nearest_; }
-    const Vec3& point() const { return foot_.p; }
-    double distance() const { return length(c_ - foot_.p); }
-    bool behind() const { return !on_border() && dot(c_ - foot_.p, normal()) < 0; }
+    const Vec3& point() const { return closest_.p; }
+    double distance() const { return length(c_ - closest_.p); }
+    bool behind() const { return !on_border() && dot(c_ - closest_.p, normal()) < 0; }
     Vec3 normal() const
     {
         const Surface::Triangle& t = triangle(nearest_);
-        if (foot_.at == TriangleFoot::At::Face) return t.normal;
-        if (foot_.at == TriangleFoot::At::Corner) return normalized(s_.corner_normal(t.corner[foot_.which]));
+        if (closest_.at == TriangleClosestPoint::At::Face) return t.normal;
+        if (closest_.at == TriangleClosestPoint::At::Corner) return normalized(s_.corner_normal(t.corner[closest_.which]));
         const Surface::Edge& e = edge_there();
         return e.border() ? t.normal : normalized(triangle(e.side[0]).normal + triangle(e.side[1]).normal);
     }
     /// From the surface to the point in front of it.
-    Vec3 direction() const { return flat_there() || !(distance() > 0) ? triangle(nearest_).normal : (c_ - foot_.p) / distance(); }
+    Vec3 direction() const { return flat_there() || !(distance() > 0) ? triangle(nearest_).normal : (c_ - closest_.p) / distance(); }
 
 private:
     const Surface::Triangle& triangle(std::uint32_t t) const { return s_.triangles()[t]; }
-    const Surface::Edge& edge_there() const { return s_.edges()[triangle(nearest_).edge[foot_.which]]; }
+    const Surface::Edge& edge_there() const { return s_.edges()[triangle(nearest_).edge[closest_.which]]; }
     bool on_border() const
     {
-        if (foot_.at == TriangleFoot::At::Face) return false;
-        if (foot_.at == TriangleFoot::At::Edge) return edge_there().border();
-        return s_.border_corner(triangle(nearest_).corner[foot_.which]);
+        if (closest_.at == TriangleClosestPoint::At::Face) return false;
+        if (closest_.at == TriangleClosestPoint::At::Edge) return edge_there().border();
+        return s_.border_corner(triangle(nearest_).corner[closest_.which]);
     }
     /// Whether the place is as flat as a face.
     bool flat_there() const
     {
-        if (foot_.at == TriangleFoot::At::Face) return true;
-        if (foot_.at == TriangleFoot::At::Edge) return !edge_there().sharp;
-        return !s_.sharp_corner(triangle(nearest_).corner[foot_.which]);
+        if (closest_.at == TriangleClosestPoint::At::Face) return true;
+        if (closest_.at == TriangleClosestPoint::At::Edge) return !edge_there().sharp;
+        return !s_.sharp_corner(triangle(nearest_).corner[closest_.which]);
     }
 
     const Surface& s_;
     Vec3 c_;
     std::uint32_t nearest_ = Surface::kNone;
     std::size_t visited_ = 0;
-    TriangleFoot foot_;
+    TriangleClosestPoint closest_;
 };
 
 /// A ball at c, in front of the surface or at most as deep as its radius behind it.
@@ -154,38 +154,38 @@ public:
 
 private:
     /// `outside`: of the centre, m; `n` leads from the centre to the surface.
-    void offer(double outside, const Vec3& n, const Vec3& foot, std::uint32_t t)
+    void offer(double outside, const Vec3& n, const Vec3& closest, std::uint32_t t)
     {
         const double gap = outside - radius_;
-        if (gap < out_.limit()) out_.offer({gap, c_ + radius_ * n, foot, n, t});
+        if (gap < out_.limit()) out_.offer({gap, c_ + radius_ * n, closest, n, t});
     }
 
     void offer_least(std::uint32_t t)
     {
         const Surface::Triangle& triangle = s_.triangles()[t];
-        const TriangleFoot foot = foot_on(s_, triangle, c_);
-        const Vec3 d = c_ - foot.p;
+        const TriangleClosestPoint closest = closest_point_on(s_, triangle, c_);
+        const Vec3 d = c_ - closest.p;
         const double distance = length(d);
-        if (foot.at == TriangleFoot::At::Face)
+        if (closest.at == TriangleClosestPoint::At::Face)
         {
             const double outside = dot(triangle.normal, d);
-            if (outside > 0) offer(outside, -triangle.normal, foot.p, t);
+            if (outside > 0) offer(outside, -triangle.normal, closest.p, t);
             return;
         }
         if (!(distance > 0)) return;
-        if (foot.at == TriangleFoot::At::Edge)
+        if (closest.at == TriangleClosestPoint::At::Edge)
         {
-            const Surface::Edge& e = s_.edges()[triangle.edge[foot.which]];
+            const Surface::Edge& e = s_.edges()[triangle.edge[closest.which]];
             if (!e.sharp || e.side[0] != t) return;
             for (std::size_t i = 0; i < (e.border() ? 1u : 2u); ++i)
                 if (dot(d, e.inward[i]) > 0) return;
         }
         else
         {
-            const std::uint32_t corner = triangle.corner[foot.which];
+            const std::uint32_t corner = triangle.corner[closest.which];
             if (!s_.sharp_corner(corner) || !s_.leaves_corner(corner, d, 0)) return;
         }
-        offer(distance, -d / distance, foot.p, t);
+        offer(distance, -d / distance, closest.p, t);
     }
 
     const Surface& s_;
@@ -291,11 +291,11 @@ private:
         const Solid rod = Solid::rod(a, b);
         const Separation s = separation_of(K_, rod);
         if (!(s.gap < out_.limit()) || !leads_away(e, -s.normal, s.point_b)) return;
-        Touches touches(std::isfinite(out_.limit()) ? out_.limit() : 0);
-        add_manifold(K_, rod, s, touches);
+        ContactPoints contact_points(std::isfinite(out_.limit()) ? out_.limit() : 0);
+        add_manifold(K_, rod, s, contact_points);
         const std::uint32_t feature = kNearestFeature | ((number & 0xffffu) << 2);
         std::uint32_t i = 0;
-        for (const Touch& t : touches.all())
+        for (const ContactPoint& t : contact_points.all())
         {
             const Vec3 half = (0.5 * t.depth) * t.normal;
             out_.offer({-t.depth, t.point + half, t.point - half, t.normal, feature | std::min(i++, 3u)});

@@ -14,8 +14,8 @@ Verdict advance_island(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     for (const Point& p : problem.points) guess.push_back(p.impulse);
     for (const Line& line : problem.lines) memory.line_impulses.push_back(line.impulse);
     Verdict out = answer_impacts(island, bodies, shafts, method, memory);
-    memory.slips.clear();
-    for (const Point& p : problem.points) memory.slips.push_back(problem.slip(p));
+    memory.velocities.clear();
+    for (const Point& p : problem.points) memory.velocities.push_back(problem.relative_velocity(p));
     for (std::size_t i = 0; i < guess.size(); ++i) problem.points[i].impulse = guess[i];
     for (std::size_t i = 0; i < problem.lines.size(); ++i) problem.lines[i].impulse = memory.line_impulses[i];
 

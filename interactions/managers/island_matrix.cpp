@@ -139,7 +139,7 @@ void add_push(std::span<Column6> columns, const Line& line, double j)
     for (std::uint32_t k = 0; k < line.count; ++k) add(columns[line.mover[k]], line.linear[k] * j, line.angular[k] * j);
 }
 
-Vec3 slip_of(std::span<const Column6> columns, const Point& p)
+Vec3 relative_velocity_of(std::span<const Column6> columns, const Point& p)
 {
     Vec3 u;
     if (p.b != kNoIndex) u += first(columns[p.b]) + cross(last(columns[p.b]), p.r_b);

@@ -38,7 +38,7 @@ inline void add(Column6& c, const Vec3& push, const Vec3& turn)
 void add_push(std::span<Column6> columns, const Point& p, const Vec3& j);
 void add_push(std::span<Column6> columns, const Line& line, double j);
 /// J x, contact coordinates.
-Vec3 slip_of(std::span<const Column6> columns, const Point& p);
+Vec3 relative_velocity_of(std::span<const Column6> columns, const Point& p);
 double rate_of(std::span<const Column6> columns, const Line& line);
 
 }  // namespace plab::managers

@@ -12,11 +12,11 @@ void Lagrangian::start(const Problem& problem, double kappa)
     for (const Point& p : problem.points)
     {
         rho_.push_back(p.K(2, 2) > 0 ? kappa / p.K(2, 2) : 0.0);
-        const Vec3 u = p.frictional() ? problem.slip(p) : Vec3{};
+        const Vec3 u = p.frictional() ? problem.relative_velocity(p) : Vec3{};
         bias_.push_back(p.friction * std::hypot(u.x, u.y));
     }
     for (const Line& line : problem.lines) line_rho_.push_back(line.count > 0 ? kappa / line.mobility : 0.0);
-    slips_.resize(problem.points.size()), slip_steps_.resize(problem.points.size());
+    velocities_.resize(problem.points.size()), velocity_steps_.resize(problem.points.size());
     rates_.resize(problem.lines.size()), rate_steps_.resize(problem.lines.size());
     step_.resize(problem.movers.size());
 }
@@ -71,9 +71,9 @@ double Lagrangian::gradient(const Problem& problem, IslandMatrix* matrix)
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         if (rho_[i] == 0) continue;
-        slips_[i] = problem.slip(problem.points[i]);
+        velocities_[i] = problem.relative_velocity(problem.points[i]);
         Mat3 G;
-        add_push(step_, problem.points[i], project(problem, i, tau_of(problem, i, slips_[i]), &G));
+        add_push(step_, problem.points[i], project(problem, i, tau_of(problem, i, velocities_[i]), &G));
         if (matrix && (G(2, 2) != 0 || G(0, 0) != 0 || G(1, 1) != 0)) matrix->add(problem, i, G);
     }
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
@@ -100,7 +100,7 @@ void Lagrangian::weld(Problem& problem, IslandMatrix& matrix)
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         const Point& p = problem.points[i];
-        const Vec3 u = problem.slip(p);
+        const Vec3 u = problem.relative_velocity(p);
         // Gaps that open, or would not close, stay out.
         if (rho_[i] == 0 || (p.impulse.z <= 0 && u.z - p.least > 1e-6 * (std::fabs(u.z) + std::fabs(p.least)))) continue;
         const double grip = p.frictional() ? rho_[i] : 0.0;
@@ -132,7 +132,8 @@ double Lagrangian::slope(const Problem& problem, double t)
         sum += dot(m.inertia * (problem.movers[i].w + dw * t - m.w), dw);
     }
     for (std::size_t i = 0; i < problem.points.size(); ++i)
-        if (rho_[i] != 0) sum -= dot(project(problem, i, tau_of(problem, i, slips_[i] + slip_steps_[i] * t), nullptr), slip_steps_[i]);
+        if (rho_[i] != 0)
+            sum -= dot(project(problem, i, tau_of(problem, i, velocities_[i] + velocity_steps_[i] * t), nullptr), velocity_steps_[i]);
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
     {
         const Line& line = problem.lines[i];
@@ -173,7 +174,8 @@ void Lagrangian::move(Problem& problem, double t)
 void Lagrangian::take_impulses(Problem& problem)
 {
     for (std::size_t i = 0; i < problem.points.size(); ++i)
-        if (rho_[i] != 0) problem.points[i].impulse = project(problem, i, tau_of(problem, i, problem.slip(problem.points[i])), nullptr);
+        if (rho_[i] != 0)
+            problem.points[i].impulse = project(problem, i, tau_of(problem, i, problem.relative_velocity(problem.points[i])), nullptr);
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
     {
         Line& line = problem.lines[i];
@@ -199,7 +201,7 @@ bool Lagrangian::round(Problem& problem, IslandMatrix& matrix, double kappa, boo
         double at_zero = 0;
         for (std::size_t i = 0; i < step_.size(); ++i)
             for (std::size_t k = 0; k < 6; ++k) at_zero -= force_[i][k] * step_[i][k];
-        for (std::size_t i = 0; i < problem.points.size(); ++i) slip_steps_[i] = slip_of(step_, problem.points[i]);
+        for (std::size_t i = 0; i < problem.points.size(); ++i) velocity_steps_[i] = relative_velocity_of(step_, problem.points[i]);
         for (std::size_t i = 0; i < problem.lines.size(); ++i) rate_steps_[i] = rate_of(step_, problem.lines[i]);
         if (!(at_zero < 0)) break;
         move(problem, search(problem, at_zero));

@@ -39,7 +39,7 @@ private:
     void take_impulses(Problem& problem);
 
     std::vector<double> rho_, bias_, line_rho_;
-    std::vector<Vec3> slips_, slip_steps_;  // at the present v, and along the step
+    std::vector<Vec3> velocities_, velocity_steps_;  // at the present v, and along the step
     std::vector<double> rates_, rate_steps_;
     std::vector<Column6> step_, force_;
 };

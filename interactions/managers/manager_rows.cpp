@@ -21,7 +21,7 @@ constexpr Unit kHertz{"1/s", {{0, 0, -1, 0}}};
 double unknown_share(const Problem& problem)
 {
     const auto is_new = [&](const Point& p)
-    { return p.K(2, 2) > 0 && p.impulse == Vec3{} && p.least > kFar && problem.slip(p).z < p.least; };
+    { return p.K(2, 2) > 0 && p.impulse == Vec3{} && p.least > kFar && problem.relative_velocity(p).z < p.least; };
     const auto count = std::count_if(problem.points.begin(), problem.points.end(), is_new);
     return problem.points.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(problem.points.size());
 }
@@ -120,8 +120,8 @@ void Account::add(const StepContext& context, Row row, const Island& island, dou
     // What moves nobody by 2^-23 of its size in a step is left to the output.
     const double size = island.bodies.empty() ? 1 : island.size;
     if (island.converged || island.residual * island.h <= kMatters * size) return;
-    const bool told = last_failure[row] >= 0 && last_failure[row] + 1 >= context.tick;
-    if (!told)
+    const bool reported = last_failure[row] >= 0 && last_failure[row] + 1 >= context.tick;
+    if (!reported)
         context.emit(row, "manager.not_converged", Severity::Warning,
                      "contacts are left " + rounded_text(island.residual) + " m/s from what they ask for, " + number_text(tolerance) +
                          " would do; allow more iterations, or take a smaller dt or a more exact manager",
@@ -165,7 +165,7 @@ void solve_sequential(const StepContext& context, Row row, SequentialRows& rows,
 {
     Sweeps method(whole(rows.max_iterations[row]), whole(rows.position_iterations[row]), rows.tolerance[row], rows.relaxation[row]);
     StepChoices choices;
-    choices.slop = rows.slop[row], choices.parted_share = rows.overlap_share[row];
+    choices.slop = rows.slop[row], choices.correction_share = rows.overlap_share[row];
     report(island, advance_island(island, bodies, shafts, method, choices, rows.memory[row]));
     forget_if_given_up(island, rows.memory[row]);
     rows.account.add(context, row, island, rows.tolerance[row]);

@@ -48,7 +48,7 @@ double total_violation(const Problem& problem)
 {
     double sum = 0;
     const auto take = [&sum](double v) { sum += v * v; };
-    for (const Point& p : problem.points) take(violation(p, problem.slip(p)));
+    for (const Point& p : problem.points) take(violation(p, problem.relative_velocity(p)));
     for (const Line& line : problem.lines) take(violation(line, problem.rate(line)));
     return std::sqrt(sum);
 }
@@ -87,7 +87,7 @@ bool NewtonSolver::find_step(const Problem& problem, double kappa)
         const Point& p = problem.points[i];
         laws_[i] = {};
         if (!(p.K(2, 2) > 0)) continue;
-        law_of(p, problem.slip(p), kappa, laws_[i].change, laws_[i].G);
+        law_of(p, problem.relative_velocity(p), kappa, laws_[i].change, laws_[i].G);
         add_push(step_, p, laws_[i].change);
         if (laws_[i].G(2, 2) != 0) matrix_.add(problem, i, laws_[i].G);
     }
@@ -106,7 +106,7 @@ bool NewtonSolver::find_step(const Problem& problem, double kappa)
     // dj = P(tau) - j - G J dv.
     point_steps_.resize(problem.points.size()), line_steps_.resize(problem.lines.size());
     for (std::size_t i = 0; i < problem.points.size(); ++i)
-        point_steps_[i] = laws_[i].change - laws_[i].G * slip_of(step_, problem.points[i]);
+        point_steps_[i] = laws_[i].change - laws_[i].G * relative_velocity_of(step_, problem.points[i]);
     for (std::size_t i = 0; i < problem.lines.size(); ++i)
         line_steps_[i] = line_laws_[i].change - line_laws_[i].G * rate_of(step_, problem.lines[i]);
     return true;

@@ -280,7 +280,7 @@ double Problem::rounding(double terms) const
     double speed = 0, given = 0;
     for (const Point& p : points)
     {
-        speed = std::max(speed, length_squared(slip(p)));
+        speed = std::max(speed, length_squared(relative_velocity(p)));
         given = std::max(given, p.impulse.z * p.K(2, 2));
     }
     speed = std::sqrt(speed);
@@ -337,7 +337,7 @@ double kinetic_energy_without(const Problem& problem)
 double violation(const Problem& problem)
 {
     double largest = 0;
-    for (const Point& p : problem.points) largest = std::max(largest, violation(p, problem.slip(p)));
+    for (const Point& p : problem.points) largest = std::max(largest, violation(p, problem.relative_velocity(p)));
     for (const Line& line : problem.lines) largest = std::max(largest, violation(line, problem.rate(line)));
     return largest;
 }

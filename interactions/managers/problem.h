@@ -89,8 +89,8 @@ public:
     /// To the tables; after apply_impulses.
     void write_speeds(Bodies& bodies, Shafts& shafts);
 
-    Vec3 slip(const Point& p) const;      ///< u, m/s
-    double rate(const Line& line) const;  ///< J v + given
+    Vec3 relative_velocity(const Point& p) const;  ///< u, m/s
+    double rate(const Line& line) const;           ///< J v + given
     void push(const Point& p, const Vec3& j);
     void push(const Line& line, double j);
     /// m/s: what rounding may leave of a contact law: a share of the largest speed, and of what the largest impulse alone
@@ -144,7 +144,7 @@ inline Vec3 within_disc(Vec3 j, double radius)
 inline Vec3 to_contact(const Point& p, const Vec3& v) { return {dot(p.t1, v), dot(p.t2, v), dot(p.n, v)}; }
 inline Vec3 to_world(const Point& p, const Vec3& v) { return p.t1 * v.x + p.t2 * v.y + p.n * v.z; }
 
-inline Vec3 Problem::slip(const Point& p) const
+inline Vec3 Problem::relative_velocity(const Point& p) const
 {
     Vec3 u;
     if (p.b != kNoIndex) u += movers[p.b].v + cross(movers[p.b].w, p.r_b);

@@ -11,7 +11,7 @@ namespace
 double relax(Problem& problem, Point& p, double relaxation)
 {
     if (!(p.K(2, 2) > 0)) return 0;
-    Vec3 u = problem.slip(p);
+    Vec3 u = problem.relative_velocity(p);
     const Vec3 before = p.impulse;
     p.impulse.z = std::max(0.0, before.z - relaxation * (u.z - p.least) / p.K(2, 2));
     if (p.frictional())

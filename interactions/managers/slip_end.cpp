@@ -49,20 +49,20 @@ Verdict SlipEnds::try_part(double h)
     return method_.find_impulses(problem);
 }
 
-/// Whether the contact slips at the start of the part, held by friction.
+/// Whether the contact velocities at the start of the part, held by friction.
 bool SlipEnds::slides(std::size_t i) const
 {
     const Point& p = memory_.problem.points[i];
     // Half way along a curve, what rolls seems to slip by the turn of the normal times what that makes of its speed.
     const double least = std::max(no_slip_, kOfTurning * std::fabs(island_.contacts[i].turning));
-    return p.frictional() && p.impulse.z > 0 && std::hypot(memory_.slips[i].x, memory_.slips[i].y) > least;
+    return p.frictional() && p.impulse.z > 0 && std::hypot(memory_.velocities[i].x, memory_.velocities[i].y) > least;
 }
 
 /// Slip at the end of the part along that at its start, m/s; none if it ended or turned back.
 double SlipEnds::slip_left(std::size_t i) const
 {
-    const Vec3& before = memory_.slips[i];
-    const Vec3 after = memory_.problem.slip(memory_.problem.points[i]);
+    const Vec3& before = memory_.velocities[i];
+    const Vec3 after = memory_.problem.relative_velocity(memory_.problem.points[i]);
     const double was = std::hypot(before.x, before.y), is = std::hypot(after.x, after.y);
     const double along = (before.x * after.x + before.y * after.y) / was;
     return is > std::max(no_slip_, 1e-9 * was) && along > 0.1 * is ? along : 0.0;
@@ -88,7 +88,7 @@ double SlipEnds::first_end(double h)
         for (std::size_t i = 0; i < n && all_slide; ++i)
         {
             if (!slides(i)) continue;
-            const double speed = std::hypot(memory_.slips[i].x, memory_.slips[i].y), left = slip_left(i);
+            const double speed = std::hypot(memory_.velocities[i].x, memory_.velocities[i].y), left = slip_left(i);
             all_slide = left > 0;
             if (left < speed) first = std::min(first, part * speed / (speed - left));
         }
@@ -105,7 +105,7 @@ void SlipEnds::move(const Verdict& found, double h)
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         memory_.impulses[i] += problem.points[i].impulse;
-        memory_.slips[i] = problem.slip(problem.points[i]);
+        memory_.velocities[i] = problem.relative_velocity(problem.points[i]);
     }
     for (std::size_t i = 0; i < problem.lines.size(); ++i) memory_.line_impulses[i] += problem.lines[i].impulse;
     done_ += h;

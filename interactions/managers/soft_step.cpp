@@ -13,7 +13,7 @@ namespace
 
 struct Softness
 {
-    double bias_rate = 0, mass_share = 1, impulse_share = 0;
+    double bias_rate = 0, mass_scale = 1, impulse_scale = 0;
 };
 
 Softness soften(double hertz, double damping_ratio, double h)
@@ -51,11 +51,11 @@ public:
             most_ = kinetic_energy_without(problem_);
             sweep_points(true), sweep_lines(true);
             write();
-            if (bounces_) count_way();
+            if (bounces_) count_travel();
             move();
             for (int i = 0; i < choices_.relax_iterations; ++i) sweep_lines(false), sweep_points(false);
             write();
-            out.iterations += 1 + choices_.relax_iterations + calm();
+            out.iterations += 1 + choices_.relax_iterations + remove_gained_energy();
             gather();
         }
         give_back();
@@ -73,10 +73,10 @@ private:
     bool scale_down();
     void sweep_points(bool soft);
     void sweep_lines(bool soft);
-    int calm();
+    int remove_gained_energy();
     void gather();
     void note_kicks(bool before);
-    void count_way();
+    void count_travel();
     void note_limits();
     double bounce(double share);
     void bounce_points(double share);
@@ -154,7 +154,7 @@ void SoftIsland::note_kicks(bool before)
 }
 
 /// Forces do their work on the way that the bodies go, also where they are pushed apart.
-void SoftIsland::count_way()
+void SoftIsland::count_travel()
 {
     for (std::size_t i = 0; i < problem_.movers.size(); ++i)
         allowed_ += dot(memory_.kicks[i].push, problem_.movers[i].v) + dot(memory_.kicks[i].turn, problem_.movers[i].w);
@@ -188,7 +188,7 @@ void SoftIsland::move()
     memory_.moved_with.clear(), memory_.lines_moved_with.clear();
     for (const Point& p : problem_.points) memory_.moved_with.push_back(p.impulse);
     for (const Line& line : problem_.lines) memory_.lines_moved_with.push_back(line.impulse);
-    for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth[i] -= h_ * problem_.slip(problem_.points[i]).z;
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth[i] -= h_ * problem_.relative_velocity(problem_.points[i]).z;
     island_.motion->move(h_);
     problem_.turn_with(bodies_);
     problem_.apply_impulses();
@@ -202,13 +202,13 @@ void SoftIsland::sweep_points(bool soft)
         if (!(p.K(2, 2) > 0)) continue;
         const Softness& how = p.a == kNoIndex || p.b == kNoIndex ? against_fixed_ : soft_;
         const double depth = memory_.depth[i];
-        double bias = 0, mass_share = 1, impulse_share = 0;
+        double bias = 0, mass_scale = 1, impulse_scale = 0;
         if (depth < 0)
             bias = -depth * rate_;
         else if (soft)
-            bias = -std::min(how.bias_rate * depth, choices_.push_speed), mass_share = how.mass_share, impulse_share = how.impulse_share;
-        const Vec3 u = problem_.slip(p), before = p.impulse;
-        p.impulse.z = std::max(0.0, before.z - mass_share * (u.z + bias) / p.K(2, 2) - impulse_share * before.z);
+            bias = -std::min(how.bias_rate * depth, choices_.push_speed), mass_scale = how.mass_scale, impulse_scale = how.impulse_scale;
+        const Vec3 u = problem_.relative_velocity(p), before = p.impulse;
+        p.impulse.z = std::max(0.0, before.z - mass_scale * (u.z + bias) / p.K(2, 2) - impulse_scale * before.z);
         if (p.frictional())
         {
             const double change = p.impulse.z - before.z, k = 1 / p.slip_mobility;
@@ -230,7 +230,7 @@ void SoftIsland::sweep_lines(bool soft)
         const ConstraintRow& row = island_.rows[line.row];
         const bool pulled = soft && row.kind != RowKind::Rate && (row.kind == RowKind::Equality || row.error < 0);
         const double bias = pulled ? soft_.bias_rate * row.error : 0.0, before = line.impulse;
-        const double share = pulled ? soft_.mass_share : 1.0, leak = pulled ? soft_.impulse_share : 0.0;
+        const double share = pulled ? soft_.mass_scale : 1.0, leak = pulled ? soft_.impulse_scale : 0.0;
         line.impulse =
             std::clamp(before - share * (problem_.rate(line) - line.target + bias) / line.mobility - leak * before, line.least, line.most);
         problem_.push(line, line.impulse - before);
@@ -291,7 +291,7 @@ int SoftIsland::step_hard()
 
 /// Where the sub-step made energy: hard sweeps, then as much off all impulses as leaves none, and if that is not to be had, another
 /// sub-step.
-int SoftIsland::calm()
+int SoftIsland::remove_gained_energy()
 {
     constexpr int kSweeps = 2;
     if (!gains()) return 0;
@@ -348,7 +348,7 @@ void SoftIsland::bounce_points(double share)
         Point& p = problem_.points[i];
         const Contact& c = island_.contacts[i];
         if (!(c.approach > 0) || !(memory_.greatest[i] > 0) || c.restitution == 0) continue;
-        const double missing = share * c.restitution * c.approach - problem_.slip(p).z;
+        const double missing = share * c.restitution * c.approach - problem_.relative_velocity(p).z;
         if (missing <= 0) continue;
         p.impulse.z = missing / p.K(2, 2);
         problem_.push(p, {0, 0, p.impulse.z});
@@ -383,7 +383,7 @@ void SoftIsland::finish(Verdict& out)
     {
         const Point& p = problem_.points[i];
         Contact& c = island_.contacts[i];
-        const Vec3 u = problem_.slip(p), j = memory_.sum[i] + p.impulse;  // what was given back is in p
+        const Vec3 u = problem_.relative_velocity(p), j = memory_.sum[i] + p.impulse;  // what was given back is in p
 
         c.impulse = p.t1 * j.x + p.t2 * j.y + p.n * j.z;
         c.slip = std::hypot(u.x, u.y);

@@ -3,13 +3,13 @@
 /// Per sub-step of length h = step / n:
 ///
 ///   kick    v <- v + h a
-///   solve   j_n <- max(0, j_n - m_eff mass_share (u_n + bias) - impulse_share j_n)     a spring and damper, implicitly
+///   solve   j_n <- max(0, j_n - m_eff mass_scale (u_n + bias) - impulse_scale j_n)     a spring and damper, implicitly
 ///   move    x <- x + h v
 ///   relax   the same without bias: takes out the speed that pushing overlap apart put in
 ///
 /// with omega = 2 pi hertz, zeta the damping ratio, c = h omega (2 zeta + h omega):
-///   bias = omega / (2 zeta + h omega) * overlap (not faster than push_speed),  mass_share = c / (1 + c),
-///   impulse_share = 1 / (1 + c).   Gaps: bias = gap / h, hard.
+///   bias = omega / (2 zeta + h omega) * overlap (not faster than push_speed),  mass_scale = c / (1 + c),
+///   impulse_scale = 1 / (1 + c).   Gaps: bias = gap / h, hard.
 /// Bodies turn freely in a move, which keeps their energy; K is that of the attitude they have come to.
 /// Where speeds that pushed overlap apart are left over that make kinetic energy, hard sweeps follow; where those do not get it out, the
 /// sub-step is made again without pushing apart: sweeps from nothing, which only take energy, then the move.

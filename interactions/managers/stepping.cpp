@@ -73,7 +73,7 @@ double share_without_gain(const Problem& problem, std::span<const Vec3> before)
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         const Point& p = problem.points[i];
-        linear += dot(p.impulse, before[i]), square += dot(p.impulse, problem.slip(p) - before[i]);
+        linear += dot(p.impulse, before[i]), square += dot(p.impulse, problem.relative_velocity(p) - before[i]);
         size += length(p.impulse) * length(before[i]);
     }
     return linear + 0.5 * square > 1e-11 * size ? std::max(0.0, -2 * linear / square) : 1.0;
@@ -101,7 +101,7 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     if (!any_impact(problem, island)) return out;
     auto& before = memory.separations;
     before.clear();
-    for (const Point& p : problem.points) before.push_back(problem.slip(p));
+    for (const Point& p : problem.points) before.push_back(problem.relative_velocity(p));
     // Newton's law with friction may give back more than there was, and sweeps that did not get there too. A little more is
     // taken off the impulses; where it is much, less is asked for, and nothing at last.
     constexpr double kLittle = 0.9;
@@ -152,7 +152,7 @@ void store_impulses(const Problem& problem, Island& island)
         const Point& p = problem.points[i];
         Contact& c = island.contacts[i];
         c.impulse = p.t1 * p.impulse.x + p.t2 * p.impulse.y + p.n * p.impulse.z;
-        const Vec3 u = problem.slip(p);
+        const Vec3 u = problem.relative_velocity(p);
         c.slip = std::hypot(u.x, u.y);
     }
     for (const Line& line : problem.lines) island.rows[line.row].impulse = line.impulse;
@@ -194,8 +194,8 @@ Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& met
         Point& p = problem.points[i];
         // What parts by itself soon, or meets in the next step, is left to its speed: being parted it would gain height.
         const bool meets_next = i < memory.passing.size() && memory.passing[i] * island.h < -kSlow * island.size;
-        const bool leaves = c.depth > 0 && (meets_next || problem.slip(p).z * kSoon * island.h > c.depth);
-        p.least = leaves ? kFar : (c.depth - choices.slop) * (c.depth > choices.slop ? choices.parted_share : 1.0);
+        const bool leaves = c.depth > 0 && (meets_next || problem.relative_velocity(p).z * kSoon * island.h > c.depth);
+        p.least = leaves ? kFar : (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);
         worst = std::max(worst, leaves || p.K(2, 2) == 0 ? 0.0 : p.least);
     }
     for (Line& line : problem.lines)

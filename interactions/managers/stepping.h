@@ -35,8 +35,8 @@ inline constexpr double kFar = -1e30;
 struct StepMemory
 {
     Problem problem;
-    std::vector<Vec3> slips;     ///< m/s, at the start of the step
-    std::vector<Vec3> impulses;  ///< N s, of parts of the step that are over
+    std::vector<Vec3> velocities;  ///< m/s, at the start of the step
+    std::vector<Vec3> impulses;    ///< N s, of parts of the step that are over
     std::vector<double> line_impulses;
     std::vector<Vec3> separations;  ///< of impacts
     std::vector<Vec3> impacts;      ///< N s, by point; none if nothing met
@@ -56,7 +56,7 @@ struct StepChoices
     /// m: overlap that is left, and gaps that hold as if they were closed: contacts that tremble less than this keep holding.
     double slop = 0;
     /// Part of the overlap beyond that is parted in a step.
-    double parted_share = 1;
+    double correction_share = 1;
 };
 
 Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory);

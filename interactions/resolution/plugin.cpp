@@ -14,7 +14,7 @@ PLAB_PLUGIN("resolution", registrar)
         .strengths("nothing is searched for: enough where contacts stay")
         .cost("nothing")
         .limits("bodies overlap by up to speed x step when they meet, or pass through one another; times of impact are right to one step")
-        .source("time stepping without location of events; the lowest rung, to compare with");
+        .source("time stepping without location of events; the lowest algorithm, to compare with");
     registrar
         .component<BisectionRows>("Resolution/Bisection", "finds the time of impact by halving; the whole world is rewound for each trial")
         .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket of the time of impact")

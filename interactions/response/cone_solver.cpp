@@ -26,7 +26,7 @@ public:
         return Vec3{-mu_ * c * j, -mu_ * s * j, j};
     }
     /// The slip that results; to be along (c, s).
-    Vec3 slip(const Vec3& j) const { return r_ + K_ * j; }
+    Vec3 relative_velocity(const Vec3& j) const { return r_ + K_ * j; }
 
     /// Repeats "slide along the slip that results" while that settles: at once where K does not couple directions.
     std::optional<Vec3> settle(double c, double s) const;
@@ -55,7 +55,7 @@ std::optional<Vec3> Sliding::settle(double c, double s) const
     {
         const auto j = impulse(c, s);
         if (!j) return {};
-        const Vec3 u = slip(*j);
+        const Vec3 u = relative_velocity(*j);
         const double speed = std::hypot(u.x, u.y);
         if (!(speed > 0)) return {};
         const double turn = (c * u.y - s * u.x) / speed;
@@ -70,7 +70,7 @@ double Sliding::miss(double angle) const
     const double c = std::cos(angle), s = std::sin(angle);
     const auto j = impulse(c, s);
     if (!j) return NAN;
-    const Vec3 u = slip(*j);
+    const Vec3 u = relative_velocity(*j);
     return c * u.y - s * u.x;
 }
 
@@ -79,7 +79,7 @@ std::optional<Vec3> Sliding::along(double angle) const
     const double c = std::cos(angle), s = std::sin(angle);
     const auto j = impulse(c, s);
     if (!j) return {};
-    const Vec3 u = slip(*j);
+    const Vec3 u = relative_velocity(*j);
     return c * u.x + s * u.y > 0 ? j : std::nullopt;
 }
 

@@ -40,9 +40,9 @@ void touch(const StepContext& context, Row row, SurfaceColumns& surface, const B
         const ContactPoint point(c, bodies);
         if (!point.moves()) continue;
         const Vec3 u = bodies.velocity_at(c.b.index, c.point) - bodies.velocity_at(c.a.index, c.point);
-        const double parting = dot(u, c.normal);
-        const Vec3 slip = u - c.normal * parting;
-        const NormalForce n = normal(c, point.K()(2, 2), parting);
+        const double separation_speed = dot(u, c.normal);
+        const Vec3 slip = u - c.normal * separation_speed;
+        const NormalForce n = normal(c, point.K()(2, 2), separation_speed);
 
         const double k = surface.tangential_ratio[row] * n.stiffness;
         const double mobility = std::max(point.K()(0, 0), point.K()(1, 1));
@@ -123,7 +123,7 @@ void touch_penalty(const StepContext& context, Row row, PenaltyRows& rows, const
 {
     const double k = rows.stiffness[row];
     const bool pulls = rows.pulls[row];
-    const auto law = [&](const Contact& c, double mobility, double parting)
+    const auto law = [&](const Contact& c, double mobility, double separation_speed)
     {
         const double asked = pulls ? ratio_for_restitution(c.restitution)
                                    : remembered(rows.ratio_of_restitution[row], c.restitution, ratio_for_restitution_without_pull);
@@ -131,7 +131,7 @@ void touch_penalty(const StepContext& context, Row row, PenaltyRows& rows, const
         const double damping = rows.damping[row] + (ratio > 0 ? 2 * ratio * std::sqrt(k / mobility) : 0.0);
         const double spring = c.preload + k * (c.depth - c.rest_depth);
         NormalForce n;
-        n.force = spring - damping * parting;
+        n.force = spring - damping * separation_speed;
         if (!pulls) n.force = std::max(n.force, 0.0);
         n.stiffness = k;
         n.stored = 0.5 * spring * spring / k;
@@ -144,7 +144,7 @@ void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& 
                          Impact& impact)
 {
     const double k = rows.stiffness[row], exponent = rows.exponent[row];
-    const auto law = [&](const Contact& c, double mobility, double parting)
+    const auto law = [&](const Contact& c, double mobility, double separation_speed)
     {
         NormalForce n;
         const double before = c.preload > 0 ? std::pow(c.preload / k, 1 / exponent) : 0.0;
@@ -155,7 +155,7 @@ void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& 
         // What a load presses deeper than the approach could is damped as if it had come with the speed that gets that deep.
         const double speed = std::sqrt(2 * spring * x / (exponent + 1) * mobility);
         const double dissipation = rows.dissipation[row] + loss / std::max({c.approach, rows.least_speed[row], speed});
-        n.force = std::max(spring * (1 - dissipation * parting), 0.0);
+        n.force = std::max(spring * (1 - dissipation * separation_speed), 0.0);
         n.stiffness = exponent * spring / x;
         n.stored = spring * x / (exponent + 1);
         return n;

@@ -122,8 +122,9 @@ std::string ladders_of(std::string_view prefix, const std::vector<std::string>& 
     std::string rows;
     for (model::MeasuredLadder& ladder : model::measured_ladders(prefix))
     {
-        std::erase_if(ladder.rungs, [&](const auto& rung) { return std::find(names.begin(), names.end(), rung.type) == names.end(); });
-        if (ladder.rungs.size() > 1) rows += row({"`" + std::string(ladder.family) + "`", std::string(ladder.scene), ladder.text()});
+        std::erase_if(ladder.algorithms,
+                      [&](const auto& algorithm) { return std::find(names.begin(), names.end(), algorithm.type) == names.end(); });
+        if (ladder.algorithms.size() > 1) rows += row({"`" + std::string(ladder.family) + "`", std::string(ladder.scene), ladder.text()});
     }
     if (rows.empty()) return {};
     return "Measured: microseconds a step of 1/240 s, one thread, the cheapest first; `~`: within a tenth of the one before. What is "

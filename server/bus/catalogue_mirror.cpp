@@ -12,9 +12,9 @@ void CatalogueMirror::apply(const publish::CatalogueChange& change)
     const auto erase = [this](const std::string& id) { objects_.erase(id), shapes_.erase(id), interactions_.erase(id); };
     for (const std::string& id : change.gone) erase(id);
     // An id belongs to one component: one that comes back as another kind leaves its old shelf.
-    const auto put = [&](auto& shelf, const auto& entries)
+    const auto put = [&](auto& entries, const auto& entries)
     {
-        for (const auto& entry : entries) erase(entry.component), shelf.insert_or_assign(entry.component, entry);
+        for (const auto& entry : entries) erase(entry.component), entries.insert_or_assign(entry.component, entry);
     };
     put(shapes_, change.shapes), put(objects_, change.objects), put(interactions_, change.interactions);
     if (change.everything && !change.types.empty())

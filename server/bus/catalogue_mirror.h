@@ -19,13 +19,13 @@ public:
 
 private:
     template <class Entry>
-    using Shelf = std::map<std::string, Entry>;
+    using EntriesById = std::map<std::string, Entry>;
 
     bool is_there_ = false;
     publish::SceneEntry scene_;
-    Shelf<publish::ObjectEntry> objects_;
-    Shelf<publish::ShapeEntry> shapes_;
-    Shelf<publish::InteractionEntry> interactions_;
+    EntriesById<publish::ObjectEntry> objects_;
+    EntriesById<publish::ShapeEntry> shapes_;
+    EntriesById<publish::InteractionEntry> interactions_;
     std::vector<model::TypeSummary> types_;
 };
 

@@ -32,7 +32,7 @@ public:
 
     // Bus thread -------------------------------------------------------------------------------------------------------
     /// What plab-bus says of readers. True if one has come.
-    bool told(const WantsMessage& wants, bool may_forget)
+    bool receive(const WantsMessage& wants, bool may_forget)
     {
         const auto i = static_cast<std::size_t>(stream_);
         is_read_ = wants.wanted[i] != 0;

@@ -16,7 +16,7 @@ std::size_t bytes_of(const publish::Answer& answer)
     for (const simulation::SwapReport& swap : answer.reply.swaps)
     {
         bytes += sizeof swap + swap.id.size() + swap.from.size() + swap.to.size();
-        for (const simulation::FieldFate& fate : swap.fields) bytes += sizeof fate + fate.field.size();
+        for (const simulation::TransferredField& transfer : swap.fields) bytes += sizeof transfer + transfer.field.size();
     }
     return bytes;
 }

@@ -93,7 +93,7 @@ private:
     BusOptions options_;
     wire::NameLock lock_;
     StartMessage start_;
-    Bell bell_;  ///< rung by the step thread and by plab-bus
+    Bell bell_;  ///< algorithm by the step thread and by plab-bus
     std::atomic<bool> stop_{false};
     std::atomic<bool> is_lost_{false};
     std::string why_lost_;  // written once, before is_lost_
@@ -121,7 +121,7 @@ private:
     bool has_joined_ = false, is_broken_ = false, has_hung_up_ = false;
     std::string failed_;  ///< why the present plab-bus could not join
     std::promise<Result<void>> first_;
-    bool was_first_told_ = false;
+    bool was_first_received_ = false;
     CatalogueMirror mirror_;
     std::optional<AnswerMessage> answer_;  ///< waits for room
     StatusMessage status_;

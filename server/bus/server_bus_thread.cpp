@@ -57,7 +57,7 @@ void ServerBus::run()
         bell_.heard();
     }
     say_goodbye();
-    if (!was_first_told_) first_.set_value(reason("the bus was closed"));
+    if (!was_first_received_) first_.set_value(reason("the bus was closed"));
 }
 
 void ServerBus::sleep(Nanoseconds longest)
@@ -119,11 +119,11 @@ bool ServerBus::was_stopped(Clock::time_point now)
 void ServerBus::end_process(const std::string& why, Clock::time_point now)
 {
     const std::string text = failed_.empty() ? why : failed_;
-    if (!was_first_told_)
+    if (!was_first_received_)
     {
         // It was never there: open() says why, and nothing is tried again.
         first_.set_value(reason(text));
-        was_first_told_ = true, start_at_ = Clock::time_point::max();
+        was_first_received_ = true, start_at_ = Clock::time_point::max();
         process_.reset();
         return;
     }
@@ -145,10 +145,10 @@ void ServerBus::end_process(const std::string& why, Clock::time_point now)
 void ServerBus::begin_anew(Clock::time_point now)
 {
     has_joined_ = true;
-    if (!was_first_told_)
+    if (!was_first_received_)
     {
         first_.set_value({});
-        was_first_told_ = true;
+        was_first_received_ = true;
         return;
     }
     is_new_ = true, started_ = now;
@@ -241,7 +241,7 @@ void ServerBus::handle(const MessageReader::Message& message, Clock::time_point 
 void ServerBus::note_wants(const WantsMessage& wants)
 {
     bool came = false;
-    each([&](auto& feed) { came = feed.told(wants, !is_new_) || came; });
+    each([&](auto& feed) { came = feed.receive(wants, !is_new_) || came; });
     if (came) wake();
 }
 

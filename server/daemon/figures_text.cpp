@@ -8,7 +8,7 @@ namespace plab::daemon
 
 std::string number(double v) { return model::exact_text(v, "null"); }
 
-bool is_told(const world::Component& c) { return publish::is_object(c) || c.facet == Facet::Quantities; }
+bool is_shown(const world::Component& c) { return publish::is_object(c) || c.facet == Facet::Quantities; }
 
 bool is_listed(const world::World& world, std::uint32_t i)
 {

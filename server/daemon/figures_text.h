@@ -12,7 +12,7 @@ namespace plab::daemon
 std::string number(double v);
 
 /// What has motion, or values, of its own.
-bool is_told(const world::Component& component);
+bool is_shown(const world::Component& component);
 /// What stands under "interactions": solvers have their groups (--explain).
 bool is_listed(const world::World& world, std::uint32_t component);
 

@@ -27,7 +27,7 @@ int fail(const plab::Errors& errors)
     return 1;
 }
 
-int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLibrary& library, const plab::daemon::Options& options,
+int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLibrary& library, const plab::daemon::DaemonOptions& options,
               std::chrono::steady_clock::time_point start, const std::vector<std::string>& waiting = {})
 {
     auto wake = plab::daemon::Wake::make();
@@ -59,7 +59,7 @@ int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLib
 }
 
 /// --load: a run that was left goes on.
-int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::Options& options, std::chrono::steady_clock::time_point start)
+int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::DaemonOptions& options, std::chrono::steady_clock::time_point start)
 {
     auto snapshot = plab::daemon::read_snapshot(options.load, library);
     if (!snapshot) return fail(snapshot.errors());
@@ -76,7 +76,7 @@ int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::Options& op
     return run_scene(simulation, library, options, start, snapshot->waiting);
 }
 
-int carry_out(const plab::daemon::Options& options)
+int carry_out(const plab::daemon::DaemonOptions& options)
 {
     const auto start = std::chrono::steady_clock::now();
     plab::plugins::PluginLibrary library;
@@ -127,7 +127,7 @@ int carry_out(const plab::daemon::Options& options)
 
 int main(int argc, char** argv)
 {
-    plab::daemon::Options options;
+    plab::daemon::DaemonOptions options;
     if (const auto end = plab::daemon::parse_options(argc, argv, options))
     {
         std::fputs(end->text.c_str(), end->exit_code == 0 ? stdout : stderr);

@@ -45,7 +45,7 @@ std::string not_seconds(const std::string& text)
     return fine ? "" : "'" + text + "' is no number of seconds from 0 to 1e12";
 }
 
-void add_bus_options(CLI::App& app, Options& options, std::string& states, bool& no_bus)
+void add_bus_options(CLI::App& app, DaemonOptions& options, std::string& states, bool& no_bus)
 {
     const std::string group = "The bus";
     app.add_option("--name", options.name, "of this server on the bus; clients say --server NAME")->envname("PLAB_SERVER")->group(group);
@@ -59,7 +59,7 @@ void add_bus_options(CLI::App& app, Options& options, std::string& states, bool&
 }
 
 /// The reason if something about the bus does not hold.
-std::string take_bus_options(const std::string& states, bool no_bus, Options& options)
+std::string take_bus_options(const std::string& states, bool no_bus, DaemonOptions& options)
 {
     options.bus = !no_bus;
     if (states.empty()) return {};
@@ -71,7 +71,7 @@ std::string take_bus_options(const std::string& states, bool no_bus, Options& op
     return "--states is a number of frames per second up to 1e6, or all, not '" + states + "'";
 }
 
-void add_record_options(CLI::App& app, Options& o, std::string& states)
+void add_record_options(CLI::App& app, DaemonOptions& o, std::string& states)
 {
     const std::string group = "Recording";
     RecordChoice& r = o.record;
@@ -92,7 +92,7 @@ void add_record_options(CLI::App& app, Options& o, std::string& states)
         ->group(group);
 }
 
-void add_past_options(CLI::App& app, Options& o)
+void add_past_options(CLI::App& app, DaemonOptions& o)
 {
     const std::string group = "Going back";
     app.add_option("--load", o.load, "go on from the snapshot in FILE instead of a scene")->type_name("FILE")->group(group);
@@ -136,7 +136,7 @@ std::string why_not_together(const CLI::App& app, bool replay, bool shadow)
 }
 
 /// The reason if something about them does not hold.
-std::string take_past_options(const CLI::App& app, const std::string& states, Options& o)
+std::string take_past_options(const CLI::App& app, const std::string& states, DaemonOptions& o)
 {
     const bool replay = !o.replay.file.empty(), shadow = !o.shadow.id.empty();
     if (const std::string why = why_not_together(app, replay, shadow); !why.empty()) return why;
@@ -170,7 +170,7 @@ std::string take_past_options(const CLI::App& app, const std::string& states, Op
 
 }  // namespace
 
-model::CompileLimits limits_of(const Options& options)
+model::CompileLimits limits_of(const DaemonOptions& options)
 {
     model::CompileLimits limits;
     limits.components = options.max_components, limits.raised_by = "--max-components N";
@@ -205,7 +205,7 @@ Result<ScheduledOperation> parse_set(const std::string& text)
     return out;
 }
 
-std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
+std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& options)
 {
     CLI::App app{"plabd: a simulation server for interacting objects", "plabd"};
     app.footer(kExamples);

@@ -59,7 +59,7 @@ struct ScheduledOperation
     simulation::Operation operation;
 };
 
-struct Options
+struct DaemonOptions
 {
     Task task = Task::Run;
     std::string scene;
@@ -94,7 +94,7 @@ struct Options
 };
 
 /// What scenes and requests may ask for.
-model::CompileLimits limits_of(const Options& options);
+model::CompileLimits limits_of(const DaemonOptions& options);
 
 /// Fills options, or tells what to print and the exit code (0 after --help and --version, 2 for a wrong use).
 struct ParseEnd
@@ -102,7 +102,7 @@ struct ParseEnd
     int exit_code = 0;
     std::string text;
 };
-std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options);
+std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& options);
 
 /// "120:contact.response=Response/None" or without the step.
 Result<ScheduledOperation> parse_swap(const std::string& text);

@@ -112,7 +112,7 @@ std::string end_state_json(const simulation::Simulation& s)
     std::string objects, interactions;
     for (const std::uint32_t i : world.in_id_order())
     {
-        if (is_told(world.component(i)))
+        if (is_shown(world.component(i)))
             objects += (objects.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " + object_json(world, i);
         if (is_listed(world, i))
             interactions += (interactions.empty() ? "" : ",") + std::string("\n    ") + quoted(world.id_of(i)) + ": " +

@@ -42,7 +42,7 @@ Result<std::unique_ptr<record::RunLog>> RecordModule::read(const std::string& fi
     return opened;
 }
 
-record::RecordOptions record_options(const Options& options, const simulation::Simulation& simulation, model::TypeSource& types)
+record::RecordOptions record_options(const DaemonOptions& options, const simulation::Simulation& simulation, model::TypeSource& types)
 {
     record::RecordOptions out;
     const RecordChoice& r = options.record;
@@ -65,7 +65,7 @@ std::string missing_for_replay(const RecordChoice& choice)
     return out;
 }
 
-simulation::HistoryOptions history_of(const Options& options)
+simulation::HistoryOptions history_of(const DaemonOptions& options)
 {
     simulation::HistoryOptions out;
     // A server's clients may want to go back; a computation has none.

@@ -35,12 +35,12 @@ private:
     plugins::Module module_;
 };
 
-record::RecordOptions record_options(const Options& options, const simulation::Simulation& simulation, model::TypeSource& types);
+record::RecordOptions record_options(const DaemonOptions& options, const simulation::Simulation& simulation, model::TypeSource& types);
 
 /// Topics without which a recording cannot be replayed, and which this choice leaves out; "" if none.
 std::string missing_for_replay(const RecordChoice& choice);
 
-simulation::HistoryOptions history_of(const Options& options);
+simulation::HistoryOptions history_of(const DaemonOptions& options);
 
 /// A snapshot's file: written whole or not at all (a new file takes the old one's place).
 Result<void> write_snapshot(const simulation::Snapshot& snapshot, std::span<const std::string> waiting, const std::string& file);

@@ -45,7 +45,7 @@ void warn_of_another_build(record::RunLog& log, model::TypeSource& types)
 }
 
 /// --from names a step that no run has. "" if one has.
-std::string beyond_the_end(const replay::ReplayReport& report, const Options& options)
+std::string beyond_the_end(const replay::ReplayReport& report, const DaemonOptions& options)
 {
     if (!options.replay.from || report.mismatch) return {};
     std::string ends;
@@ -59,7 +59,7 @@ std::string beyond_the_end(const replay::ReplayReport& report, const Options& op
 }
 
 /// Why no hash was compared.
-std::string why_nothing(const record::RunLog& log, const replay::ReplayReport& report, const Options& options)
+std::string why_nothing(const record::RunLog& log, const replay::ReplayReport& report, const DaemonOptions& options)
 {
     if (report.steps > 0) return "the recording has no hashes of these steps";
     if (const std::string topics = log.origin("topics"); !topics.empty() && topics.find("plab/hashes") == std::string::npos)
@@ -72,7 +72,7 @@ std::string why_nothing(const record::RunLog& log, const replay::ReplayReport& r
 }
 
 /// Interrupted is not verified.
-void print_how_far(const replay::ReplayReport& report, const Options& options)
+void print_how_far(const replay::ReplayReport& report, const DaemonOptions& options)
 {
     if (report.made.empty())
         std::printf("interrupted by %s before the first step", program::name_of_interruption().c_str());
@@ -85,7 +85,7 @@ void print_how_far(const replay::ReplayReport& report, const Options& options)
         std::printf(": the rest was not made again\n");
 }
 
-void print_report(const replay::ReplayReport& report, const Options& options)
+void print_report(const replay::ReplayReport& report, const DaemonOptions& options)
 {
     std::printf("%s: %" PRIu64 " run%s, %" PRId64 " steps made again, %" PRIu64 " requests\n", options.replay.file.c_str(), report.runs,
                 report.runs == 1 ? "" : "s", report.steps, report.requests);
@@ -103,7 +103,7 @@ void print_report(const replay::ReplayReport& report, const Options& options)
 class ReplayProgress
 {
 public:
-    explicit ReplayProgress(const Options& options)
+    explicit ReplayProgress(const DaemonOptions& options)
         : line_(options.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal), verifies_(options.replay.verify)
     {
     }
@@ -124,7 +124,7 @@ private:
     std::int64_t steps_ = 0;
 };
 
-int replay_recording(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop,
+int replay_recording(plugins::PluginLibrary& library, const DaemonOptions& options, const std::atomic<bool>& stop,
                      const Interruption& interruption)
 {
     program::catch_signals();

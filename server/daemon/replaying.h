@@ -11,7 +11,7 @@ namespace plab::daemon
 
 /// `interruption` gives up the step in work. Returns the exit code: 0 done, and with --verify all hashes are the same; 1 they differ, or it
 /// cannot be replayed.
-int replay_recording(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop,
+int replay_recording(plugins::PluginLibrary& library, const DaemonOptions& options, const std::atomic<bool>& stop,
                      const Interruption& interruption);
 
 }  // namespace plab::daemon

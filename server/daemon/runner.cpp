@@ -49,7 +49,7 @@ void print_mapped_libraries()
     for (const std::string& library : libraries) std::printf("%s\n", library.c_str());
 }
 
-std::string footer(const Options& options)
+std::string footer(const DaemonOptions& options)
 {
     if (!options.bus) return {};
     const std::string ctl = options.name == "plab" ? "plabctl" : "plabctl --server " + options.name;
@@ -60,7 +60,7 @@ std::string footer(const Options& options)
 class Run
 {
 public:
-    Run(simulation::Simulation& simulation, Service& service, const Options& options, const Wake& wake, const std::atomic<bool>& stop)
+    Run(simulation::Simulation& simulation, Service& service, const DaemonOptions& options, const Wake& wake, const std::atomic<bool>& stop)
         : s_(simulation), service_(service), options_(options), wake_(wake), stop_(stop), table_(options.table, footer(options))
     {
     }
@@ -83,17 +83,17 @@ private:
 
     simulation::Simulation& s_;
     Service& service_;
-    const Options& options_;
+    const DaemonOptions& options_;
     const Wake& wake_;
     const std::atomic<bool>& stop_;
     std::unique_ptr<Trace> trace_;
     LiveTable table_;
     Pacer pacer_;
     RateMeter meter_;
-    Clock::time_point told_{}, status_{};
+    Clock::time_point logged_at_{}, status_{};
     bool shown_paused_ = false;
     std::uint64_t shown_answers_ = 0;
-    double told_slip_ = 0;
+    double logged_slip_ = 0;
     bool fine_ = true;
 };
 
@@ -162,9 +162,9 @@ void Run::tell_rate(Clock::time_point now)
     status_ = now, shown_paused_ = s_.paused(), shown_answers_ = service_.answered();
     meter_.sample(s_.time(), s_.run(), now);
     service_.publish_status(meter_.factor(), pacer_.slipped(), pacer_.slipping(now));
-    if (pacer_.slipped() == told_slip_ || now - told_ < std::chrono::seconds(1)) return;
-    told_ = now, told_slip_ = pacer_.slipped();
-    spdlog::warn("too slow for the rate: {:.3f} s slipped so far", told_slip_);
+    if (pacer_.slipped() == logged_slip_ || now - logged_at_ < std::chrono::seconds(1)) return;
+    logged_at_ = now, logged_slip_ = pacer_.slipped();
+    spdlog::warn("too slow for the rate: {:.3f} s slipped so far", logged_slip_);
 }
 
 /// The run ends where the step began; a shutdown that did it is answered.
@@ -249,7 +249,7 @@ int Run::go()
 
 }  // namespace
 
-int run(simulation::Simulation& simulation, Service& service, const Options& options, const Wake& wake, const std::atomic<bool>& stop)
+int run(simulation::Simulation& simulation, Service& service, const DaemonOptions& options, const Wake& wake, const std::atomic<bool>& stop)
 {
     return Run(simulation, service, options, wake, stop).go();
 }

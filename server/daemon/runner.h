@@ -12,6 +12,7 @@ namespace plab::daemon
 
 /// Returns the exit code. `stop` ends the run at the next step boundary; whoever sets it wakes `wake`, and asks the interruption that
 /// the simulation obeys.
-int run(simulation::Simulation& simulation, Service& service, const Options& options, const Wake& wake, const std::atomic<bool>& stop);
+int run(simulation::Simulation& simulation, Service& service, const DaemonOptions& options, const Wake& wake,
+        const std::atomic<bool>& stop);
 
 }  // namespace plab::daemon

@@ -33,7 +33,7 @@ std::string one_line(std::string text)
 void log_swap(const simulation::Reply& r, const simulation::SwapReport& swap)
 {
     std::string fields;
-    for (const simulation::FieldFate& f : swap.fields) fields += fmt::format(" {} {}", f.field, simulation::name_of(f.fate));
+    for (const simulation::TransferredField& f : swap.fields) fields += fmt::format(" {} {}", f.field, simulation::name_of(f.transfer));
     spdlog::info("step {}: {} {} -> {}; pause {:.1f} us;{}", r.step, swap.id, swap.from, swap.to, r.pause_ns * 1e-3, fields);
     if (std::isnan(swap.with_new.energy)) return;  // not tried
     const std::string costs = simulation::text_of_costs(r.trial);
@@ -41,7 +41,7 @@ void log_swap(const simulation::Reply& r, const simulation::SwapReport& swap)
                  swap.with_new.energy, swap.with_old.energy, swap.with_new.error, swap.with_old.error, costs.empty() ? "" : "; " + costs);
 }
 
-publish::CollectorOptions collector_options(const Options& options)
+publish::CollectorOptions collector_options(const DaemonOptions& options)
 {
     publish::CollectorOptions out;
     out.states_per_second = options.states_per_second;
@@ -51,7 +51,7 @@ publish::CollectorOptions collector_options(const Options& options)
 
 }  // namespace
 
-Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const Options& options)
+Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const DaemonOptions& options)
     : simulation_(&simulation),
       library_(&library),
       scene_file_(options.scene.empty() ? simulation.world().scene().file : options.scene),
@@ -66,7 +66,7 @@ Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& lib
 {
 }
 
-Result<void> Service::open_bus(const Options& options, const Wake& wake, Interruption& interruption)
+Result<void> Service::open_bus(const DaemonOptions& options, const Wake& wake, Interruption& interruption)
 {
     auto module = plugins::open_module("bus", bus::kEntryName, plugins::PluginLibrary::default_directories());
     if (!module) return module.errors();

@@ -19,13 +19,13 @@ namespace plab::daemon
 class Service final : public ImageSink
 {
 public:
-    Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const Options& options);
+    Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const DaemonOptions& options);
 
     /// Loads bus.so and joins. `wake` must outlive this, and `interruption`, which a client's shutdown asks.
-    Result<void> open_bus(const Options& options, const Wake& wake, Interruption& interruption);
+    Result<void> open_bus(const DaemonOptions& options, const Wake& wake, Interruption& interruption);
 
     /// Loads record.so and begins to write the recording that the options name.
-    Result<void> open_recording(const Options& options);
+    Result<void> open_recording(const DaemonOptions& options);
 
     /// A request of the command line.
     void post(simulation::Request request);

@@ -8,7 +8,7 @@
 namespace plab::daemon
 {
 
-Result<void> Service::open_recording(const Options& options)
+Result<void> Service::open_recording(const DaemonOptions& options)
 {
     auto module = RecordModule::load_for_writing();
     if (!module) return module.errors();

@@ -128,7 +128,7 @@ struct Outcome
     std::int64_t steps = 0;
     Tick from = 0;
     double begin = 0;  ///< s
-    std::vector<Gap> course;
+    std::vector<Gap> trajectory;
 };
 
 nlohmann::json json_of(const Outcome& o, const Future& without, const Future& with, const ShadowChoice& choice)
@@ -141,24 +141,25 @@ nlohmann::json json_of(const Outcome& o, const Future& without, const Future& wi
                     {"largest_error", f.worst_error},
                     {"events", f.events}};
     };
-    json course = json::array();
-    for (const Gap& g : o.course)
-        course.push_back({{"time", g.time},
-                          {"distance", g.distance},
-                          {"farthest", g.farthest},
-                          {"turn", g.turn},
-                          {"most_turned", g.most_turned},
-                          {"energy_without", g.energy_without},
-                          {"energy_with", g.energy_with}});
+    json trajectory = json::array();
+    for (const Gap& g : o.trajectory)
+        trajectory.push_back({{"time", g.time},
+                              {"distance", g.distance},
+                              {"farthest", g.farthest},
+                              {"turn", g.turn},
+                              {"most_turned", g.most_turned},
+                              {"energy_without", g.energy_without},
+                              {"energy_with", g.energy_with}});
     json fields = json::array();
     std::string from;
     for (const simulation::SwapReport& swap : o.reply.swaps)
     {
         from = swap.from;
-        for (const simulation::FieldFate& f : swap.fields) fields.push_back({{"field", f.field}, {"fate", simulation::name_of(f.fate)}});
+        for (const simulation::TransferredField& f : swap.fields)
+            fields.push_back({{"field", f.field}, {"transfer", simulation::name_of(f.transfer)}});
     }
     return {{"component", choice.id}, {"from", from},     {"to", choice.type},          {"step", o.from},       {"time", o.begin},
-            {"steps", o.steps},       {"fields", fields}, {"without", future(without)}, {"with", future(with)}, {"course", course}};
+            {"steps", o.steps},       {"fields", fields}, {"without", future(without)}, {"with", future(with)}, {"course", trajectory}};
 }
 
 void print(const Outcome& o, const Future& without, const Future& with, const ShadowChoice& choice)
@@ -172,14 +173,15 @@ void print(const Outcome& o, const Future& without, const Future& with, const Sh
     std::printf("%-24s %14.3f %14.3f\n", "mean, with rare events", without.cpu_ns / steps * 1e-3, with.cpu_ns / steps * 1e-3);
     std::printf("%-24s %14.3g %14.3g\n", "largest error", without.worst_error, with.worst_error);
     std::printf("\n%12s %14s  %-20s %14s  %-20s %14s\n", "t (s)", "apart (m)", "by", "turned (rad)", "by", "energy (J)");
-    for (const Gap& g : o.course)
+    for (const Gap& g : o.trajectory)
         std::printf("%12.6g %14.6g  %-20s %14.6g  %-20s %+14.6g\n", g.time, g.distance, g.farthest.c_str(), g.turn, g.most_turned.c_str(),
                     g.energy_with - g.energy_without);
 }
 
 }  // namespace
 
-int run_shadow(plugins::PluginLibrary& library, const Options& options, const std::atomic<bool>& stop, const Interruption& interruption)
+int run_shadow(plugins::PluginLibrary& library, const DaemonOptions& options, const std::atomic<bool>& stop,
+               const Interruption& interruption)
 {
     auto snapshot = read_snapshot(options.load, library);
     if (!snapshot) return fail(snapshot.errors());
@@ -211,7 +213,7 @@ int run_shadow(plugins::PluginLibrary& library, const Options& options, const st
         (turn ? with : without).go(piece, options.shadow.id);
         if (gave_up()) break;
         outcome.steps += piece;
-        if (outcome.steps % every == 0 || outcome.steps == 1) outcome.course.push_back(gap_between(without, with));
+        if (outcome.steps % every == 0 || outcome.steps == 1) outcome.trajectory.push_back(gap_between(without, with));
     }
     progress.clear();
     const bool is_cut = outcome.steps < steps;

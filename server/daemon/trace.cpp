@@ -84,7 +84,7 @@ Result<std::unique_ptr<Trace>> Trace::open(const std::string& file, const simula
     std::string header = "time,step,hash,energy,kinetic,momentum_x,momentum_y,momentum_z";
     const world::World& world = s.world();
     for (const std::uint32_t i : world.in_id_order())
-        if (is_told(world.component(i)))
+        if (is_shown(world.component(i)))
             for (const std::string& field : fields_of_object(world.component(i))) trace->add(s, i, field, false, header);
     for (const std::uint32_t i : world.in_id_order())
     {
@@ -109,7 +109,7 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     {
         // Who is gone, or has been exchanged for a type without that output, leaves its columns empty.
         const std::uint32_t i = s.world().find(c.component);
-        const bool there = i != kNoIndex && (c.output ? is_listed(s.world(), i) : is_told(s.world().component(i)));
+        const bool there = i != kNoIndex && (c.output ? is_listed(s.world(), i) : is_shown(s.world().component(i)));
         const bool known = there && (!c.output || c.field == kWork || s.world().table_of(i).schema().find_field(c.field));
         const std::vector<double> values = known ? numbers_of(value_of(s, i, c.field)) : std::vector<double>{};
         for (std::size_t k = 0; k < c.count; ++k) row += "," + (k < values.size() ? number(values[k]) : std::string());

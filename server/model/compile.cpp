@@ -98,14 +98,14 @@ Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const S
     read_settings(c);
     declare_existing(c);
     declare_components(c);
-    if (c.limit_told) return c.report.finish(all_ids(c), blueprint.file);  // what follows from it says nothing
+    if (c.limit_reported) return c.report.finish(all_ids(c), blueprint.file);  // what follows from it says nothing
     link_references(c);
     settle_solver(c);
     collect_commands(c);
     gather_fields(c);
     apply_command_parameters(c, false);
     form_parts(c);
-    if (c.limit_told) return c.report.finish(all_ids(c), blueprint.file);
+    if (c.limit_reported) return c.report.finish(all_ids(c), blueprint.file);
     apply_command_parameters(c, true);
     resolve_roles(c);
     check_roles(c);

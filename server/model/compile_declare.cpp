@@ -36,7 +36,7 @@ bool is_alias(const ComponentNode& node)
 
 void declare(Compilation& c, const ComponentNode& node, std::size_t parent, const Cell* cell)
 {
-    if (c.limit_told || too_many(c, 1, node.where, node.id.empty() ? "component" : node.id)) return;
+    if (c.limit_reported || too_many(c, 1, node.where, node.id.empty() ? "component" : node.id)) return;
     Draft d;
     d.id = component_id(cell, node.id);
     d.name = node.name;
@@ -85,7 +85,7 @@ void declare_repeat(Compilation& c, const RepeatNode& node)
     // Three counts of at most 1e6 each: the product of more than one cell's components would not fit 64 bits.
     const bool overflows = repeat->cells() > std::numeric_limits<std::size_t>::max() / 16 / per_cell;
     const std::size_t wanted = overflows ? std::numeric_limits<std::size_t>::max() / 16 : repeat->cells() * per_cell;
-    if (c.limit_told || too_many(c, wanted, node.where, "repeat")) return;
+    if (c.limit_reported || too_many(c, wanted, node.where, "repeat")) return;
     std::size_t group = kNone;
     if (!repeat->id.empty())
     {
@@ -182,7 +182,7 @@ bool too_many(Compilation& c, std::size_t more, const SourceLocation& where, con
     if (before > 0 && more > 1) why += " beside the " + std::to_string(before) + " before it";
     why += ": a scene has at most " + std::to_string(most);
     if (!c.limits.raised_by.empty()) why += " (" + c.limits.raised_by + " raises that)";
-    if (!std::exchange(c.limit_told, true)) c.report.add(where, element, why);
+    if (!std::exchange(c.limit_reported, true)) c.report.add(where, element, why);
     return true;
 }
 

@@ -185,7 +185,7 @@ struct Compilation
     SceneSettings settings;
     SourceLocation solver_place;
     bool solver_broken = false;
-    bool limit_told = false;  ///< too many components: said once, at the first that has no room
+    bool limit_reported = false;  ///< too many components: said once, at the first that has no room
     Directory directory;
     std::deque<Cell> cells;
     std::deque<Names> repeated_names;

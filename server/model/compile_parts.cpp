@@ -184,7 +184,7 @@ void make_part(Compilation& c, std::size_t i, std::size_t k, const std::string& 
     given.may_be_type = false;
     given.where = where;
     given.references.assign(1, {part.id, where});
-    if (c.limit_told || too_many(c, 1, where, part.id)) return;
+    if (c.limit_reported || too_many(c, 1, where, part.id)) return;
     bind_type(c, add_draft(c, std::move(part)));
 }
 

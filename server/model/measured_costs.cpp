@@ -31,8 +31,8 @@ MeasuredLadder ladder_of(const MeasuredFamily& family, std::size_t kind)
 {
     MeasuredLadder out{family.prefix, family.scenes[kind], {}};
     for (const MeasuredCost& m : kMeasuredCosts)
-        if (m.type.starts_with(family.prefix) && cost_in(m, kind) >= 0) out.rungs.push_back({m.type, cost_in(m, kind)});
-    std::stable_sort(out.rungs.begin(), out.rungs.end(), [](const auto& a, const auto& b) { return a.us < b.us; });
+        if (m.type.starts_with(family.prefix) && cost_in(m, kind) >= 0) out.algorithms.push_back({m.type, cost_in(m, kind)});
+    std::stable_sort(out.algorithms.begin(), out.algorithms.end(), [](const auto& a, const auto& b) { return a.us < b.us; });
     return out;
 }
 
@@ -40,18 +40,19 @@ MeasuredLadder ladder_of(const MeasuredFamily& family, std::size_t kind)
 
 std::size_t MeasuredLadder::place_of(std::string_view type) const
 {
-    const auto it = std::find_if(rungs.begin(), rungs.end(), [&](const Rung& r) { return r.type == type; });
-    if (it == rungs.end()) return 0;
-    return 1 + static_cast<std::size_t>(std::count_if(rungs.begin(), rungs.end(), [&](const Rung& r) { return r.us * kAlike < it->us; }));
+    const auto it = std::find_if(algorithms.begin(), algorithms.end(), [&](const Algorithm& r) { return r.type == type; });
+    if (it == algorithms.end()) return 0;
+    return 1 + static_cast<std::size_t>(
+                   std::count_if(algorithms.begin(), algorithms.end(), [&](const Algorithm& r) { return r.us * kAlike < it->us; }));
 }
 
 std::string MeasuredLadder::text() const
 {
     std::string out;
-    for (std::size_t k = 0; k < rungs.size(); ++k)
+    for (std::size_t k = 0; k < algorithms.size(); ++k)
     {
-        if (k > 0) out += rungs[k].us > kAlike * rungs[k - 1].us ? " < " : " ~ ";
-        out += "`" + std::string(rungs[k].type.substr(family.size())) + "` " + figure(rungs[k].us);
+        if (k > 0) out += algorithms[k].us > kAlike * algorithms[k - 1].us ? " < " : " ~ ";
+        out += "`" + std::string(algorithms[k].type.substr(family.size())) + "` " + figure(algorithms[k].us);
     }
     return out;
 }
@@ -79,7 +80,7 @@ std::string measured_cost_of(std::string_view type)
                 out += kind > 0 ? ", " : "";
                 out += place == 0 ? "refused"
                                   : figure(cost_in(m, kind)) + (cost_in(m, kind) == kDear ? " (" : " us (") + ordinal(place) + " of " +
-                                        std::to_string(ladder.rungs.size()) + ")";
+                                        std::to_string(ladder.algorithms.size()) + ")";
                 out += " for " + std::string(ladder.scene);
             }
             return out;

@@ -1,4 +1,4 @@
-/// What a step costs with each algorithm, by kind of scene: measured, not promised. Renewed by build/bin/bench_rungs --measured, whose
+/// What a step costs with each algorithm, by kind of scene: measured, not promised. Renewed by build/bin/bench_algorithms --measured, whose
 /// output takes the place of the rows below.
 #pragma once
 
@@ -70,13 +70,13 @@ inline constexpr MeasuredFamily kMeasuredFamilies[] = {
 /// A family's types in one kind of scene, cheapest first; those that are refused there are left out.
 struct MeasuredLadder
 {
-    struct Rung
+    struct Algorithm
     {
         std::string_view type;
         double us = 0;
     };
     std::string_view family, scene;
-    std::vector<Rung> rungs;
+    std::vector<Algorithm> algorithms;
 
     /// From 1: as many types cost less than this one, by more than a tenth. 0: it is not in the ladder.
     std::size_t place_of(std::string_view type) const;

@@ -73,8 +73,8 @@ std::vector<model::TypeSummary> PluginLibrary::summaries() const
             out.push_back(model::summary_of(*type));
             continue;
         }
-        const std::vector<model::TypeSummary>& told = homes_.at(name).front()->summaries;
-        out.push_back(*std::lower_bound(told.begin(), told.end(), name, [](const auto& t, const std::string& n) { return t.name < n; }));
+        const std::vector<model::TypeSummary>& known = homes_.at(name).front()->summaries;
+        out.push_back(*std::lower_bound(known.begin(), known.end(), name, [](const auto& t, const std::string& n) { return t.name < n; }));
     }
     return out;
 }

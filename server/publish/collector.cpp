@@ -40,7 +40,7 @@ Collector::Collector(const CollectorOptions& options, std::vector<model::TypeSum
 void Collector::attach(Observer& observer)
 {
     watchers_.emplace_back().observer = &observer;
-    told_at_ = 0;
+    published_at_ = 0;
 }
 
 /// Whether somebody watches the stream who has not seen anything of it yet.
@@ -242,11 +242,11 @@ void Collector::note(const simulation::Simulation& s, EventRecord event)
 void Collector::status(const Status& status)
 {
     const Nanoseconds now = monotonic_now();
-    if (told_at_ != 0 && now - told_at_ < kSecond && matter_of(status) == matter_of(told_)) return;
-    told_ = status, told_at_ = now;
-    told_.states_per_second = options_.states_per_second;
-    told_.last_event = last_event(), told_.last_collision = last_collision();
-    for (const Watcher& w : watchers_) w.observer->status(told_);
+    if (published_at_ != 0 && now - published_at_ < kSecond && matter_of(status) == matter_of(published_)) return;
+    published_ = status, published_at_ = now;
+    published_.states_per_second = options_.states_per_second;
+    published_.last_event = last_event(), published_.last_collision = last_collision();
+    for (const Watcher& w : watchers_) w.observer->status(published_);
 }
 
 }  // namespace plab::publish

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "publish/catalogue.h"
+#include "publish/catalogue_tracker.h"
 #include "publish/happenings.h"
 #include "publish/observer.h"
 #include "publish/pace.h"
@@ -88,7 +88,7 @@ private:
     void begin_run(const simulation::Simulation& simulation);
 
     CollectorOptions options_;
-    Catalogue catalogue_;
+    CatalogueTracker catalogue_;
     Sampler sampler_;
     std::vector<Watcher> watchers_;
     Pace states_, metrics_, scripted_, snapshots_;
@@ -96,8 +96,8 @@ private:
     Nanoseconds sampled_ = 0;     ///< when metrics went out last
     bool metrics_asked_ = false;  ///< out of turn
     std::uint64_t next_event_ = 1, next_collision_ = 1, next_journal_ = 1;
-    Status told_;
-    Nanoseconds told_at_ = 0;
+    Status published_;
+    Nanoseconds published_at_ = 0;
 };
 
 }  // namespace plab::publish

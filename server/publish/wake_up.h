@@ -21,9 +21,9 @@ public:
     /// Never waits. Costs a system call only for the first ring since the sleeper woke.
     void ring()
     {
-        if (!rung_.exchange(true, std::memory_order_acq_rel)) (void)sem_post(&semaphore_);
+        if (!algorithm_.exchange(true, std::memory_order_acq_rel)) (void)sem_post(&semaphore_);
     }
-    /// Until a ring, or for so long. What was rung for before this returns is seen by what follows it.
+    /// Until a ring, or for so long. What was algorithm for before this returns is seen by what follows it.
     void sleep(std::chrono::nanoseconds longest)
     {
         timespec end{};
@@ -32,12 +32,12 @@ public:
         end.tv_sec += static_cast<std::time_t>(ns / 1'000'000'000), end.tv_nsec = static_cast<long>(ns % 1'000'000'000);
         // An interrupted wait is an early pass, which does no harm.
         (void)sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &end);
-        (void)rung_.exchange(false, std::memory_order_acq_rel);
+        (void)algorithm_.exchange(false, std::memory_order_acq_rel);
     }
 
 private:
     sem_t semaphore_{};
-    std::atomic<bool> rung_{false};
+    std::atomic<bool> algorithm_{false};
 };
 
 }  // namespace plab::publish

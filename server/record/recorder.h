@@ -81,7 +81,7 @@ private:
     recording::Losses lost_;
 
     // Writer's.
-    recording::Clock::time_point tried_{}, told_{};
+    recording::Clock::time_point tried_{}, warned_at_{};
     bool in_trouble_ = false;
     bool closed_ = false;
     std::optional<Error> close_error_;

@@ -87,8 +87,8 @@ void Recorder::look_after_disk(recording::Clock::time_point now)
         in_trouble_ = false;
         say("recording " + options_.file + " goes on: the disk takes writes again");
     }
-    if (now - told_ < kTell) return;
-    told_ = now;
+    if (now - warned_at_ < kTell) return;
+    warned_at_ = now;
     tell_progress();
 }
 

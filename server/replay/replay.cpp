@@ -167,7 +167,7 @@ Result<void> Replay::ask_what_is_due()
         text.operations = entry.operations;
         auto wanted = control::wanted_of(text, *types_, s_->limits());
         if (!wanted) return wanted.errors();
-        if (wanted->shutdown || !simulation::concerns_the_course(wanted->request)) continue;
+        if (wanted->shutdown || !simulation::affects_the_run(wanted->request)) continue;
         // It took effect, whatever its trial came to, which the clock may have decided.
         wanted->request.trial.budget = simulation::TrialChoice::Budget::None;
         const simulation::Reply reply = s_->carry_out_now(wanted->request);

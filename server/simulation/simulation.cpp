@@ -101,7 +101,7 @@ Reply Simulation::carry_out(const Request& request)
         return reply;
     }
     Reply done = Transaction(*this, request).run();
-    if (done.done && concerns_the_course(request)) watch_->begin_anew();
+    if (done.done && affects_the_run(request)) watch_->begin_anew();
     if (done.done) history_->note(*this, request);
     return done;
 }

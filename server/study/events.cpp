@@ -65,10 +65,10 @@ void align(const Times& run, const Times& reference, ContactFigures& out)
 
 using ByPair = std::map<std::pair<std::string, std::string>, Times>;
 
-ByPair impacts_by_pair(const std::vector<Touch>& contacts)
+ByPair impacts_by_pair(const std::vector<RecordedContact>& contacts)
 {
     ByPair out;
-    for (const Touch& c : contacts)
+    for (const RecordedContact& c : contacts)
         if (c.kind == "contact.impact")
         {
             // Several points of one impact are one event.
@@ -80,7 +80,7 @@ ByPair impacts_by_pair(const std::vector<Touch>& contacts)
 
 }  // namespace
 
-ContactFigures compare_contacts(const std::vector<Touch>& run, const std::vector<Touch>& reference)
+ContactFigures compare_contacts(const std::vector<RecordedContact>& run, const std::vector<RecordedContact>& reference)
 {
     ContactFigures out;
     out.known = true;

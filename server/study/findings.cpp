@@ -41,7 +41,7 @@ void tell_front(const StudyResult& r, std::vector<std::string>& out)
     out.push_back(best.combination.label() +
                   (limit ? " is the cheapest of those without an error that can be told: " : " is the most accurate: ") + digits_of(best) +
                   " at " + cost_of(best) + " of CPU time per simulated second.");
-    double told = 0;
+    double compared = 0;
     for (const double wanted : {2.0, 4.0, 6.0, 9.0, 12.0})
     {
         const Point* cheapest = nullptr;
@@ -51,40 +51,41 @@ void tell_front(const StudyResult& r, std::vector<std::string>& out)
             if (!usable(p) || digits(p.error()) < wanted) continue;
             if (!cheapest || p.cpu_per_second() < cheapest->cpu_per_second()) cheapest = &p;
         }
-        if (!cheapest || cheapest->cpu_per_second() == told || cheapest == &best) continue;
+        if (!cheapest || cheapest->cpu_per_second() == compared || cheapest == &best) continue;
         for (const Point& p : r.points)
-            if (usable(p) && digits(p.error()) >= wanted && p.combination.rung != cheapest->combination.rung &&
+            if (usable(p) && digits(p.error()) >= wanted && p.combination.algorithm != cheapest->combination.algorithm &&
                 (!second || p.cpu_per_second() < second->cpu_per_second()))
                 second = &p;
-        told = cheapest->cpu_per_second();
+        compared = cheapest->cpu_per_second();
         std::string line = "For " + one_decimal(wanted).substr(0, one_decimal(wanted).size() - 2) + " digits take " +
                            cheapest->combination.label() + ": " + digits_of(*cheapest) + " at " + cost_of(*cheapest) +
                            " per simulated second";
         if (second)
-            line += "; the next rung, " + second->combination.label() + ", costs " +
+            line += "; the next algorithm, " + second->combination.label() + ", costs " +
                     one_decimal(second->cpu_per_second() / cheapest->cpu_per_second()) + " times as much";
         out.push_back(line + ".");
     }
 }
 
-/// Rungs that stand nowhere on the front.
+/// Algorithms that stand nowhere on the front.
 void tell_losers(const StudyResult& r, std::vector<std::string>& out)
 {
     const std::vector<std::size_t> front = plot::pareto_front(r);
     std::vector<std::string> losers;
-    for (const std::string& rung : plot::rungs_of(r))
+    for (const std::string& algorithm : plot::algorithms_of(r))
     {
-        const bool there = std::any_of(front.begin(), front.end(), [&](std::size_t i) { return r.points[i].combination.rung == rung; });
-        const bool runs =
-            std::any_of(r.points.begin(), r.points.end(), [&](const Point& p) { return p.combination.rung == rung && usable(p); });
-        if (!there && runs) losers.push_back(rung);
+        const bool there =
+            std::any_of(front.begin(), front.end(), [&](std::size_t i) { return r.points[i].combination.algorithm == algorithm; });
+        const bool runs = std::any_of(r.points.begin(), r.points.end(),
+                                      [&](const Point& p) { return p.combination.algorithm == algorithm && usable(p); });
+        if (!there && runs) losers.push_back(algorithm);
     }
     if (losers.empty() || front.empty()) return;
     std::string names;
     for (std::size_t i = 0; i < losers.size(); ++i) names += (i == 0 ? "" : i + 1 == losers.size() ? " and " : ", ") + losers[i];
     const bool one = losers.size() == 1;
     out.push_back(names + (one ? " is" : " are") + " never the best choice here: at each of " + (one ? "its" : "their") +
-                  " costs another rung has an error no larger.");
+                  " costs another algorithm has an error no larger.");
 }
 
 /// Observed orders, from neighbouring step lengths well above round-off and the reference's uncertainty.
@@ -94,15 +95,15 @@ void tell_orders(const StudyResult& r, std::vector<std::string>& out)
     for (const Distance& u : r.reference.uncertainty)
         if (u.series > 0) floor = std::max(floor, 10 * u.series);
     std::string line;
-    for (const std::string& rung : plot::rungs_of(r))
+    for (const std::string& algorithm : plot::algorithms_of(r))
     {
         std::vector<const Point*> points;
         for (const Point& p : r.points)
-            if (p.combination.rung == rung && usable(p) && p.error() > floor) points.push_back(&p);
+            if (p.combination.algorithm == algorithm && usable(p) && p.error() > floor) points.push_back(&p);
         std::sort(points.begin(), points.end(), [](const Point* a, const Point* b) { return a->record.dt < b->record.dt; });
         if (points.size() < 2 || points[0]->record.dt == points[1]->record.dt) continue;
         const double order = std::log(points[1]->error() / points[0]->error()) / std::log(points[1]->record.dt / points[0]->record.dt);
-        line += (line.empty() ? "" : "; ") + rung + " " + (order > 0.05 ? one_decimal(order) : "none");
+        line += (line.empty() ? "" : "; ") + algorithm + " " + (order > 0.05 ? one_decimal(order) : "none");
     }
     if (!line.empty()) out.push_back("Observed order of convergence, from the two shortest steps above round-off: " + line + ".");
 }
@@ -151,8 +152,8 @@ void tell_energy(const StudyResult& r, std::vector<std::string>& out)
     if (!best) return;
     const std::string all = count > 1 ? " by all" : "";
     if (worst->energy_drift <= plot::kRoundOff) return out.push_back("Energy is kept to round-off" + all + ".");
-    const auto told = [](const Point* p) { return short_number(p->energy_drift) + " (" + p->combination.label() + ")"; };
-    std::string range = count == 1 ? told(best) : "from " + told(best) + " to " + told(worst);
+    const auto figure = [](const Point* p) { return short_number(p->energy_drift) + " (" + p->combination.label() + ")"; };
+    std::string range = count == 1 ? figure(best) : "from " + figure(best) + " to " + figure(worst);
     if (count > 1 && best->energy_drift == worst->energy_drift) range = short_number(best->energy_drift) + all;
     out.push_back("Energy that nobody put in, beside the largest there was: " + range + ".");
 }

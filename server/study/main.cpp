@@ -27,7 +27,7 @@ int fail(const Errors& errors, int code = 1)
     return program::is_interrupted() ? program::code_of_interruption() : code;
 }
 
-program::ProgressTo progress_to(const study::Options& options)
+program::ProgressTo progress_to(const study::StudyOptions& options)
 {
     return options.quiet ? program::ProgressTo::Nowhere : options.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal;
 }
@@ -97,10 +97,10 @@ int list_suite(const std::vector<study::SuiteLine>& lines, int repeat)
     return 0;
 }
 
-study::Plan plan_of(const study::Options& options, model::SceneSpec scene)
+study::Plan plan_of(const study::StudyOptions& options, model::SceneSpec scene)
 {
     study::Plan plan;
-    plan.scene = std::move(scene), plan.command = options.command, plan.combinations = study::combine(options.rungs, options.varied);
+    plan.scene = std::move(scene), plan.command = options.command, plan.combinations = study::combine(options.algorithms, options.varied);
     plan.reference = options.reference, plan.repeat = options.repeat, plan.scales = options.scales;
     plan.run.until = options.until, plan.run.quantities = options.quantities, plan.swaps = options.swaps;
     plan.run.floor = options.floor, plan.run.budget = options.budget, plan.run.allocations = &study::allocations;
@@ -114,7 +114,7 @@ void print_findings(const std::vector<std::string>& sentences, const std::string
     std::printf("%s/report.html\n", folder.c_str());
 }
 
-int run_suite(const study::Options& options, model::TypeSource& types)
+int run_suite(const study::StudyOptions& options, model::TypeSource& types)
 {
     auto suite = study::read_suite(options.scene);
     if (!suite) return fail(suite.errors());
@@ -134,7 +134,7 @@ int run_suite(const study::Options& options, model::TypeSource& types)
     return 0;
 }
 
-int carry_out(const study::Options& options)
+int carry_out(const study::StudyOptions& options)
 {
     plugins::PluginLibrary library;
     for (const Error& e : library.problems()) std::fprintf(stderr, "plab-study: %s\n", e.text().c_str());
@@ -160,7 +160,7 @@ int carry_out(const study::Options& options)
 
 int main(int argc, char** argv)
 {
-    study::Options options;
+    study::StudyOptions options;
     if (const auto end = study::parse_options(argc, argv, options))
     {
         std::fputs(end->text.c_str(), end->exit_code == 0 ? stdout : stderr);

@@ -153,7 +153,7 @@ void Observation::sample_parts()
 void Observation::sample()
 {
     out_->times.push_back(s_->time());
-    for (std::size_t k = 0; k < out_->quantities.size(); ++k) read(s_->world(), out_->quantities[k], out_->courses[k].values);
+    for (std::size_t k = 0; k < out_->quantities.size(); ++k) read(s_->world(), out_->quantities[k], out_->time_series[k].values);
     const simulation::Totals totals = s_->totals();
     sample_energy(totals);
     sample_momenta(totals);

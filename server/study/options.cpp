@@ -16,7 +16,7 @@ constexpr const char* kExamples = R"(Examples:
   plab-study scenes/studies/bounce.xml --vary contact.resolution=None,Bisection,LocalBisection --vary dt=1/60,1/240,1/960
              --reference exact:bounce --quantity ball.position.z --until 2 -o out
   plab-study scenes/fan_and_balloons.xml --vary gears=Assign,Impulse,Graph --vary dt=1/120,1/240 --until 5 -o out
-  plab-study SCENE --rung "penalty: contact.response=Penalty contact.resolution=None" --rung "impulse: contact.response=Impulse"
+  plab-study SCENE --algorithm "penalty: contact.response=Penalty contact.resolution=None" --algorithm "impulse: contact.response=Impulse"
              --vary dt=1/60,1/240 --until 5 -o out
   plab-study SCENE --swap 2s:contact.response=None --vary dt=1/60,1/120 --until 5 -o out
   plab-study --suite -o out                                       the catalogue of this installation; --list says how much it is
@@ -28,8 +28,8 @@ Exit codes: 0 done (a run that fails is a result), 1 nothing could be studied, 2
 /// Texts as they come, before they are understood.
 struct Texts
 {
-    std::vector<std::string> vary, rungs, swaps, scales;
-    std::string reference = "auto", reference_rung, until, floor, budget, tolerance;
+    std::vector<std::string> vary, algorithms, swaps, scales;
+    std::string reference = "auto", reference_algorithm, until, floor, budget, tolerance;
 };
 
 Result<double> positive(const std::string& name, const std::string& text)
@@ -39,7 +39,7 @@ Result<double> positive(const std::string& name, const std::string& text)
     return v;
 }
 
-Result<void> understand(const Texts& texts, Options& out)
+Result<void> understand(const Texts& texts, StudyOptions& out)
 {
     for (const std::string& text : texts.vary)
     {
@@ -47,13 +47,13 @@ Result<void> understand(const Texts& texts, Options& out)
         if (!v) return v.errors();
         out.varied.push_back(v.take());
     }
-    for (const std::string& text : texts.rungs)
+    for (const std::string& text : texts.algorithms)
     {
-        auto v = parse_rung(text);
+        auto v = parse_algorithm(text);
         if (!v) return v.errors();
-        out.rungs.push_back(v.take());
+        out.algorithms.push_back(v.take());
     }
-    if (auto fine = check_settings(out.rungs, out.varied); !fine) return fine;
+    if (auto fine = check_settings(out.algorithms, out.varied); !fine) return fine;
     for (const std::string& text : texts.swaps)
     {
         auto v = parse_swap(text);
@@ -68,12 +68,12 @@ Result<void> understand(const Texts& texts, Options& out)
         out.scales[text.substr(0, equal)] = *v;
     }
     out.reference = parse_reference(texts.reference);
-    if (!texts.reference_rung.empty())
+    if (!texts.reference_algorithm.empty())
     {
-        if (out.reference.kind != ReferencePlan::Kind::Auto) return reason("--reference-rung goes with --reference auto only");
-        auto rung = parse_rung(texts.reference_rung);
-        if (!rung) return rung.errors();
-        out.reference.rung = rung.take();
+        if (out.reference.kind != ReferencePlan::Kind::Auto) return reason("--reference-algorithm goes with --reference auto only");
+        auto algorithm = parse_algorithm(texts.reference_algorithm);
+        if (!algorithm) return algorithm.errors();
+        out.reference.algorithm = algorithm.take();
     }
     if (!texts.floor.empty())
     {
@@ -121,7 +121,7 @@ std::string typed(int argc, char** argv)
 
 }  // namespace
 
-std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
+std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& options)
 {
     CLI::App app{"plab-study: error against run time, for one scene and many algorithms", "plab-study"};
     app.footer(kExamples);
@@ -132,11 +132,12 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     { app.add_option(name, into, what)->take_all()->allow_extra_args(false); };
     app.add_option("scene", options.scene, "blueprint (XML)");
     many("--vary", texts.vary, "ID=TypeA,TypeB or ID.param=v1,v2 or dt=1/30,1/60: what is varied (may be repeated: all combinations)");
-    many("--rung", texts.rungs, "[NAME:] ID=Type ID.param=value ...: settings that go together (may be repeated); each with all of --vary");
+    many("--algorithm", texts.algorithms,
+         "[NAME:] ID=Type ID.param=value ...: settings that go together (may be repeated); each with all of --vary");
     app.add_option("--reference", texts.reference,
-                   "auto (finest rung, extrapolated), exact:NAME[:key=value,..], none, or a CSV file; default: auto");
-    app.add_option("--reference-rung", texts.reference_rung,
-                   "ID=Type dt=..: the rung that auto extrapolates; default: the highest of --vary");
+                   "auto (finest algorithm, extrapolated), exact:NAME[:key=value,..], none, or a CSV file; default: auto");
+    app.add_option("--reference-algorithm", texts.reference_algorithm,
+                   "ID=Type dt=..: the algorithm that auto extrapolates; default: the highest of --vary");
     many("--quantity", options.quantities,
          "ID.field that is compared, such as ball.position (may be repeated); default: places and angles");
     many("--scale", texts.scales, "ID.field=A: the length a of the mixed error |y - r|/(a + |r|); default: how far the reference moves");

@@ -11,14 +11,14 @@
 namespace plab::study
 {
 
-struct Options
+struct StudyOptions
 {
     std::string scene;  ///< or the suite's file
     bool suite = false;
     bool list = false;
     bool list_exact = false;
     bool quiet = false, progress = false;  ///< nothing on standard error; lines also where that is no terminal
-    std::vector<Rung> rungs;
+    std::vector<Algorithm> algorithms;
     std::vector<std::vector<Setting>> varied;
     ReferencePlan reference;
     std::vector<std::string> quantities;
@@ -39,6 +39,6 @@ struct ParseEnd
     int exit_code = 0;
     std::string text;
 };
-std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options);
+std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& options);
 
 }  // namespace plab::study

@@ -181,7 +181,7 @@ void read(const world::World& world, const Quantity& quantity, std::vector<doubl
     out.resize(before + quantity.width, kNaN);
 }
 
-double scale_of(const Course& reference)
+double scale_of(const TimeSeries& reference)
 {
     double travel = 0, largest = 0;
     for (std::size_t i = 0; i < reference.values.size(); ++i)
@@ -216,20 +216,20 @@ double distance_at(const Quantity& quantity, std::span<const double> y, std::spa
     return worst;
 }
 
-Distance distance(const Quantity& quantity, const Course& course, const Course& reference, double scale)
+Distance distance(const Quantity& quantity, const TimeSeries& series, const TimeSeries& reference, double scale)
 {
     Distance out;
-    const std::size_t n = std::min(course.samples(), reference.samples());
-    if (n == 0 || course.samples() < reference.samples()) out.last = out.last_absolute = kNaN;
+    const std::size_t n = std::min(series.samples(), reference.samples());
+    if (n == 0 || series.samples() < reference.samples()) out.last = out.last_absolute = kNaN;
     if (n == 0) out.series = out.series_absolute = kNaN;
     for (std::size_t i = 0; i < n; ++i)
     {
-        const double mixed = distance_at(quantity, course.at(i), reference.at(i), scale);
-        const double absolute = absolute_distance_at(quantity, course.at(i), reference.at(i));
+        const double mixed = distance_at(quantity, series.at(i), reference.at(i), scale);
+        const double absolute = absolute_distance_at(quantity, series.at(i), reference.at(i));
         // NaN stays: a run that was lost for one sample is lost.
         out.series = mixed > out.series || std::isnan(mixed) ? mixed : out.series;
         out.series_absolute = absolute > out.series_absolute || std::isnan(absolute) ? absolute : out.series_absolute;
-        if (i + 1 == n && n == reference.samples() && n == course.samples()) out.last = mixed, out.last_absolute = absolute;
+        if (i + 1 == n && n == reference.samples() && n == series.samples()) out.last = mixed, out.last_absolute = absolute;
     }
     return out;
 }

@@ -43,7 +43,7 @@ std::vector<std::string> default_quantities(const world::World& world, std::size
 void read(const world::World& world, const Quantity& quantity, std::vector<double>& out);
 
 /// Samples of one quantity, one after the other, `width` numbers each.
-struct Course
+struct TimeSeries
 {
     std::size_t width = 1;
     std::vector<double> values;
@@ -61,10 +61,10 @@ struct Distance
 
 /// The length a of the mixed error: how far the reference gets from where it starts (largest component, over all samples);
 /// its largest magnitude if it does not move, 1 if that is 0 too.
-double scale_of(const Course& reference);
+double scale_of(const TimeSeries& reference);
 
 /// Compares the samples that both have; `scale` is a.
-Distance distance(const Quantity& quantity, const Course& course, const Course& reference, double scale);
+Distance distance(const Quantity& quantity, const TimeSeries& series, const TimeSeries& reference, double scale);
 /// One sample.
 double distance_at(const Quantity& quantity, std::span<const double> y, std::span<const double> r, double scale);
 double absolute_distance_at(const Quantity& quantity, std::span<const double> y, std::span<const double> r);

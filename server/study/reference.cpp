@@ -62,20 +62,20 @@ Distance doubt(const Distance& far, const Distance& near, double seen)
     return larger(most, times(seen > kSlowestTold ? near : most, share));
 }
 
-void add_quantity(Reference& out, const Quantity& q, const Course& y1, const Course& y2, const Course& y4)
+void add_quantity(Reference& out, const Quantity& q, const TimeSeries& y1, const TimeSeries& y2, const TimeSeries& y4)
 {
     const double scale = scale_of(y4);
     const Distance far = distance(q, y1, y2, scale), near = distance(q, y2, y4, scale);
     const bool round_off = near.series <= kRoundOff && far.series <= 16 * kRoundOff;
     const double seen = round_off ? kNaN : std::log2(far.series / near.series), p = round_off ? 0 : usable_order(seen);
-    Course course{q.width, {}};
+    TimeSeries series{q.width, {}};
     const double share = p > 0 ? 1 / (std::pow(2.0, p) - 1) : 0;
-    for (std::size_t i = 0; i < y4.samples(); ++i) extrapolate(q, y2.at(i), y4.at(i), share, course.values);
+    for (std::size_t i = 0; i < y4.samples(); ++i) extrapolate(q, y2.at(i), y4.at(i), share, series.values);
     out.converged.push_back(round_off || p > 0), out.converges = out.converges && out.converged.back();
     out.order.push_back(seen);
-    out.scale.push_back(scale_of(course));
+    out.scale.push_back(scale_of(series));
     out.uncertainty.push_back(p > 0 ? times(near, share) : doubt(far, near, seen));
-    out.courses.push_back(std::move(course));
+    out.time_series.push_back(std::move(series));
 }
 
 /// "; not converged, taken from the finest run as it is: ball.position (observed order 0.62)"
@@ -148,7 +148,7 @@ Reference no_reference(std::size_t quantities, const std::string& why)
 {
     Reference out;
     out.kind = "none", out.trouble = why, out.words = "no reference: " + why;
-    out.courses.resize(quantities), out.scale.assign(quantities, 1), out.order.assign(quantities, kNaN);
+    out.time_series.resize(quantities), out.scale.assign(quantities, 1), out.order.assign(quantities, kNaN);
     out.uncertainty.assign(quantities, {kNaN, kNaN, kNaN, kNaN});
     return out;
 }
@@ -168,12 +168,12 @@ Result<Reference> exact_reference(model::TypeSource& types, const model::SceneSp
     {
         const auto q = resolve_quantity(s.world(), name);
         if (!q) return q.errors();
-        Course course{q->width, {}};
-        for (const double t : out.times) read_exact(solution, s.world(), *q, t, course.values);
-        if (std::isnan(course.values.front()))
+        TimeSeries series{q->width, {}};
+        for (const double t : out.times) read_exact(solution, s.world(), *q, t, series.values);
+        if (std::isnan(series.values.front()))
             return reason("the closed form '" + text + "' says nothing about " + name + ": give it other quantities, such as a position");
-        out.scale.push_back(scale_of(course));
-        out.courses.push_back(std::move(course));
+        out.scale.push_back(scale_of(series));
+        out.time_series.push_back(std::move(series));
         const double known = solution.precision(until), absolute = q->measure == Measure::Geodesic ? known : known * out.scale.back();
         out.uncertainty.push_back({known, known, absolute, absolute});
         out.order.push_back(kNaN);
@@ -200,7 +200,7 @@ Result<Reference> file_reference(const std::vector<Quantity>& quantities, const 
     }
     Reference out;
     out.kind = "file", out.words = "the file " + path, out.times = times;
-    for (const Quantity& q : quantities) out.courses.push_back({q.width, {}});
+    for (const Quantity& q : quantities) out.time_series.push_back({q.width, {}});
     std::vector<std::string> cells;
     for (const double t : times)
     {
@@ -214,27 +214,28 @@ Result<Reference> file_reference(const std::vector<Quantity>& quantities, const 
             return reason(path + " has no row at t = " + model::format_real(t) +
                           " s: write it with --every that divides the step lengths studied");
         for (std::size_t k = 0; k < quantities.size(); ++k)
-            for (const std::size_t c : columns[k]) out.courses[k].values.push_back(c < cells.size() ? number_or_nan(cells[c]) : kNaN);
+            for (const std::size_t c : columns[k]) out.time_series[k].values.push_back(c < cells.size() ? number_or_nan(cells[c]) : kNaN);
     }
-    for (const Course& c : out.courses) out.scale.push_back(scale_of(c));
+    for (const TimeSeries& c : out.time_series) out.scale.push_back(scale_of(c));
     out.uncertainty.assign(quantities.size(), {kNaN, kNaN, kNaN, kNaN});
     out.order.assign(quantities.size(), kNaN);
     return out;
 }
 
-Reference auto_reference(const std::vector<RunRecord>& runs, const std::string& rung, const std::string& dt)
+Reference auto_reference(const std::vector<RunRecord>& runs, const std::string& algorithm, const std::string& dt)
 {
     const RunRecord &y1 = runs[0], &y2 = runs[1], &y4 = runs[2];
     for (const RunRecord& r : runs)
         if (!r.ok())
             return no_reference(r.quantities.size(),
-                                rung + ", which was to be the reference, " + std::string(name_of(r.outcome)) + ": " + r.why);
+                                algorithm + ", which was to be the reference, " + std::string(name_of(r.outcome)) + ": " + r.why);
     Reference out;
     out.kind = "auto", out.times = y4.times;
-    for (std::size_t k = 0; k < y4.quantities.size(); ++k) add_quantity(out, y4.quantities[k], y1.courses[k], y2.courses[k], y4.courses[k]);
+    for (std::size_t k = 0; k < y4.quantities.size(); ++k)
+        add_quantity(out, y4.quantities[k], y1.time_series[k], y2.time_series[k], y4.time_series[k]);
     out.knows_contacts = true, out.contacts = y4.contacts;
     out.words =
-        rung + " with dt = " + dt + " s, halved twice" + (out.converges ? ", extrapolated by Richardson" : unsure(out, y4.quantities));
+        algorithm + " with dt = " + dt + " s, halved twice" + (out.converges ? ", extrapolated by Richardson" : unsure(out, y4.quantities));
     return out;
 }
 

@@ -1,4 +1,4 @@
-/// What a run is compared with: a closed form, a file, or the finest rung extrapolated.
+/// What a run is compared with: a closed form, a file, or the finest algorithm extrapolated.
 #pragma once
 
 #include "study/run.h"
@@ -9,17 +9,17 @@ namespace plab::study
 /// The truth at the sample times, as well as it is known.
 struct Reference
 {
-    std::string kind;                   ///< "exact", "file", "auto", "none"
-    std::string words;                  ///< what it is, for people
-    std::vector<double> times;          ///< s
-    std::vector<Course> courses;        ///< by quantity; NaN where nothing is known
-    std::vector<double> scale;          ///< a of the mixed error, by quantity
-    std::vector<Distance> uncertainty;  ///< by quantity; NaN: not known
-    std::vector<double> order;          ///< observed order of convergence by quantity; NaN: none to be seen
-    std::vector<bool> converged;        ///< auto, by quantity: extrapolated, or the same to round-off
-    bool converges = true;              ///< all of them
+    std::string kind;                     ///< "exact", "file", "auto", "none"
+    std::string words;                    ///< what it is, for people
+    std::vector<double> times;            ///< s
+    std::vector<TimeSeries> time_series;  ///< by quantity; NaN where nothing is known
+    std::vector<double> scale;            ///< a of the mixed error, by quantity
+    std::vector<Distance> uncertainty;    ///< by quantity; NaN: not known
+    std::vector<double> order;            ///< observed order of convergence by quantity; NaN: none to be seen
+    std::vector<bool> converged;          ///< auto, by quantity: extrapolated, or the same to round-off
+    bool converges = true;                ///< all of them
     bool knows_contacts = false;
-    std::vector<Touch> contacts;
+    std::vector<RecordedContact> contacts;
     std::string trouble;  ///< why there is none
 };
 
@@ -32,7 +32,7 @@ Result<Reference> exact_reference(model::TypeSource& types, const model::SceneSp
 /// A CSV that plabd --trace or plab-study wrote: columns time, ID.field.x ... Rows are taken at the sample times.
 Result<Reference> file_reference(const std::vector<Quantity>& quantities, const std::vector<double>& times, const std::string& path);
 
-/// Three runs of one rung with dt, dt/2 and dt/4, extrapolated by Richardson:
+/// Three runs of one algorithm with dt, dt/2 and dt/4, extrapolated by Richardson:
 ///   p = log2(|y1 - y2| / |y2 - y4|),   y = y4 + (y4 - y2)/(2^p - 1)
 /// with p the nearest whole number where it is near to one. The uncertainty is the size of that correction. Where the three
 /// agree to round-off nothing is extrapolated, and it is their largest difference.
@@ -41,6 +41,6 @@ Result<Reference> file_reference(const std::vector<Quantity>& quantities, const 
 /// converged: y4 is taken as it is, and the uncertainty is what the series would have left if it went on at that order,
 /// |y2 - y4|/(2^p - 1), or the largest difference if that is more. Below p = 0.2 nothing says that it goes on: then it is as
 /// large as for 0.2, of the largest difference.
-Reference auto_reference(const std::vector<RunRecord>& coarse_to_fine, const std::string& rung, const std::string& dt);
+Reference auto_reference(const std::vector<RunRecord>& coarse_to_fine, const std::string& algorithm, const std::string& dt);
 
 }  // namespace plab::study

@@ -40,9 +40,9 @@ std::string lead_of(const StudyResult& r)
     std::string quantities;
     for (std::size_t i = 0; i < r.quantities.size(); ++i)
         quantities += (i == 0 ? "" : i + 1 == r.quantities.size() ? " and " : ", ") + r.quantities[i].name;
-    const std::size_t rungs = plot::rungs_of(r).size();
-    return std::to_string(r.points.size()) + " runs of " + r.scene_file + ": " + std::to_string(rungs) +
-           (rungs == 1 ? " choice" : " choices") + " of algorithms at " + std::to_string(lengths.size()) +
+    const std::size_t algorithms = plot::algorithms_of(r).size();
+    return std::to_string(r.points.size()) + " runs of " + r.scene_file + ": " + std::to_string(algorithms) +
+           (algorithms == 1 ? " choice" : " choices") + " of algorithms at " + std::to_string(lengths.size()) +
            (lengths.size() == 1 ? " step length" : " step lengths") + ", " + short_number(r.until) +
            " simulated seconds each. Compared: " + quantities + ".";
 }
@@ -102,14 +102,14 @@ void add_table(Page& page, const StudyResult& r)
 void add_resolved(Page& page, const StudyResult& r)
 {
     std::vector<std::vector<PageCell>> rows;
-    std::set<std::string> told;
+    std::set<std::string> listed;
     for (const Point& p : r.points)
         for (const PartFigures& part : p.record.parts)
         {
             std::string figures;
             for (const auto& [name, v] : part.largest) figures += (figures.empty() ? "" : ", ") + name + " up to " + short_number(v);
             if ((part.resolved.empty() || part.resolved == part.requested) && figures.empty()) continue;
-            if (!told.insert(p.combination.rung + part.id + part.resolved + figures).second) continue;
+            if (!listed.insert(p.combination.algorithm + part.id + part.resolved + figures).second) continue;
             rows.push_back(
                 {{p.combination.label(), "", ""}, {part.id, "", ""}, {part.requested, "", ""}, {part.resolved, "", ""}, {figures, "", ""}});
         }

@@ -177,7 +177,7 @@ RunRecord record_run(model::TypeSource& types, const model::SceneSpec& scene, co
     {
         auto quantity = resolve_quantity(s.world(), text);
         if (!quantity) return refuse(quantity.error().reason), out;
-        out.courses.push_back({quantity->width, {}});
+        out.time_series.push_back({quantity->width, {}});
         out.quantities.push_back(quantity.take());
     }
     Recorder(s, options, out).go();

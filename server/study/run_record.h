@@ -60,7 +60,7 @@ struct EnergySeries
 };
 
 /// Something that began to touch, in order of time.
-struct Touch
+struct RecordedContact
 {
     std::string kind;  ///< "contact.begin" or "contact.impact"
     std::string a, b;
@@ -89,7 +89,7 @@ struct RunRecord
 
     std::vector<double> times;  ///< s, of the samples that were reached
     std::vector<Quantity> quantities;
-    std::vector<Course> courses;  ///< by quantity
+    std::vector<TimeSeries> time_series;  ///< by quantity
     EnergySeries energy;
     double momentum_change = 0;                             ///< N s, largest |P - P at start|
     double angular_momentum_change = 0;                     ///< N m s, about the world's origin
@@ -99,7 +99,7 @@ struct RunRecord
     double violation = 0;    ///< largest declared error of a constraint, in its own unit
     double penetration = 0;  ///< m, largest overlap left at the end of a step
     double residual = 0;     ///< m/s, left over by contact responses
-    std::vector<Touch> contacts;
+    std::vector<RecordedContact> contacts;
     bool contacts_cut = false;            ///< there were more than are kept
     std::map<std::string, int> warnings;  ///< events of severity warning and failure, by kind
     std::map<std::string, int> events;    ///< all events, by kind

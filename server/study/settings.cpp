@@ -171,7 +171,7 @@ void add_setting(Combination& c, const Setting& s)
     if (s.is_dt())
         c.dt = s.value;
     else
-        c.rung += (c.rung.empty() ? "" : " + ") + words_for(s);
+        c.algorithm += (c.algorithm.empty() ? "" : " + ") + words_for(s);
 }
 
 }  // namespace
@@ -196,9 +196,9 @@ Result<std::vector<Setting>> parse_vary(const std::string& text)
     return out;
 }
 
-Result<Rung> parse_rung(const std::string& text)
+Result<Algorithm> parse_algorithm(const std::string& text)
 {
-    Rung out;
+    Algorithm out;
     std::string_view rest = text;
     if (const std::size_t colon = rest.find(':');
         colon != std::string_view::npos && rest.substr(0, colon).find('=') == std::string_view::npos)
@@ -207,14 +207,14 @@ Result<Rung> parse_rung(const std::string& text)
     {
         const std::size_t equal = word.find('=');
         if (equal == std::string_view::npos || equal == 0 || equal + 1 == word.size())
-            return reason("--rung wants [NAME:] ID=Type ID.param=value ..., not '" + std::string(word) + "'");
+            return reason("--algorithm wants [NAME:] ID=Type ID.param=value ..., not '" + std::string(word) + "'");
         out.settings.push_back({std::string(word.substr(0, equal)), std::string(word.substr(equal + 1))});
     }
-    if (out.settings.empty() && out.name.empty()) return reason("--rung is empty: it wants [NAME:] ID=Type ID.param=value ...");
+    if (out.settings.empty() && out.name.empty()) return reason("--algorithm is empty: it wants [NAME:] ID=Type ID.param=value ...");
     return out;
 }
 
-Result<void> check_settings(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied)
+Result<void> check_settings(const std::vector<Algorithm>& algorithms, const std::vector<std::vector<Setting>>& varied)
 {
     std::set<std::string> targets;
     for (const std::vector<Setting>& v : varied)
@@ -226,31 +226,32 @@ Result<void> check_settings(const std::vector<Rung>& rungs, const std::vector<st
                 if (same_value(v[i], v[k]))
                     return reason("--vary " + v[i].target + ": '" + v[k].value + "' and '" + v[i].value + "' are one value given twice");
     }
-    for (const Rung& rung : rungs)
+    for (const Algorithm& algorithm : algorithms)
     {
         std::set<std::string> own;
-        for (const Setting& s : rung.settings)
+        for (const Setting& s : algorithm.settings)
         {
-            if (!own.insert(s.target).second) return reason("--rung sets " + s.target + " twice, to '" + s.value + "' as well");
-            if (targets.contains(s.target)) return reason(s.target + " is set by a --rung and varied by --vary: leave it to one of them");
+            if (!own.insert(s.target).second) return reason("--algorithm sets " + s.target + " twice, to '" + s.value + "' as well");
+            if (targets.contains(s.target))
+                return reason(s.target + " is set by a --algorithm and varied by --vary: leave it to one of them");
         }
     }
     std::set<std::string> names;
-    for (const Combination& c : combine(rungs, varied))
+    for (const Combination& c : combine(algorithms, varied))
         if (!names.insert(c.label()).second)
             return reason("two runs would have the name '" + c.label() +
-                          "': give rungs names of their own, as in --rung \"NAME: ID=Type\"");
+                          "': give algorithms names of their own, as in --algorithm \"NAME: ID=Type\"");
     return {};
 }
 
-std::vector<Combination> combine(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied)
+std::vector<Combination> combine(const std::vector<Algorithm>& algorithms, const std::vector<std::vector<Setting>>& varied)
 {
     std::vector<Combination> out;
-    for (const Rung& rung : rungs)
+    for (const Algorithm& algorithm : algorithms)
     {
         Combination c;
-        for (const Setting& s : rung.settings) add_setting(c, s);
-        if (!rung.name.empty()) c.rung = rung.name;
+        for (const Setting& s : algorithm.settings) add_setting(c, s);
+        if (!algorithm.name.empty()) c.algorithm = algorithm.name;
         out.push_back(std::move(c));
     }
     if (out.empty()) out.emplace_back();
@@ -271,7 +272,7 @@ std::vector<Combination> combine(const std::vector<Rung>& rungs, const std::vect
         out = std::move(next);
     }
     for (Combination& c : out)
-        if (c.rung.empty()) c.rung = "as written";
+        if (c.algorithm.empty()) c.algorithm = "as written";
     return out;
 }
 

@@ -25,28 +25,28 @@ struct Setting
 struct Combination
 {
     std::vector<Setting> settings;
-    std::string rung;  ///< all settings but dt, in words: what a line of a diagram stands for
-    std::string dt;    ///< as written; empty: the scene's
+    std::string algorithm;  ///< all settings but dt, in words: what a line of a diagram stands for
+    std::string dt;         ///< as written; empty: the scene's
 
-    std::string label() const { return dt.empty() ? rung : rung + " at " + dt + " s"; }
+    std::string label() const { return dt.empty() ? algorithm : algorithm + " at " + dt + " s"; }
 };
 
 /// "solver=RungeKutta4,Exact": one setting per value.
 Result<std::vector<Setting>> parse_vary(const std::string& text);
 /// "NAME: solver=RungeKutta4 contact.response=None": settings that go together, by blanks; the name is optional.
-struct Rung
+struct Algorithm
 {
     std::string name;
     std::vector<Setting> settings;
 };
-Result<Rung> parse_rung(const std::string& text);
+Result<Algorithm> parse_algorithm(const std::string& text);
 
 /// Whether each run gets a name of its own and no setting is overridden by another: a target varied twice, a value given
-/// twice, a rung that sets what is varied as well are refused.
-Result<void> check_settings(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied);
+/// twice, a algorithm that sets what is varied as well are refused.
+Result<void> check_settings(const std::vector<Algorithm>& algorithms, const std::vector<std::vector<Setting>>& varied);
 
-/// Each rung (or none) with each choice of every vary; dt varies fastest, so that a rung's points stand together.
-std::vector<Combination> combine(const std::vector<Rung>& rungs, const std::vector<std::vector<Setting>>& varied);
+/// Each algorithm (or none) with each choice of every vary; dt varies fastest, so that a algorithm's points stand together.
+std::vector<Combination> combine(const std::vector<Algorithm>& algorithms, const std::vector<std::vector<Setting>>& varied);
 
 /// The scene with the settings. The error says which setting does not hold and what would be right.
 Result<model::SceneSpec> apply(const model::SceneSpec& scene, model::TypeSource& types, const std::vector<Setting>& settings);

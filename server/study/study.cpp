@@ -35,8 +35,8 @@ public:
     Result<void> check_swaps();
 
 private:
-    /// The rung of the reference `auto`; its scene has the longest of the three step lengths.
-    struct AutoRung
+    /// The algorithm of the reference `auto`; its scene has the longest of the three step lengths.
+    struct AutoAlgorithm
     {
         std::string name;
         model::SceneSpec scene;
@@ -49,7 +49,7 @@ private:
     Result<void> choose_quantities();
     Result<void> check_scales() const;
     Result<void> make_reference();
-    Result<AutoRung> auto_rung() const;
+    Result<AutoAlgorithm> auto_algorithm() const;
     Result<void> make_auto();
     const Combination& finest() const;
     Result<void> record_all();
@@ -133,9 +133,9 @@ Result<void> Run::check_swaps()
     if (!choose_samples()) return {};
     if (auto chosen = choose_swaps(); !chosen) return chosen;
     if (plan_.reference.kind != ReferencePlan::Kind::Auto) return {};
-    const auto rung = auto_rung();
-    if (!rung) return {};
-    const auto swaps = swaps_of(planned_, rung->scene, types_);
+    const auto algorithm = auto_algorithm();
+    if (!algorithm) return {};
+    const auto swaps = swaps_of(planned_, algorithm->scene, types_);
     return swaps ? Result<void>() : reason("in the reference: " + swaps.error().reason);
 }
 
@@ -207,40 +207,40 @@ const Combination& Run::finest() const
     return *best;
 }
 
-Result<Run::AutoRung> Run::auto_rung() const
+Result<Run::AutoAlgorithm> Run::auto_algorithm() const
 {
     Combination chosen = finest();
     double shortest = std::numeric_limits<double>::infinity();
     model::StepLength dt;
     for (const auto& scene : scenes_)
         if (scene && scene->settings.dt.seconds < shortest) dt = scene->settings.dt, shortest = dt.seconds;
-    if (plan_.reference.rung) chosen = combine({*plan_.reference.rung}, {}).front();
+    if (plan_.reference.algorithm) chosen = combine({*plan_.reference.algorithm}, {}).front();
     auto scene = apply(plan_.scene, types_, chosen.settings);
     if (!scene) return scene.errors();
-    if (!plan_.reference.rung || chosen.dt.empty()) scene->settings.dt = dt;
-    return AutoRung{chosen.rung, scene.take()};
+    if (!plan_.reference.algorithm || chosen.dt.empty()) scene->settings.dt = dt;
+    return AutoAlgorithm{chosen.algorithm, scene.take()};
 }
 
 Result<void> Run::make_auto()
 {
-    auto rung = auto_rung();
-    if (!rung) return rung.errors();
-    const model::StepLength dt = rung->scene.settings.dt;
+    auto algorithm = auto_algorithm();
+    if (!algorithm) return algorithm.errors();
+    const model::StepLength dt = algorithm->scene.settings.dt;
     RunOptions options = options_;
     options.budget = 20 * options_.budget;
     std::vector<RunRecord> runs;
     for (int i = 0; i < 3; ++i)
     {
-        model::StepLength& part = rung->scene.settings.dt;
+        model::StepLength& part = algorithm->scene.settings.dt;
         part = dt, part.denominator = dt.denominator << i, part.seconds = dt.seconds / (1 << i);
-        auto swaps = swaps_of(planned_, rung->scene, types_);
+        auto swaps = swaps_of(planned_, algorithm->scene, types_);
         if (!swaps) return reason("in the reference: " + swaps.error().reason);
         options.swaps = swaps.take();
-        tell("reference " + std::to_string(i + 1) + " of 3: " + rung->name, 0);
-        runs.push_back(record_run(types_, rung->scene, options));
+        tell("reference " + std::to_string(i + 1) + " of 3: " + algorithm->name, 0);
+        runs.push_back(record_run(types_, algorithm->scene, options));
         if (auto on = go_on("making the reference, run " + std::to_string(i + 1) + " of 3"); !on) return on;
     }
-    out_.reference = auto_reference(runs, rung->name, model::format_real(dt.seconds));
+    out_.reference = auto_reference(runs, algorithm->name, model::format_real(dt.seconds));
     return {};
 }
 
@@ -348,9 +348,9 @@ void Run::judge(Point& point)
     const Reference& reference = out_.reference;
     for (std::size_t k = 0; k < out_.quantities.size(); ++k)
     {
-        const bool known = reference.kind != "none" && k < record.courses.size();
+        const bool known = reference.kind != "none" && k < record.time_series.size();
         Distance e{kNaN, kNaN, kNaN, kNaN};
-        if (known) e = distance(out_.quantities[k], record.courses[k], reference.courses[k], reference.scale[k]);
+        if (known) e = distance(out_.quantities[k], record.time_series[k], reference.time_series[k], reference.scale[k]);
         if (!record.ok()) e.last = e.last_absolute = kNaN;
         point.errors.push_back(e);
         point.resolved.push_back(!(e.series <= reference.uncertainty[k].series));

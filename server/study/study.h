@@ -20,8 +20,8 @@ struct ReferencePlan
         File,
     };
     Kind kind = Kind::Auto;
-    std::string text;          ///< name of the closed form, or path
-    std::optional<Rung> rung;  ///< auto: this one; else the finest rung of the plan
+    std::string text;                    ///< name of the closed form, or path
+    std::optional<Algorithm> algorithm;  ///< auto: this one; else the finest algorithm of the plan
 };
 /// "auto", "none", "exact:NAME", or a path.
 ReferencePlan parse_reference(const std::string& text);
@@ -104,7 +104,7 @@ Result<void> check_swaps(model::TypeSource& types, const Plan& plan);
 Result<StudyResult> run_study(model::TypeSource& types, const Plan& plan);
 
 /// Matches contacts of the same pair by the alignment in time that costs least.
-ContactFigures compare_contacts(const std::vector<Touch>& run, const std::vector<Touch>& reference);
+ContactFigures compare_contacts(const std::vector<RecordedContact>& run, const std::vector<RecordedContact>& reference);
 
 /// -log10 of an error, from 0 to 16; NaN stays.
 double digits(double error);

@@ -41,8 +41,9 @@ Result<SuiteEntry> read_entry(const Json& entry, const std::string& path)
     out.name = entry.at("name").get<std::string>();
     for (const auto& [key, value] : entry.items())
     {
-        static const std::vector<std::string> known{"name",           "title",      "scene", "vary",  "rungs",  "reference",
-                                                    "reference_rung", "quantities", "until", "floor", "ladder", "scales"};
+        static const std::vector<std::string> known{
+            "name",       "title", "scene", "vary",   "algorithms", "reference", "reference_algorithm",
+            "quantities", "until", "floor", "ladder", "scales"};
         if (std::find(known.begin(), known.end(), key) == known.end()) return wrong(path, out.name, "unknown key '" + key + "'");
     }
     out.title = entry.value("title", out.name);
@@ -53,19 +54,19 @@ Result<SuiteEntry> read_entry(const Json& entry, const std::string& path)
         if (!v) return wrong(path, out.name, v.error().reason);
         out.varied.push_back(v.take());
     }
-    for (const std::string& text : texts(entry, "rungs"))
+    for (const std::string& text : texts(entry, "algorithms"))
     {
-        auto v = parse_rung(text);
+        auto v = parse_algorithm(text);
         if (!v) return wrong(path, out.name, v.error().reason);
-        out.rungs.push_back(v.take());
+        out.algorithms.push_back(v.take());
     }
-    if (auto fine = check_settings(out.rungs, out.varied); !fine) return wrong(path, out.name, fine.error().reason);
+    if (auto fine = check_settings(out.algorithms, out.varied); !fine) return wrong(path, out.name, fine.error().reason);
     out.reference = parse_reference(entry.value("reference", std::string("auto")));
-    if (entry.contains("reference_rung"))
+    if (entry.contains("reference_algorithm"))
     {
-        auto v = parse_rung(entry["reference_rung"].get<std::string>());
+        auto v = parse_algorithm(entry["reference_algorithm"].get<std::string>());
         if (!v) return wrong(path, out.name, v.error().reason);
-        out.reference.rung = v.take();
+        out.reference.algorithm = v.take();
     }
     if (out.reference.kind == ReferencePlan::Kind::File)
         out.reference.text = (std::filesystem::path(path).parent_path() / out.reference.text).string();
@@ -98,7 +99,7 @@ Result<Plan> plan_of(model::TypeSource& types, const SuiteEntry& entry, const Su
     if (!scene) return scene.errors();
     Plan plan;
     plan.scene = scene.take(), plan.title = entry.title, plan.command = options.command;
-    plan.combinations = combine(entry.rungs, entry.varied), plan.reference = entry.reference, plan.repeat = options.repeat;
+    plan.combinations = combine(entry.algorithms, entry.varied), plan.reference = entry.reference, plan.repeat = options.repeat;
     plan.scales = entry.scales;
     plan.run.until = entry.until, plan.run.quantities = entry.quantities, plan.run.floor = entry.floor;
     plan.run.budget = options.budget, plan.run.allocations = options.allocations, plan.run.stop = options.stop;
@@ -123,13 +124,13 @@ Done run_entry(model::TypeSource& types, const SuiteEntry& entry, const SuiteOpt
     return out;
 }
 
-/// The studies of one ladder: the best that each rung reaches in each, and what the cheapest run within the tolerance costs.
+/// The studies of one ladder: the best that each algorithm reaches in each, and what the cheapest run within the tolerance costs.
 struct Tally
 {
     std::string ladder;
     std::vector<const Done*> studies;
-    std::vector<std::string> rungs;
-    std::vector<std::vector<plot::Cell>> best;  ///< study by rung
+    std::vector<std::string> algorithms;
+    std::vector<std::vector<plot::Cell>> best;  ///< study by algorithm
     std::vector<std::vector<double>> cost;      ///< s per simulated second; infinite where none is within the tolerance
 
     std::vector<std::string> names() const
@@ -144,7 +145,7 @@ std::string ladder_of(const Done& d)
 {
     if (!d.entry->ladder.empty()) return d.entry->ladder;
     std::string out;
-    for (const std::string& rung : plot::rungs_of(*d.result)) out += (out.empty() ? "" : ", ") + rung;
+    for (const std::string& algorithm : plot::algorithms_of(*d.result)) out += (out.empty() ? "" : ", ") + algorithm;
     return out;
 }
 
@@ -163,16 +164,17 @@ void tally_point(const Point& p, double tolerance, plot::Cell& cell, double& cos
 void fill(Tally& tally, double tolerance)
 {
     for (const Done* d : tally.studies)
-        for (const std::string& rung : plot::rungs_of(*d->result))
-            if (std::find(tally.rungs.begin(), tally.rungs.end(), rung) == tally.rungs.end()) tally.rungs.push_back(rung);
+        for (const std::string& algorithm : plot::algorithms_of(*d->result))
+            if (std::find(tally.algorithms.begin(), tally.algorithms.end(), algorithm) == tally.algorithms.end())
+                tally.algorithms.push_back(algorithm);
     for (const Done* d : tally.studies)
     {
-        auto& cells = tally.best.emplace_back(tally.rungs.size(), plot::Cell{NAN, "", "not part of this study"});
-        auto& cost = tally.cost.emplace_back(tally.rungs.size(), std::numeric_limits<double>::infinity());
+        auto& cells = tally.best.emplace_back(tally.algorithms.size(), plot::Cell{NAN, "", "not part of this study"});
+        auto& cost = tally.cost.emplace_back(tally.algorithms.size(), std::numeric_limits<double>::infinity());
         for (const Point& p : d->result->points)
         {
-            const auto r =
-                static_cast<std::size_t>(std::find(tally.rungs.begin(), tally.rungs.end(), p.combination.rung) - tally.rungs.begin());
+            const auto r = static_cast<std::size_t>(std::find(tally.algorithms.begin(), tally.algorithms.end(), p.combination.algorithm) -
+                                                    tally.algorithms.begin());
             tally_point(p, tolerance, cells[r], cost[r]);
         }
     }
@@ -204,7 +206,7 @@ std::vector<std::string> findings_of(const std::vector<Done>& all, const std::ve
             const bool any = std::isfinite(*best);
             solved += any ? 1 : 0;
             out.push_back(t.studies[i]->entry->name + ": " +
-                          (any ? t.rungs[static_cast<std::size_t>(best - t.cost[i].begin())] + " is the cheapest within " +
+                          (any ? t.algorithms[static_cast<std::size_t>(best - t.cost[i].begin())] + " is the cheapest within " +
                                      figures::short_number(tolerance) + ", " + figures::short_number(1e3 * *best) +
                                      " ms per simulated second."
                                : "nobody comes within " + figures::short_number(tolerance) + "."));
@@ -224,10 +226,10 @@ Json json_of(const std::vector<Done>& all, const std::vector<Tally>& tallies, co
         {
             const SuiteEntry& entry = *t.studies[i]->entry;
             Json digits = Json::object(), cost = Json::object();
-            for (std::size_t r = 0; r < t.rungs.size(); ++r)
+            for (std::size_t r = 0; r < t.algorithms.size(); ++r)
             {
-                digits[t.rungs[r]] = std::isnan(t.best[i][r].digits) ? Json(nullptr) : Json(t.best[i][r].digits);
-                cost[t.rungs[r]] = std::isfinite(t.cost[i][r]) ? Json(t.cost[i][r]) : Json(nullptr);
+                digits[t.algorithms[r]] = std::isnan(t.best[i][r].digits) ? Json(nullptr) : Json(t.best[i][r].digits);
+                cost[t.algorithms[r]] = std::isfinite(t.cost[i][r]) ? Json(t.cost[i][r]) : Json(nullptr);
             }
             out["studies"].push_back({{"name", entry.name},
                                       {"title", entry.title},
@@ -251,19 +253,19 @@ Result<void> write_picture(const std::string& file, const figures::Drawing& draw
 Result<void> add_tally(Page& page, const Tally& t, const SuiteOptions& options, const std::string& folder, const std::string& number)
 {
     page.heading(t.ladder);
-    // Rungs as rows: they are many, and their names long.
-    std::vector<std::vector<plot::Cell>> cells(t.rungs.size());
-    for (std::size_t r = 0; r < t.rungs.size(); ++r)
+    // Algorithms as rows: they are many, and their names long.
+    std::vector<std::vector<plot::Cell>> cells(t.algorithms.size());
+    for (std::size_t r = 0; r < t.algorithms.size(); ++r)
         for (const std::vector<plot::Cell>& study : t.best) cells[r].push_back(study[r]);
-    const figures::Drawing map = plot::heat_map("Best digits", t.rungs, t.names(), cells);
-    page.figure(map, "Correct digits of each rung's best run. A pale cell: no part in that problem, or no result.");
+    const figures::Drawing map = plot::heat_map("Best digits", t.algorithms, t.names(), cells);
+    page.figure(map, "Correct digits of each algorithm's best run. A pale cell: no part in that problem, or no result.");
     if (auto written = write_picture(folder + "/digits" + number, map); !written) return written;
     if (t.studies.size() > 1)
     {
-        const figures::Drawing profile = plot::performance_profile("Performance profile", t.rungs, t.cost);
-        page.figure(profile, "After Dolan and Moré (2002): the share of these problems that a rung solves to " +
+        const figures::Drawing profile = plot::performance_profile("Performance profile", t.algorithms, t.cost);
+        page.figure(profile, "After Dolan and Moré (2002): the share of these problems that a algorithm solves to " +
                                  figures::short_number(options.tolerance) +
-                                 " within that multiple of the cheapest rung's cost. Runs without a result solve nothing.");
+                                 " within that multiple of the cheapest algorithm's cost. Runs without a result solve nothing.");
         if (auto written = write_picture(folder + "/profile" + number, profile); !written) return written;
     }
     for (const Done* d : t.studies) page.link(d->entry->name + "/report.html", d->entry->title);
@@ -273,8 +275,8 @@ Result<void> add_tally(Page& page, const Tally& t, const SuiteOptions& options, 
 Result<void> write_suite(const Suite& suite, const std::vector<Done>& all, const SuiteOptions& options,
                          const std::vector<std::string>& sentences, const std::vector<Tally>& tallies, const std::string& folder)
 {
-    Page page(suite.title,
-              std::to_string(suite.entries.size()) + " problems, by the ladder that they climb; each rung at all of its step lengths.");
+    Page page(suite.title, std::to_string(suite.entries.size()) +
+                               " problems, by the ladder that they climb; each algorithm at all of its step lengths.");
     page.list(sentences);
     for (std::size_t i = 0; i < tallies.size(); ++i)
         if (auto added = add_tally(page, tallies[i], options, folder, "-" + std::to_string(i + 1)); !added) return added;

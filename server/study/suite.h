@@ -1,6 +1,6 @@
-/// A catalogue of studies, and what they say together: digits by problem and rung, and the performance profile.
+/// A catalogue of studies, and what they say together: digits by problem and algorithm, and the performance profile.
 ///
-/// JSON: {"studies": [{"name", "scene", "title", "vary": [..], "rungs": [..], "reference", "reference_rung", "quantities": [..],
+/// JSON: {"studies": [{"name", "scene", "title", "vary": [..], "algorithms": [..], "reference", "reference_algorithm", "quantities": [..],
 /// "until", "floor", "ladder", "scales": {quantity: length}}]}, with the words of the command line; scenes are found beside the file.
 #pragma once
 
@@ -12,8 +12,8 @@ namespace plab::study
 struct SuiteEntry
 {
     std::string name, title, scene;  ///< scene: path
-    std::string ladder;              ///< studies of one ladder are looked at together; empty: those with the same rungs
-    std::vector<Rung> rungs;
+    std::string ladder;              ///< studies of one ladder are looked at together; empty: those with the same algorithms
+    std::vector<Algorithm> algorithms;
     std::vector<std::vector<Setting>> varied;
     ReferencePlan reference;
     std::vector<std::string> quantities;

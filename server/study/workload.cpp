@@ -24,7 +24,7 @@ Workload workload_of(model::TypeSource& types, const Plan& plan)
         out.seconds += once * (1 + plan.repeat);
         costliest = std::max(costliest, once);
     }
-    // The rung that `auto` takes at a half and a quarter of its step as well; which one it is, is not decided here.
+    // The algorithm that `auto` takes at a half and a quarter of its step as well; which one it is, is not decided here.
     if (plan.reference.kind == ReferencePlan::Kind::Auto) out.seconds += (1 + 2 + 4) * costliest;
     return out;
 }

@@ -35,8 +35,8 @@ std::string row_of(const StudyResult& r, const Point& p)
     std::string settings, resolved;
     for (const Setting& s : p.combination.settings) settings += (settings.empty() ? "" : " ") + s.text();
     for (const PartFigures& part : x.parts) resolved += (resolved.empty() ? "" : "; ") + part.id + "=" + part.resolved;
-    std::string out = cell(p.combination.rung) + "," + cell(settings) + "," + number(x.dt) + "," + std::string(name_of(x.outcome)) + "," +
-                      cell(x.why) + "," + number(x.reached) + "," + std::to_string(x.steps) + "," + number(p.error()) + "," +
+    std::string out = cell(p.combination.algorithm) + "," + cell(settings) + "," + number(x.dt) + "," + std::string(name_of(x.outcome)) +
+                      "," + cell(x.why) + "," + number(x.reached) + "," + std::to_string(x.steps) + "," + number(p.error()) + "," +
                       number(p.final_error()) + "," + number(digits(p.error())) + "," + (p.is_resolved() ? "1" : "0");
     for (std::size_t k = 0; k < r.quantities.size(); ++k)
     {
@@ -58,7 +58,7 @@ std::string row_of(const StudyResult& r, const Point& p)
 
 std::string results_csv(const StudyResult& r)
 {
-    std::string out = "rung,settings,dt,outcome,why,reached,steps,error,final_error,digits,resolved_by_reference";
+    std::string out = "algorithm,settings,dt,outcome,why,reached,steps,error,final_error,digits,resolved_by_reference";
     for (const Quantity& q : r.quantities)
         out += "," + q.name + ":error," + q.name + ":final_error," + q.name + ":absolute," + q.name + ":final_absolute";
     out += ",energy_drift,momentum_change,angular_momentum_change,shaft_momentum_change,violation,penetration,residual";
@@ -68,7 +68,7 @@ std::string results_csv(const StudyResult& r)
     return out;
 }
 
-std::string course_csv(const StudyResult& r, const std::vector<double>& times, const std::vector<Course>& courses)
+std::string time_series_csv(const StudyResult& r, const std::vector<double>& times, const std::vector<TimeSeries>& time_series)
 {
     std::string out = "time";
     for (const Quantity& q : r.quantities)
@@ -76,7 +76,7 @@ std::string course_csv(const StudyResult& r, const std::vector<double>& times, c
     for (std::size_t n = 0; n < times.size(); ++n)
     {
         out += "\n" + number(times[n]);
-        for (const Course& c : courses)
+        for (const TimeSeries& c : time_series)
             for (std::size_t i = 0; i < c.width; ++i) out += "," + (n < c.samples() ? number(c.at(n)[i]) : std::string());
     }
     return out + "\n";
@@ -97,7 +97,7 @@ Result<void> write_all(const StudyResult& r, const std::string& folder)
     if (error) return reason("cannot make the folder " + folder + ": " + error.message());
     std::vector<std::pair<std::string, std::string>> files{
         {"results.csv", results_csv(r)}, {"results.json", results_json(r)}, {"report.html", report_html(r)}};
-    if (r.reference.kind != "none") files.emplace_back("reference.csv", course_csv(r, r.reference.times, r.reference.courses));
+    if (r.reference.kind != "none") files.emplace_back("reference.csv", time_series_csv(r, r.reference.times, r.reference.time_series));
     for (const plot::Picture& picture : plot::pictures_of(r))
     {
         files.emplace_back(picture.file + ".svg", picture.drawing.svg(true));

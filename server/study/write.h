@@ -13,7 +13,7 @@ std::string results_csv(const StudyResult& result);
 /// The same and more; numbers with 17 significant digits, null where nothing is known.
 std::string results_json(const StudyResult& result);
 /// The reference's course as CSV: time and the quantities, to be used as --reference FILE.
-std::string course_csv(const StudyResult& result, const std::vector<double>& times, const std::vector<Course>& courses);
+std::string time_series_csv(const StudyResult& result, const std::vector<double>& times, const std::vector<TimeSeries>& time_series);
 /// One self-contained page: inline pictures, tables, plain words.
 std::string report_html(const StudyResult& result);
 /// What the numbers say, a sentence each; for the report and the terminal.

@@ -100,7 +100,7 @@ Json point_of(const StudyResult& r, const Point& p)
         errors[r.quantities[k].name] = json_of(p.errors[k]);
         errors[r.quantities[k].name]["resolved"] = static_cast<bool>(p.resolved[k]);
     }
-    Json out{{"rung", p.combination.rung},
+    Json out{{"algorithm", p.combination.algorithm},
              {"settings", settings},
              {"dt", number(x.dt)},
              {"outcome", name_of(x.outcome)},

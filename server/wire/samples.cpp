@@ -300,8 +300,8 @@ const plab_v2_Reply& ReplySample::of(const publish::Answer& answer, bool repeate
     {
         const simulation::SwapReport& s = r.swaps[i];
         convert_each(fields_[i], s.fields,
-                     [](const simulation::FieldFate& f) {
-                         return plab_v2_FieldFate{text(f.field), text(simulation::name_of(f.fate))};
+                     [](const simulation::TransferredField& f) {
+                         return plab_v2_FieldFate{text(f.field), text(simulation::name_of(f.transfer))};
                      });
         swaps_.push_back({text(s.id), text(s.from), text(s.to), {}, s.energy_before, outcome(s.with_old), outcome(s.with_new)});
         view(swaps_.back().fields, fields_[i]);

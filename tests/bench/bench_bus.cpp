@@ -52,7 +52,7 @@ T must(Result<T> result)
 
 link::Session session_of(const std::string& name)
 {
-    link::Options options;
+    link::SessionOptions options;
     options.server = name;
     return must(link::Session::find(options, Seconds(10)));
 }
@@ -222,7 +222,7 @@ void swaps_at_1_khz()
 void start()
 {
     std::vector<double> times;
-    link::Options any;
+    link::SessionOptions any;
     for (int i = 0; i < 9; ++i)
     {
         any.server = unique_name("start");

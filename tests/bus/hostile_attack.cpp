@@ -22,7 +22,7 @@ std::size_t count(const std::string& text, const std::string& part)
 
 link::Session session_in(std::uint32_t domain, const std::string& server)
 {
-    link::Options options;
+    link::SessionOptions options;
     options.server = server, options.domain.id = domain;
     auto session = link::Session::find(options, Seconds(10));
     REQUIRE_MESSAGE(session.ok(), session.error().text());

@@ -30,7 +30,7 @@ struct Place
 /// Where a server stands: whoever begins to read snapshots gets one of the present.
 Place place_of(const std::string& server)
 {
-    link::Options options;
+    link::SessionOptions options;
     options.server = server;
     const auto session = link::Session::find(options, Seconds(5));
     REQUIRE_MESSAGE(session.ok(), session.error().text());
@@ -150,14 +150,14 @@ TEST_CASE("a shadow says what a swap would do, and nothing has been done")
 {
     Server server = at_sixty();
     const Place before = place_of(server.name());
-    const Json told = parse(control(server, {"shadow", "contact.response", "--with", "Response/None", "--for", "0.2", "--json"}));
-    CHECK(told["steps"] == 48);
-    CHECK(told["course"].back()["time"].get<double>() == doctest::Approx(0.45));
+    const Json reported = parse(control(server, {"shadow", "contact.response", "--with", "Response/None", "--for", "0.2", "--json"}));
+    CHECK(reported["steps"] == 48);
+    CHECK(reported["course"].back()["time"].get<double>() == doctest::Approx(0.45));
     for (const char* future : {"without", "with"})
-        for (const char* cost : {"cost_ns_per_step", "mean_cost_ns_per_step"}) CHECK(told[future][cost].get<double>() > 0);
+        for (const char* cost : {"cost_ns_per_step", "mean_cost_ns_per_step"}) CHECK(reported[future][cost].get<double>() > 0);
     // Nobody touches yet: the two are the same, to the bit.
-    CHECK(told["course"][0]["distance"] == 0.0);
-    CHECK(told["course"][0]["turn"] == 0.0);
+    CHECK(reported["course"][0]["distance"] == 0.0);
+    CHECK(reported["course"][0]["turn"] == 0.0);
     CHECK(control(server, {"shadow", "contact.response", "--with", "Field/Gravity"}).code == 1);
     CHECK(place_of(server.name()) == before);
     CHECK(server.end() == 0);

@@ -123,14 +123,14 @@ TEST_CASE("what was removed is gone in the file, and in its playback from then o
     }
     REQUIRE(messages_of(file, "plab/gone").size() == 1);
     const Process player = play(file, name, {"--loop", "--rate", "0.01"});
-    link::Options options;
+    link::SessionOptions options;
     options.server = name;
     const auto session = link::Session::find(options, Seconds(5));
     REQUIRE_MESSAGE(session.ok(), session.error().text());
     auto seen = link::Catalogue::open(*session, static_cast<link::Parts>(link::Part::Interactions));
     REQUIRE(seen.ok());
-    const auto has_wind = [](const link::Snapshot& s) { return s.interactions.contains("wind"); };
-    const auto has_none = [&](const link::Snapshot& s) { return s.interactions.size() > 3 && !has_wind(s); };
+    const auto has_wind = [](const link::CatalogueContents& s) { return s.interactions.contains("wind"); };
+    const auto has_none = [&](const link::CatalogueContents& s) { return s.interactions.size() > 3 && !has_wind(s); };
     CHECK(shows(*seen, has_wind));
     CHECK(shows(*seen, has_none));
     CHECK(shows(*seen, has_wind));  // the next turn of the loop
@@ -151,9 +151,9 @@ TEST_CASE("a logger hears of everything that happened, and a server that is a pl
     REQUIRE(ask(name, {"record", "-o", copy}).code == 0);
     CHECK(player.wait(Milliseconds(10000)) == 0);
     CHECK(log.wait_for("gone", Milliseconds(5000)));
-    std::size_t told = 0, happened = 0;
+    std::size_t reported = 0, happened = 0;
     std::istringstream lines(log.output());
-    for (std::string line; std::getline(lines, line);) told += has(line, "\"kind\"") ? 1u : 0u;
+    for (std::string line; std::getline(lines, line);) reported += has(line, "\"kind\"") ? 1u : 0u;
     recording::Decoder decoder;
     recording::Sample<plab_v2_Events> events;
     recording::Sample<plab_v2_Collisions> collisions;
@@ -162,7 +162,7 @@ TEST_CASE("a logger hears of everything that happened, and a server that is a pl
     for (const auto& bytes : messages_of(recorded(), "plab/collisions"))
         if (decoder.decode(bytes, collisions)) happened += collisions->entries._length;
     CHECK(happened > 3);
-    CHECK(told == happened);
+    CHECK(reported == happened);
 }
 
 TEST_CASE("a picture from the file and one of its playback are the same")

@@ -211,13 +211,13 @@ TEST_CASE("a disk that is full: the recorder says so, ends when it is told to, a
     recorder.signal(SIGINT);
     CHECK(recorder.wait(Milliseconds(2000)) == 1);
     CHECK_MESSAGE(has(recorder.errors(), "the file was not ended"), recorder.errors());
-    const auto told = nlohmann::json::parse(recorder.output());
-    CHECK(told["dropped"] > 0);
-    CHECK(has(told["trouble"], "File too large"));
+    const auto reported = nlohmann::json::parse(recorder.output());
+    CHECK(reported["dropped"] > 0);
+    CHECK(has(reported["trouble"], "File too large"));
     CHECK(size_of(file) <= limit);
     const Content left = read_whole(file, true);
     CHECK(left.messages >= before);
-    CHECK(left.messages == told["messages"]);
+    CHECK(left.messages == reported["messages"]);
     CHECK(run({program("plabctl"), "recover", file, "-o", saved}).code == 5);
     CHECK(read_whole(saved, true).messages == left.messages);
     // One that is full from the beginning.
@@ -240,16 +240,16 @@ TEST_CASE("a disk that takes data again: the file is whole but for its gap, and 
     REQUIRE(comes_true([&] { return size_of(file) > then + 10'000; }));
     recorder.signal(SIGINT);
     CHECK(recorder.wait(Milliseconds(2000)) == 5);
-    const auto told = nlohmann::json::parse(recorder.output());
+    const auto reported = nlohmann::json::parse(recorder.output());
     CHECK_MESSAGE(has(recorder.errors(), "messages are not in the file: "), recorder.errors());
     const Content whole = read_whole(file, true);
     CHECK(whole.is_closed);
-    CHECK(whole.messages == told["messages"]);
+    CHECK(whole.messages == reported["messages"]);
     const Outcome info = run({program("plabctl"), "--json", "info", file});
     std::uint64_t missing = 0;
     const auto summary = nlohmann::json::parse(info.output);
     for (const auto& gap : summary["gaps"]) missing += gap["messages"].get<std::uint64_t>();
     // Gaps of both kinds: what the disk did not take, and what a busy machine lost on the bus.
-    CHECK(missing == told["dropped"].get<std::uint64_t>() + told["missing"].get<std::uint64_t>());
-    CHECK(told["dropped"] > 0);
+    CHECK(missing == reported["dropped"].get<std::uint64_t>() + reported["missing"].get<std::uint64_t>());
+    CHECK(reported["dropped"] > 0);
 }

@@ -105,7 +105,7 @@ TEST_CASE("several operations are one transaction: all or none")
     link::Catalogue known = catalogue(client.session);
     CHECK(known.now().objects.at("red").mass == doctest::Approx(0.02));
     CHECK(ask(client.caller, {"set", "red", "", "", {{"mass", "50 g"}}}).done());
-    CHECK(shows(known, [](const link::Snapshot& now) { return now.objects.at("red").mass == doctest::Approx(0.05); }));
+    CHECK(shows(known, [](const link::CatalogueContents& now) { return now.objects.at("red").mass == doctest::Approx(0.05); }));
 }
 
 TEST_CASE("components come and go: the catalogue follows, and what refers to the lost is protected")
@@ -116,7 +116,7 @@ TEST_CASE("components come and go: the catalogue follows, and what refers to the
     const auto type_is = [&](const std::string& id, const std::string& type)
     {
         return shows(known,
-                     [&](const link::Snapshot& now)
+                     [&](const link::CatalogueContents& now)
                      {
                          const auto found = now.interactions.find(id);
                          return type.empty() ? found == now.interactions.end()
@@ -177,20 +177,20 @@ TEST_CASE("clients whose requests wait are told when the server ends, and it end
     Client other(server);
     CHECK(ask(other.caller, {"step", "", "1"}).done());
     server.process().signal(15);
-    bool told = false;
-    for (int i = 0; i < 100 && !told; ++i)
+    bool reported = false;
+    for (int i = 0; i < 100 && !reported; ++i)
     {
         std::this_thread::sleep_for(Milliseconds(20));
         client.caller.take(
             [&](std::uint64_t of, const link::Reply& reply)
             {
                 if (of != *number) return;
-                told = true;
+                reported = true;
                 CHECK(reply.outcome == "refused");
                 CHECK(has(reasons(reply), "the server ended"));
             });
     }
-    CHECK(told);
+    CHECK(reported);
     CHECK(server.process().wait(Milliseconds(5000)) == 0);
 }
 
@@ -204,14 +204,14 @@ TEST_CASE("a request for a step of a run that is over is refused, not carried ou
     const link::Reply reset = ask(other.caller, {"reset"});
     CHECK(reset.done());
     CHECK(reset.step == 0);
-    bool told = false;
-    for (int i = 0; i < 100 && !told; ++i)
+    bool reported = false;
+    for (int i = 0; i < 100 && !reported; ++i)
     {
         std::this_thread::sleep_for(Milliseconds(20));
         client.caller.take([&](std::uint64_t of, const link::Reply& reply)
-                           { told = told || (of == *number && has(reasons(reply), "new run")); });
+                           { reported = reported || (of == *number && has(reasons(reply), "new run")); });
     }
-    CHECK(told);
+    CHECK(reported);
 }
 
 TEST_CASE("SIGHUP ends a server as SIGTERM does")

@@ -81,7 +81,7 @@ std::vector<std::string> kinds(wire::Reader<plab_v2_Events>& events)
     return out;
 }
 
-std::string names_in(const link::Snapshot& snapshot)
+std::string names_in(const link::CatalogueContents& snapshot)
 {
     std::string out;
     for (const auto& [id, o] : snapshot.objects) out += id + " ";
@@ -187,12 +187,12 @@ TEST_CASE("however plab-bus ends, the loop loses no time, and within a second fr
     CHECK(ran == doctest::Approx(Seconds(Clock::now() - began).count()).epsilon(0.02));
     CHECK(slipped() - before < 0.02);
     std::int64_t restarts = 0;
-    const auto all_told = [&]
+    const auto all_reported = [&]
     {
         const std::vector<std::string> seen = kinds(*events);
         return (restarts += std::count(seen.begin(), seen.end(), "bus.restarted")) >= 3;
     };
-    for (int i = 0; i < 100 && !all_told(); ++i) std::this_thread::sleep_for(Milliseconds(20));
+    for (int i = 0; i < 100 && !all_reported(); ++i) std::this_thread::sleep_for(Milliseconds(20));
     CHECK(restarts == 3);
     for (const char* how : {"signal 9 (Killed)", "signal 11 (Segmentation fault)", "was stopped"})
         CHECK_MESSAGE(has(server.process().errors(), how), server.process().errors());
@@ -209,7 +209,7 @@ TEST_CASE("after a kill: the catalogue for late joiners and for those who were t
     auto caller = link::Caller::make(session, Seconds(5));
     REQUIRE(caller.ok());
     REQUIRE(ask(*caller, {"swap", "gears", kSwapped}).done());
-    REQUIRE(shows(early, [](const link::Snapshot& s) { return s.interactions.at("gears").type == kSwapped; }));
+    REQUIRE(shows(early, [](const link::CatalogueContents& s) { return s.interactions.at("gears").type == kSwapped; }));
     const std::string before = names_in(early.now());
     (void)seconds_to_frame(session, *frames);
 

@@ -94,7 +94,7 @@ TEST_CASE("a request that waited waits again in the run that was rewound to befo
         const link::Session session = run.server().session();
         link::Catalogue known = catalogue(session);
         const auto mass_is = [&](double mass)
-        { return shows(known, [&](const link::Snapshot& now) { return now.objects.at("red").mass == doctest::Approx(mass); }); };
+        { return shows(known, [&](const link::CatalogueContents& now) { return now.objects.at("red").mass == doctest::Approx(mass); }); };
         run.step_to(120);
         Process asks = ask_for(run.server(), {"set", "red.mass=0.03", "--at", "300"});
         run.step_to(240);  // the snapshot of that second holds who waits

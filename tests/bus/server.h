@@ -36,7 +36,7 @@ public:
     }
     link::Session session() const
     {
-        link::Options options;
+        link::SessionOptions options;
         options.server = name_;
         auto session = link::Session::find(options, Seconds(5));
         REQUIRE_MESSAGE(session.ok(), session.error().text());

@@ -21,7 +21,8 @@ TEST_CASE("a server is ready, is found by name, and ends at SIGTERM and SIGINT w
         server.process().signal(signal);
         CHECK(server.process().wait(Milliseconds(5000)) == 0);
         // Whoever watches sees that all of it is gone.
-        CHECK(shows(known, [](const link::Snapshot& now) { return now.objects.empty() && now.interactions.empty() && !now.server; }));
+        CHECK(shows(known,
+                    [](const link::CatalogueContents& now) { return now.objects.empty() && now.interactions.empty() && !now.server; }));
     }
 }
 

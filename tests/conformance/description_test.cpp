@@ -72,7 +72,7 @@ void check_command(const CommandInfo& command)
 }
 
 /// What somebody who chooses among the algorithms of a family has to know.
-void check_rung(const TypeInfo& info)
+void check_algorithm(const TypeInfo& info)
 {
     CHECK_MESSAGE((info.order > 0 || is_doc(info.accuracy)), "neither an order nor an accuracy");
     for (const std::string* text : {&info.strengths, &info.cost, &info.limits, &info.source}) CHECK(is_doc(*text));
@@ -130,7 +130,7 @@ TEST_CASE("every type says what it is, field by field, role by role, command by 
             check_command(command);
         }
         for (const char* kind : {"Solver/", "Constraint/", "Response/", "Manager/", "Resolution/"})
-            if (name.starts_with(kind)) check_rung(info);
+            if (name.starts_with(kind)) check_algorithm(info);
     }
 }
 

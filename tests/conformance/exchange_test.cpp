@@ -41,12 +41,12 @@ std::map<std::string, Value> values_of(const Simulation& s, const std::string& i
 /// What the reply calls lost, as values to give back. False if something is lost that a request cannot give.
 bool take_lost(const Reply& reply, const std::map<std::string, Value>& before, std::vector<NamedValue>& out)
 {
-    for (const FieldFate& f : reply.swaps.at(0).fields)
+    for (const TransferredField& f : reply.swaps.at(0).fields)
     {
-        if (f.fate != Fate::Lost && f.fate != Fate::Converted) continue;
+        if (f.transfer != FieldTransfer::Lost && f.transfer != FieldTransfer::Converted) continue;
         const auto known = before.find(f.field);
         // Contacts that become other ones come back by themselves, those that are lost do not.
-        if (known == before.end() && f.fate == Fate::Lost) return false;
+        if (known == before.end() && f.transfer == FieldTransfer::Lost) return false;
         if (known != before.end()) out.push_back({f.field, known->second});
     }
     return true;

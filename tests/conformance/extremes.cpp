@@ -53,7 +53,7 @@ bool is_finite(const Value& value)
 }
 
 /// The first field that is not finite and is not excused.
-std::string not_finite(const simulation::Simulation& s, bool told)
+std::string not_finite(const simulation::Simulation& s, bool reported)
 {
     const world::World& world = s.world();
     for (const std::uint32_t i : world.in_id_order())
@@ -61,7 +61,7 @@ std::string not_finite(const simulation::Simulation& s, bool told)
         if (!world.type_of(i)) continue;
         for (const Field& field : world.type_of(i)->schema.fields())
         {
-            if (field.kind == FieldKind::Scratch || field.may_be_infinite || (field.kind == FieldKind::Output && told)) continue;
+            if (field.kind == FieldKind::Scratch || field.may_be_infinite || (field.kind == FieldKind::Output && reported)) continue;
             if (const Value value = world.get(i, field.name); !is_finite(value))
                 return world.id_of(i) + "." + field.name + " is " + model::format_value(value);
         }
@@ -80,7 +80,7 @@ std::string trouble_of(const ExtremeCase& c, int steps)
     if (!scene) return refused(scene.errors());
     simulation::Simulation s(library());
     if (const auto loaded = s.load(*scene); !loaded) return refused(loaded.errors());
-    bool told = false;
+    bool reported = false;
     const double start = processor_seconds();
     for (int i = 0; i < steps && processor_seconds() - start < kEnough; ++i)
     {
@@ -89,8 +89,8 @@ std::string trouble_of(const ExtremeCase& c, int steps)
         s.step();
         const double took = processor_seconds() - before;
         if (took > kMostStep) return "step " + std::to_string(i) + " took " + model::format_real(took) + " s";
-        for (const Event& e : s.events()) told = told || e.severity >= Severity::Warning;
-        if (const std::string what = not_finite(s, told); !what.empty()) return what + " after step " + std::to_string(i);
+        for (const Event& e : s.events()) reported = reported || e.severity >= Severity::Warning;
+        if (const std::string what = not_finite(s, reported); !what.empty()) return what + " after step " + std::to_string(i);
     }
     return {};
 }

@@ -21,7 +21,7 @@ struct Recorder final : ShaftMotion, RatioGraph, RowSink, ContactSink, EventSink
     void apply(Ref, double) override { ++calls; }
     void assign(Ref, double) override { ++calls; }
     void add(std::uint32_t, Ref, Ref, const Ratio&) override { ++calls; }
-    std::span<const StandingPair> standing() const override { return {}; }
+    std::span<const PersistentPair> persistent() const override { return {}; }
     void add(const Contact&) override { ++calls; }
     bool precedes(Ref, Ref) const override { return false; }
     void emit(Event) override { ++calls; }

@@ -37,7 +37,7 @@ TEST_CASE("step.md explains the nodes of the step in their order")
     CHECK(explained == nodes);
 }
 
-TEST_CASE("each rung of a ladder was measured, and nothing else")
+TEST_CASE("each algorithm of a ladder was measured, and nothing else")
 {
     const std::vector<std::string> names = test::library().names();
     std::vector<std::string> measured, expected;
@@ -46,7 +46,7 @@ TEST_CASE("each rung of a ladder was measured, and nothing else")
         for (const std::string& name : names)
             if (name.starts_with(family.prefix) && name != "Response/None") expected.push_back(name);  // it answers nothing
     std::sort(measured.begin(), measured.end()), std::sort(expected.begin(), expected.end());
-    CHECK_MESSAGE(measured == expected, "run: build/bin/bench_rungs --measured, for server/model/measured_costs.h");
+    CHECK_MESSAGE(measured == expected, "run: build/bin/bench_algorithms --measured, for server/model/measured_costs.h");
 }
 
 TEST_CASE("ladders are printed in the order of the table, for each kind of scene")
@@ -57,8 +57,8 @@ TEST_CASE("ladders are printed in the order of the table, for each kind of scene
     {
         CAPTURE(ladder.family);
         CAPTURE(ladder.scene);
-        REQUIRE(ladder.rungs.size() > 1);
-        CHECK(std::is_sorted(ladder.rungs.begin(), ladder.rungs.end(), [](const auto& a, const auto& b) { return a.us < b.us; }));
+        REQUIRE(ladder.algorithms.size() > 1);
+        CHECK(std::is_sorted(ladder.algorithms.begin(), ladder.algorithms.end(), [](const auto& a, const auto& b) { return a.us < b.us; }));
         // Where it is printed: the kind's reference names them in that order.
         const auto text = blueprint::write_reference(test::library(), std::string(ladder.family.substr(0, ladder.family.size() - 1)));
         REQUIRE_MESSAGE(text.ok(), test::reasons(text));
@@ -66,17 +66,18 @@ TEST_CASE("ladders are printed in the order of the table, for each kind of scene
         REQUIRE(row != std::string::npos);
         const std::string line = text->substr(row, text->find('\n', row) - row);
         std::size_t at = 0;
-        for (const auto& rung : ladder.rungs)
+        for (const auto& algorithm : ladder.algorithms)
         {
-            const std::size_t found = line.find("`" + std::string(rung.type.substr(ladder.family.size())) + "` ");
-            CHECK_MESSAGE((found != std::string::npos && found > at), rung.type << " in " << line);
+            const std::size_t found = line.find("`" + std::string(algorithm.type.substr(ladder.family.size())) + "` ");
+            CHECK_MESSAGE((found != std::string::npos && found > at), algorithm.type << " in " << line);
             at = found;
             // plabctl types prints the cost of a type by itself, with its place.
-            const auto type = test::library().require(std::string(rung.type));
+            const auto type = test::library().require(std::string(algorithm.type));
             REQUIRE(type.ok());
             const std::string cost = model::summary_of(**type).cost;
             CHECK_MESSAGE(
-                cost.find(" of " + std::to_string(ladder.rungs.size()) + ") for " + std::string(ladder.scene)) != std::string::npos, cost);
+                cost.find(" of " + std::to_string(ladder.algorithms.size()) + ") for " + std::string(ladder.scene)) != std::string::npos,
+                cost);
         }
     }
 }

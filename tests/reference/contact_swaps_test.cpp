@@ -44,12 +44,12 @@ Reply exchange(Scene& s, const std::string& type, std::vector<NamedValue> values
 
 bool converted(const Reply& reply)
 {
-    for (const FieldFate& f : reply.swaps.at(0).fields)
-        if (f.field.rfind("contacts", 0) == 0 && f.fate == Fate::Converted) return true;
+    for (const TransferredField& f : reply.swaps.at(0).fields)
+        if (f.field.rfind("contacts", 0) == 0 && f.transfer == FieldTransfer::Converted) return true;
     return false;
 }
 
-/// The hard rungs that this build has.
+/// The hard algorithms that this build has.
 std::vector<std::string> hard_types()
 {
     std::vector<std::string> types{"Response/Impulse"};

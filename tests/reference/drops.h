@@ -10,7 +10,7 @@ namespace plab::test
 {
 
 /// A way of answering contacts: Resolution, and Manager/X or Response/Impulse.
-struct Way
+struct Method
 {
     const char* resolution;
     const char* manager;  ///< "Impulse": Response/Impulse
@@ -29,18 +29,18 @@ struct Drop
     double h = 1.0 / 240;
 };
 
-inline std::string scene_of(const Drop& d, const Way& way)
+inline std::string scene_of(const Drop& d, const Method& method)
 {
     const Vec3 n = d.axis / length(d.axis);
     std::string more = "orientation=\"axis " + text(n) + " " + text(d.angle) + "\" linear_velocity=\"" + text(d.velocity) +
                        "\" angular_velocity=\"" + text(d.spin) + "\"";
     if (d.inertia != Vec3{}) more += " center_of_mass=\"0 0 0\" inertia=\"" + text(d.inertia) + "\"";
-    const bool impulse = way.manager == std::string("Impulse");
+    const bool impulse = method.manager == std::string("Impulse");
     return std::string(kGround) + box("f", d.half, 1, {0, 0, d.height}, more) + gravity("f") +
            (impulse ? "<component id=\"contact\" type=\"CDetection/ODE\" between=\"f ground\" resolution=\"Resolution/" +
-                          std::string(way.resolution) + "\" response=\"Response/Impulse\" response.friction=\"" + text(d.friction) +
+                          std::string(method.resolution) + "\" response=\"Response/Impulse\" response.friction=\"" + text(d.friction) +
                           "\" response.restitution=\"0\"/>"
-                    : contact("f ground", way.manager, d.friction, 0, way.resolution));
+                    : contact("f ground", method.manager, d.friction, 0, method.resolution));
 }
 
 /// J, with gravity's.
@@ -61,9 +61,9 @@ struct Fall
     double gain() const { return highest / start; }
 };
 
-inline Fall play(const Drop& d, const Way& way)
+inline Fall play(const Drop& d, const Method& method)
 {
-    Scene s(scene_of(d, way), "dt=\"" + text(d.h) + "\"");
+    Scene s(scene_of(d, method), "dt=\"" + text(d.h) + "\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = true;
     Fall out;
@@ -91,9 +91,9 @@ inline Vec3 any_direction(std::uint64_t& random)
     return v / length(v);
 }
 
-inline constexpr Way kWays[] = {{"None", "Direct"},         {"None", "SequentialImpulse"}, {"None", "SoftStep"},
-                                {"None", "Impulse"},        {"Speculative", "Direct"},     {"Speculative", "SequentialImpulse"},
-                                {"Speculative", "SoftStep"}};
+inline constexpr Method kMethods[] = {{"None", "Direct"},         {"None", "SequentialImpulse"}, {"None", "SoftStep"},
+                                      {"None", "Impulse"},        {"Speculative", "Direct"},     {"Speculative", "SequentialImpulse"},
+                                      {"Speculative", "SoftStep"}};
 
 /// A body that falls and tumbles: inertia ratios up to 1e4, h from 1/30 to 1/1000, w h up to 2, every other one with friction.
 inline Drop any_drop(std::uint64_t& random)
@@ -119,16 +119,16 @@ inline void check_drops(std::uint64_t random, int count)
     for (int i = 0; i < count; ++i)
     {
         const Drop d = any_drop(random);
-        for (const Way& way : kWays)
+        for (const Method& method : kMethods)
         {
-            const Fall f = play(d, way);
+            const Fall f = play(d, method);
             CAPTURE(i);
-            CAPTURE(std::string(way.resolution));
-            CAPTURE(std::string(way.manager));
+            CAPTURE(std::string(method.resolution));
+            CAPTURE(std::string(method.manager));
             CAPTURE(d.h);
             CAPTURE(f.start);
             // SoftStep has the contacts of the step's begin in its sub-steps.
-            const bool exact = way.manager != std::string("SoftStep");
+            const bool exact = method.manager != std::string("SoftStep");
             CHECK(f.gained <= 1e-9 * f.start + (exact ? 0.0 : allowance(d)));
         }
     }

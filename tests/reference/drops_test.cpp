@@ -10,15 +10,15 @@ namespace
 const char* const kSpin = "30 35 20";
 
 /// A ball of 0.1 m and 1 kg with three different moments, that lies on the ground and spins.
-std::string spinning_ball(const Way& way, double friction)
+std::string spinning_ball(const Method& method, double friction)
 {
-    const bool impulse = way.manager == std::string("Impulse");
+    const bool impulse = method.manager == std::string("Impulse");
     return std::string(kGround) +
            ball("f", 0.1, 1, {0, 0, 0.1},
                 std::string("center_of_mass=\"0 0 0\" inertia=\"0.002 0.004 0.006\" angular_velocity=\"") + kSpin + "\"") +
            gravity("f") + "<component id=\"contact\" type=\"CDetection/ODE\" between=\"f ground\" resolution=\"Resolution/" +
-           way.resolution + "\" response=\"Response/" +
-           (impulse ? "Impulse\"" : "Rows\" response.manager=\"Manager/" + std::string(way.manager) + "\"") + " response.friction=\"" +
+           method.resolution + "\" response=\"Response/" +
+           (impulse ? "Impulse\"" : "Rows\" response.manager=\"Manager/" + std::string(method.manager) + "\"") + " response.friction=\"" +
            text(friction) + "\" response.restitution=\"0\"/>";
 }
 
@@ -26,9 +26,9 @@ struct Spun
 {
     double start = 0, highest = 0, rise = 0, last = 0;  ///< J, kinetic
 };
-Spun spin(const Way& way, double friction, double h, double until)
+Spun spin(const Method& method, double friction, double h, double until)
 {
-    Scene s(spinning_ball(way, friction), "dt=\"" + text(h) + "\"");
+    Scene s(spinning_ball(method, friction), "dt=\"" + text(h) + "\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     Spun out;
     out.start = out.last = out.highest = s.simulation().totals().kinetic;
@@ -41,8 +41,8 @@ Spun spin(const Way& way, double friction, double h, double until)
     return out;
 }
 
-const Way kResting[] = {{"None", "Direct"},      {"None", "SequentialImpulse"}, {"None", "SoftStep"},     {"None", "Impulse"},
-                        {"LocalRoot", "Direct"}, {"LocalRoot", "Impulse"},      {"Speculative", "Direct"}};
+const Method kResting[] = {{"None", "Direct"},      {"None", "SequentialImpulse"}, {"None", "SoftStep"},     {"None", "Impulse"},
+                           {"LocalRoot", "Direct"}, {"LocalRoot", "Impulse"},      {"Speculative", "Direct"}};
 
 }  // namespace
 
@@ -52,29 +52,29 @@ TEST_CASE("the rod that tumbles on the floor at 1/240: 104 J, and never more")
 {
     Drop d;
     d.axis = {-0.9352, 0.0889, -0.7059}, d.angle = 1.3744, d.spin = {35.8005, -34.3680, -33.7218}, d.until = 0.5;
-    for (const Way& way : kWays)
+    for (const Method& method : kMethods)
     {
-        CAPTURE(way.resolution);
-        CAPTURE(way.manager);
-        const Fall f = play(d, way);
+        CAPTURE(method.resolution);
+        CAPTURE(method.manager);
+        const Fall f = play(d, method);
         CHECK(f.start == doctest::Approx(104.088).epsilon(1e-5));
         CHECK(f.highest <= f.start * (1 + 1e-9) + allowance(d));
-        if (way.manager != std::string("SoftStep")) CHECK(f.gained <= 1e-9 * f.start);
+        if (method.manager != std::string("SoftStep")) CHECK(f.gained <= 1e-9 * f.start);
     }
 }
 
 TEST_CASE("a spinning ball of unequal inertia keeps its kinetic energy on a smooth plane, and never gains on a rough one")
 {
-    for (const Way& way : kResting)
+    for (const Method& method : kResting)
         for (const double h : {1.0 / 60, 1.0 / 240, 1.0 / 1000})
         {
-            CAPTURE(way.resolution);
-            CAPTURE(way.manager);
+            CAPTURE(method.resolution);
+            CAPTURE(method.manager);
             CAPTURE(h);
-            const Spun smooth = spin(way, 0, h, 10);
+            const Spun smooth = spin(method, 0, h, 10);
             CHECK(std::fabs(smooth.last / smooth.start - 1) < 1e-10);
             CHECK(smooth.highest <= smooth.start * (1 + 1e-10));
-            const Spun rough = spin(way, 0.5, h, 2);
+            const Spun rough = spin(method, 0.5, h, 2);
             CHECK(rough.rise <= 1e-9 * rough.start);
             CHECK(rough.last < rough.start);
         }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "reference/contact_rungs.h"
+#include "reference/contact_algorithms.h"
 #include "support/ground.h"
 #include "support/scene.h"
 #include "support/text.h"
@@ -40,8 +40,8 @@ inline std::string contact(const std::string& between, const std::string& resolu
     return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + resolution +
            "\" response=\"Response/Impulse\" response.restitution=\"" + restitution + "\" " + more + "/>";
 }
-/// Every resolution with every response by impulses that takes it; all rungs: contact_rungs.h.
-inline constexpr Rung kRungs[] = {
+/// Every resolution with every response by impulses that takes it; all algorithms: contact_algorithms.h.
+inline constexpr Algorithm kAlgorithms[] = {
     {"None", "Impulse"},           {"Bisection", "Impulse"},
     {"LocalBisection", "Impulse"}, {"ConservativeAdvancement", "Impulse"},
     {"LocalRoot", "Impulse"},      {"None", "Rows"},

@@ -1,6 +1,6 @@
 // The same claims as in impacts_*_test.cpp, at full size.
 //
-// | problem | rung                 | bound                                                                                |
+// | problem | algorithm                 | bound                                                                                |
 // |---------|----------------------|--------------------------------------------------------------------------------------|
 // | C6      | LocalRoot + Impulse  | 31415 exactly; a step of 0.1 s has 9700 of them, so it may take more than others      |
 // | C10     | LocalRoot, sensor    | 0 wrong in 1e6                                                                       |

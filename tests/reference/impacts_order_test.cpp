@@ -1,7 +1,7 @@
-// Many impacts: their number, their order and what they leave. C4, C5, C6 and C9 as in the catalogue, with the best rung; every rung, C8
-// and C13: impacts_flight_rungs_test.cpp and impacts_series_rungs_test.cpp.
+// Many impacts: their number, their order and what they leave. C4, C5, C6 and C9 as in the catalogue, with the best algorithm; every
+// algorithm, C8 and C13: impacts_flight_algorithms_test.cpp and impacts_series_algorithms_test.cpp.
 //
-// | problem | rung                            | bound                                                                     |
+// | problem | algorithm                            | bound                                                                     |
 // |---------|---------------------------------|---------------------------------------------------------------------------|
 // | C4      | LocalRoot                       | energy 1e-12 of E0, heights 1e-9 m over 20 s at h = 0.01                  |
 // | C5      | certifying + Impulse            | rest at the sum of the series to 1e-6 s, gap 1e-12; at most 60 impacts in |

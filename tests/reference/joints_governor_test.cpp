@@ -3,7 +3,7 @@
 #include <ctime>
 #include <numbers>
 
-#include "reference/rungs.h"
+#include "reference/algorithms.h"
 #include "support/joints.h"
 
 using namespace plab;
@@ -32,19 +32,19 @@ std::string arm(const std::string& id, double sign)
                "anchor_a='" + text(.5 - at) + " 0 0' anchor_b='" + text(sign * kSide) + " 0 0' length='0.5' stiffness='8e5' damping='4e4'");
 }
 
-std::string governor(const SolverRung& rung)
+std::string governor(const SolverAlgorithm& algorithm)
 {
     constexpr double half = .3 * (1 + 1e-4) / 12;
     const std::string turning = "angular_velocity='0 0 " + text(kSpin) + "'";
-    return solver(rung) + gravity() + body("shaft", .3, {half, half, 5e-6}, {0, 0, .5}, turning) +
+    return solver(algorithm) + gravity() + body("shaft", .3, {half, half, 5e-6}, {0, 0, .5}, turning) +
            body("sleeve", 3, {.005, .005, .005}, {0, 0, .5}, turning) +
            joint("bearing", "Hinge", "", "shaft", "anchor='0 0 0' axis='0 0 1'") +
            joint("guide", "Slider", "shaft", "sleeve", "anchor='0 0 0.5' axis='0 0 1'") + arm("right", 1) + arm("left", -1);
 }
 
-double height(const SolverRung& rung, int steps, double until)
+double height(const SolverAlgorithm& algorithm, int steps, double until)
 {
-    Scene s(governor(rung), dt(steps));
+    Scene s(governor(algorithm), dt(steps));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(until);
     CHECK(s.real("pivot_left", "position_error") < 1e-12);
@@ -57,9 +57,9 @@ struct Run
     std::uint64_t evaluations = 0;
     double cost = 0;  ///< s of processor time
 };
-Run ten_seconds(const SolverRung& rung, int steps)
+Run ten_seconds(const SolverAlgorithm& algorithm, int steps)
 {
-    Scene s(governor(rung), dt(steps));
+    Scene s(governor(algorithm), dt(steps));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     Run run;
     const std::clock_t begin = std::clock();
@@ -73,8 +73,8 @@ Run ten_seconds(const SolverRung& rung, int steps)
     run.height = std::fabs(s.vec("sleeve", "position").z - kHeightAt10);
     run.spin = std::fabs(s.vec("shaft", "angular_velocity").z - kSpinAt10);
     run.turned = std::fabs(s.real("bearing", "angle") - kTurnedAt10);
-    MESSAGE(name_of(rung) << ": height " << run.height << " spin " << run.spin << " turned " << run.turned << ", " << run.evaluations
-                          << " evaluations, " << run.cost << " s");
+    MESSAGE(name_of(algorithm) << ": height " << run.height << " spin " << run.spin << " turned " << run.turned << ", " << run.evaluations
+                               << " evaluations, " << run.cost << " s");
     return run;
 }
 
@@ -104,9 +104,9 @@ TEST_CASE("B6: by every solver")
     CHECK(std::fabs(height({"DormandPrince54", kLoose}, 20, 1) - kHeightAt1) < 1e-11);
     CHECK(std::fabs(height({"Automatic"}, 20, 1) - kHeightAt1) < 6e-11);
     CHECK(std::fabs(height({"Radau5", kLoose}, 2, 1) - kHeightAt1) < 1.7e-8);
-    // m, after 0.2 s. The dampers' fastest rate is about 1e4 1/s: explicit rungs begin at 1/4000, their orders show later.
-    const auto error = [&](const SolverRung& rung, int steps) { return std::fabs(height(rung, steps, .2) - expected); };
-    const RungRow table[] = {
+    // m, after 0.2 s. The dampers' fastest rate is about 1e4 1/s: explicit algorithms begin at 1/4000, their orders show later.
+    const auto error = [&](const SolverAlgorithm& algorithm, int steps) { return std::fabs(height(algorithm, steps, .2) - expected); };
+    const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 8000, 2.9e-5, 1},
         {{"StoermerVerlet"}, 4000, 4.2e-7, 0},
         {{"StoermerVerlet"}, 16000, 6.1e-9, 2},
@@ -119,18 +119,19 @@ TEST_CASE("B6: by every solver")
         {{"RotationSplitting"}, 8000, 5.3e-8, 0},
         {{"Exponential"}, 100, 6.7e-12, 0},
     };
-    for (const RungRow& row : table) check_rung(row, error);
+    for (const AlgorithmRow& row : table) check_algorithm(row, error);
     check_same({"Exact"}, {"RungeKutta4"}, 4000, error);
 }
 
-TEST_CASE("B6: explicit rungs beyond their limit say so")
+TEST_CASE("B6: explicit algorithms beyond their limit say so")
 {
-    for (const SolverRung& rung : {SolverRung{"SemiImplicitEuler"}, SolverRung{"StoermerVerlet"}, SolverRung{"RungeKutta4"},
-                                   SolverRung{"RotationSplitting"}, SolverRung{"RotationSplitting", "order=\"2\""}})
+    for (const SolverAlgorithm& algorithm :
+         {SolverAlgorithm{"SemiImplicitEuler"}, SolverAlgorithm{"StoermerVerlet"}, SolverAlgorithm{"RungeKutta4"},
+          SolverAlgorithm{"RotationSplitting"}, SolverAlgorithm{"RotationSplitting", "order=\"2\""}})
     {
-        const std::string name = name_of(rung);
+        const std::string name = name_of(algorithm);
         CAPTURE(name);
-        Scene s(governor(rung), dt(240));
+        Scene s(governor(algorithm), dt(240));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = s.keep_events = true;
         s.step(240);

@@ -122,11 +122,11 @@ TEST_CASE("a manager that does not get there warns, with numbers that can be rea
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = s.keep_events = true;
     s.step(20);
-    const auto told = std::find_if(s.events.begin(), s.events.end(), [](const Event& e) { return e.kind == "manager.not_converged"; });
-    REQUIRE(told != s.events.end());
-    CHECK(told->severity == Severity::Warning);
-    CHECK_MESSAGE(told->message.find("1e-13 would do") != std::string::npos, told->message);
-    CHECK_MESSAGE(told->message.find("0.000") == std::string::npos, told->message);
+    const auto reported = std::find_if(s.events.begin(), s.events.end(), [](const Event& e) { return e.kind == "manager.not_converged"; });
+    REQUIRE(reported != s.events.end());
+    CHECK(reported->severity == Severity::Warning);
+    CHECK_MESSAGE(reported->message.find("1e-13 would do") != std::string::npos, reported->message);
+    CHECK_MESSAGE(reported->message.find("0.000") == std::string::npos, reported->message);
 }
 
 TEST_CASE("a pendulum comes to rest on the limit of its hinge, which bears its moment")

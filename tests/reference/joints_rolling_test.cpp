@@ -147,8 +147,8 @@ TEST_CASE("a ball rolls down an incline with 5/7 g sin a, whatever its solver")
                 dt(100));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(2);
-        const double way = .5 * 5. / 7 * kG * std::sin(a) * 4;
-        CHECK(distance(s.vec("ball", "position"), r * n + way * down) < 1e-12);
+        const double method = .5 * 5. / 7 * kG * std::sin(a) * 4;
+        CHECK(distance(s.vec("ball", "position"), r * n + method * down) < 1e-12);
         CHECK(near(s.real("rolls", "normal_force"), 2 * kG * std::cos(a), 1e-13));
         // What friction takes: 2/7 of the weight along the slope.
         CHECK(near(-dot(s.vec("rolls", "force"), down), 2 * kG * std::sin(a) * 2 / 7, 1e-13));

@@ -7,16 +7,16 @@
 namespace plab::test
 {
 
-/// A rung as a table names it: type without "Solver/", and attributes.
-struct SolverRung
+/// A algorithm as a table names it: type without "Solver/", and attributes.
+struct SolverAlgorithm
 {
     std::string type;
     std::string attributes = {};
 };
 
-inline std::string solver(const SolverRung& rung)
+inline std::string solver(const SolverAlgorithm& algorithm)
 {
-    return "<component id=\"solver\" type=\"Solver/" + rung.type + "\" " + rung.attributes + "/>";
+    return "<component id=\"solver\" type=\"Solver/" + algorithm.type + "\" " + algorithm.attributes + "/>";
 }
 
 inline std::string per_second(int steps) { return "dt=\"1/" + std::to_string(steps) + "\""; }
@@ -30,9 +30,9 @@ inline Vec3 body_spin(const Scene& s, const std::string& body)
 }
 
 /// m x'' = -k x - c x' along x; the spring hangs so far away that its length is never 0.
-inline std::string spring_scene(const SolverRung& rung, double k, double c, double start = 1)
+inline std::string spring_scene(const SolverAlgorithm& algorithm, double k, double c, double start = 1)
 {
-    return solver(rung) + "<component id=\"mass\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"" + text(start) +
+    return solver(algorithm) + "<component id=\"mass\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"" + text(start) +
            " 0 0\"/><component id=\"spring\" type=\"Constraint/SpringDamper\" b=\"mass\" anchor_a=\"-2 0 0\" anchor_b=\"0 0 0\" "
            "length=\"2\""
            " stiffness=\"" +

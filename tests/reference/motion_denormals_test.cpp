@@ -8,7 +8,7 @@
 #include <ctime>
 #include <limits>
 
-#include "reference/rungs.h"
+#include "reference/algorithms.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -53,11 +53,11 @@ double time_of(Scene& s, int steps)
 
 TEST_CASE("A13: by every solver: e^-5t, no denormal number in the state, zeros at the end")
 {
-    for (const SolverRung& rung : kEverySolver)
+    for (const SolverAlgorithm& algorithm : kEverySolver)
     {
-        const std::string name = name_of(rung);
+        const std::string name = name_of(algorithm);
         CAPTURE(name);
-        Scene s(solver(rung) + braked(1), per_second(10));
+        Scene s(solver(algorithm) + braked(1), per_second(10));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         int slow = 0;
         double from = 300, to = 0;

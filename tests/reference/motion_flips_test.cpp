@@ -1,4 +1,4 @@
-// A3 flips of a wing nut, and A5 degenerate inertias, by the rungs.
+// A3 flips of a wing nut, and A5 degenerate inertias, by the algorithms.
 //
 // A3: I = (3, 2, 1), w = (e, 10, e). The spin about the middle axis passes 0 first at (K - v) / p and then every 2 K / p, with
 //     p^2 = (200 + 6 e^2) / 6, k'^2 = 4 e^2 / (200 + 6 e^2) and sd(v) k' = e / sqrt(100 + e^2) (Landau, Lifshitz, Mechanics, 37);
@@ -12,7 +12,7 @@
 //     The state is the momentum in the world, whose rounding (2e-15 of 20 N m s) is a disturbance like e: below e = 1e-9 it is what
 //     decides about the second flip, and errors of the energy decide about it for methods that make some.
 // A5: symmetric tops precess in the body at (I3 - I1) / I1 w3; eigen-gaps of 1e-14 and balls keep their spin. The table below.
-#include "reference/rungs.h"
+#include "reference/algorithms.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -26,13 +26,13 @@ struct Flips
 };
 
 /// Zeros of the spin about the middle axis, by cubic Hermite interpolation in the step: its rate is known from Euler's equations.
-Flips flips_of(const SolverRung& rung, double offset, int steps, double until)
+Flips flips_of(const SolverAlgorithm& algorithm, double offset, int steps, double until)
 {
     char spin[64];
     std::snprintf(spin, sizeof spin, "%.17g 10 %.17g", offset, offset);
-    Scene s(
-        solver(rung) + "<component id=\"nut\" type=\"State/RigidBody\" mass=\"1\" inertia=\"3 2 1\" angular_velocity=\"" + spin + "\"/>",
-        per_second(steps));
+    Scene s(solver(algorithm) + "<component id=\"nut\" type=\"State/RigidBody\" mass=\"1\" inertia=\"3 2 1\" angular_velocity=\"" + spin +
+                "\"/>",
+            per_second(steps));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     const auto rate = [](const Vec3& w) { return (1 - 3) * w.x * w.z / 2; };
     Flips out;
@@ -60,7 +60,10 @@ Flips flips_of(const SolverRung& rung, double offset, int steps, double until)
 }
 
 /// s, of the first flip at e = 1e-3.
-double flip_error(const SolverRung& rung, int steps) { return std::fabs(flips_of(rung, 1e-3, steps, 3).first - 1.66131075292830108); }
+double flip_error(const SolverAlgorithm& algorithm, int steps)
+{
+    return std::fabs(flips_of(algorithm, 1e-3, steps, 3).first - 1.66131075292830108);
+}
 
 struct Reference
 {
@@ -71,9 +74,9 @@ constexpr Reference kReferences[] = {{1e-3, 1.66131075292830108, 3.5507253039658
                                      {1e-9, 4.05422739044919485, 8.33655857978867360},
                                      {1e-12, 5.25068570139411342, 10.7294752016785107}};
 
-Vec3 spin_after(const SolverRung& rung, const std::string& inertia, const std::string& spin, int steps, double until)
+Vec3 spin_after(const SolverAlgorithm& algorithm, const std::string& inertia, const std::string& spin, int steps, double until)
 {
-    Scene s(solver(rung) + "<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"" + inertia + "\" angular_velocity=\"" +
+    Scene s(solver(algorithm) + "<component id=\"b\" type=\"State/RigidBody\" mass=\"1\" inertia=\"" + inertia + "\" angular_velocity=\"" +
                 spin + "\"/>",
             per_second(steps));
     REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -87,7 +90,7 @@ TEST_CASE("A3: a wing nut flips when the elliptic integral says, whatever the di
 {
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         double first[4], interval;  ///< s
     };
     const Row table[] = {{{"Exact"}, {1e-9, 1e-8, 1e-5, 1e-2}, 1e-7},
@@ -100,8 +103,8 @@ TEST_CASE("A3: a wing nut flips when the elliptic integral says, whatever the di
         for (std::size_t i = 0; i < 4; ++i)
         {
             const Reference& r = kReferences[i];
-            const Flips found = flips_of(row.rung, r.offset, 100, r.first + 1.5 * r.interval);
-            CAPTURE(row.rung.type);
+            const Flips found = flips_of(row.algorithm, r.offset, 100, r.first + 1.5 * r.interval);
+            CAPTURE(row.algorithm.type);
             CAPTURE(r.offset);
             CAPTURE(found.first - r.first);
             CHECK(std::fabs(found.first - r.first) < row.first[i]);
@@ -111,7 +114,7 @@ TEST_CASE("A3: a wing nut flips when the elliptic integral says, whatever the di
 
 TEST_CASE("A3: the first flip by every solver, with its order")
 {
-    const RungRow table[] = {
+    const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 1000, 1.9e-4, 1},
         {{"StoermerVerlet"}, 100, 1.9e-3, 2},
         {{"RotationSplitting", "order=\"2\""}, 100, 8.2e-4, 2},
@@ -123,11 +126,11 @@ TEST_CASE("A3: the first flip by every solver, with its order")
         {{"Radau5"}, 100, 2.1e-6, 0},
         {{"Exact"}, 100, 5e-10, 0},  // what the interpolation between steps leaves
     };
-    for (const RungRow& row : table) check_rung(row, flip_error);
+    for (const AlgorithmRow& row : table) check_algorithm(row, flip_error);
     check_same({"Automatic"}, {"Exact"}, 100, flip_error);
 }
 
-TEST_CASE("A5: degenerate tops by the rungs")
+TEST_CASE("A5: degenerate tops by the algorithms")
 {
     struct Top
     {
@@ -142,7 +145,7 @@ TEST_CASE("A5: degenerate tops by the rungs")
                         {"2 2 2", "1 0 2", 2, 1, 0, 100, 3}};
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         double bound[4];
     };
     const Row table[] = {{{"Exact"}, {1e-12, 1e-9, 1e-13, 1e-13}},           {{"Automatic"}, {1e-12, 1e-9, 1e-13, 1e-13}},
@@ -154,9 +157,9 @@ TEST_CASE("A5: degenerate tops by the rungs")
         for (std::size_t i = 0; i < 4; ++i)
         {
             const Top& t = tops[i];
-            CAPTURE(row.rung.type);
+            CAPTURE(row.algorithm.type);
             CAPTURE(t.inertia);
-            const Vec3 w = spin_after(row.rung, t.inertia, t.spin, t.steps, t.until);
+            const Vec3 w = spin_after(row.algorithm, t.inertia, t.spin, t.steps, t.until);
             const double turned = t.rate * t.until;
             const double error = distance(w, {t.lateral * std::cos(turned), t.lateral * std::sin(turned), t.axial});
             CHECK(error < row.bound[i]);

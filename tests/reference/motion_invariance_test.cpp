@@ -41,9 +41,9 @@ struct Relative
 };
 
 /// Of b, in the frame of the scene, after 2 s.
-Relative pair(const SolverRung& rung, const Frame& f)
+Relative pair(const SolverAlgorithm& algorithm, const Frame& f)
 {
-    Scene s(solver(rung) + body("a", f, {}, {0, 0.1, 0}, {0.5, 1, 2}) + body("b", f, {1, 0, 0}, {0, -0.3, 0.2}, {2, 0.1, -1}) +
+    Scene s(solver(algorithm) + body("a", f, {}, {0, 0.1, 0}, {0.5, 1, 2}) + body("b", f, {1, 0, 0}, {0, -0.3, 0.2}, {2, 0.1, -1}) +
                 "<component id=\"spring\" type=\"Constraint/SpringDamper\" a=\"a\" b=\"b\" anchor_a=\"0.1 0 0\" anchor_b=\"-0.2 0.1 0\""
                 " stiffness=\"50\" damping=\"0.5\" length=\"0.8\"/>",
             per_second(240));
@@ -70,7 +70,7 @@ TEST_CASE("A11: the same relative motion wherever, however fast and whichever wa
     const Quat turn = normalized(Quat{0.3, -0.5, 0.7, 0.4});
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         double far, fast, turned;
     };
     const Row table[] = {
@@ -79,16 +79,16 @@ TEST_CASE("A11: the same relative motion wherever, however fast and whichever wa
         {{"DormandPrince54"}, 1e-7, 2e-11, 4e-12},   {{"Radau5"}, 1e-7, 4e-9, 2e-10},          {{"Exponential"}, 1e-4, 9e-12, 2.5e-13}};
     for (const Row& row : table)
     {
-        const SolverRung& rung = row.rung;
-        CAPTURE(rung.type);
-        const Relative here = pair(rung, {});
+        const SolverAlgorithm& algorithm = row.algorithm;
+        CAPTURE(algorithm.type);
+        const Relative here = pair(algorithm, {});
         const auto apart = [&](const Frame& f)
         {
-            const Relative there = pair(rung, f);
+            const Relative there = pair(algorithm, f);
             return std::fmax(distance(here.place, there.place), attitude_error(here.attitude, there.attitude));
         };
         const double far = apart({{1e7, -1e7, 1e7}, {}, {}}), fast = apart({{}, {1e3, 0, -1e3}, {}}), turned = apart({{}, {}, turn});
-        MESSAGE(rung.type << ": " << far << " " << fast << " " << turned);
+        MESSAGE(algorithm.type << ": " << far << " " << fast << " " << turned);
         CHECK(far < row.far);
         CHECK(fast < row.fast);
         CHECK(turned < row.turned);
@@ -97,16 +97,17 @@ TEST_CASE("A11: the same relative motion wherever, however fast and whichever wa
 
 TEST_CASE("A13: motion dies away as e^-5t, ends in zeros before numbers become denormal, and steps stay what they are")
 {
-    for (const SolverRung& rung : {SolverRung{"RungeKutta4"}, SolverRung{"Automatic"}, SolverRung{"StoermerVerlet"}})
+    for (const SolverAlgorithm& algorithm :
+         {SolverAlgorithm{"RungeKutta4"}, SolverAlgorithm{"Automatic"}, SolverAlgorithm{"StoermerVerlet"}})
     {
-        CAPTURE(rung.type);
-        Scene s(solver(rung) + braked(20), per_second(50));
+        CAPTURE(algorithm.type);
+        Scene s(solver(algorithm) + braked(20), per_second(50));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.step(2);  // Automatic looks twice at the first one
         const auto evaluations = s.simulation().stepper().report().evaluations;
         s.run(10);
         const double z = -0.1, second = 1 + z + z * z / 2, fourth = second + z * z * z / 6 + z * z * z * z / 24;
-        const double factor = rung.type == "StoermerVerlet" ? second : fourth;  // of each of 500 steps; e^-50 to 9 % and to 4e-5
+        const double factor = algorithm.type == "StoermerVerlet" ? second : fourth;  // of each of 500 steps; e^-50 to 9 % and to 4e-5
         CHECK(s.vec("b7", "linear_velocity").x / std::pow(factor, 500) == doctest::Approx(1).epsilon(1e-9));
         while (s.simulation().time() < 300)
         {

@@ -1,6 +1,6 @@
 // A6: Kepler's ellipse, e = 0.9, the force in a script, to t = 10 (1.59 orbits). Reference: Kepler's equation in 30 digits.
 //
-// rung                     force calls per orbit   error
+// algorithm                     force calls per orbit   error
 // DormandPrince54, 1e-7    < 850                   3e-6
 // DormandPrince54, 1e-9    < 1600                  1e-7
 // DormandPrince54, 1e-11   < 3800                  1e-9
@@ -11,7 +11,7 @@
 // 1.0, 1.05 .. 1.8, no step refused and 6 calls each, this pair reaches 2.1e-5 with 400 calls per orbit, 1.7e-8 with 1000,
 // 3.4e-10 with 1900, 1.3e-12 with 4800 (a separate program). What is spent above that: one call in seven books the energy
 // ledger, and error control spreads steps by tolerance, not by what the end needs.
-#include "reference/rungs.h"
+#include "reference/algorithms.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -24,10 +24,10 @@ struct Orbit
     double error = 0, calls = 0, energy = 0;  ///< m; per orbit; J, between ledger and kinetic energy
 };
 
-Orbit orbit(const SolverRung& rung, const std::string& step, bool told = false)
+Orbit orbit(const SolverAlgorithm& algorithm, const std::string& step, bool reported = false)
 {
     Scene s(
-        solver(rung) +
+        solver(algorithm) +
             R"(<component id="planet" type="State/RigidBody" mass="1" inertia="1 1 1" position="0.1 0 0" linear_velocity="0 4.358898943540674 0"/>
                    <component id="sun" type="Script/Lua" driven="planet"><param name="code">
                    function force(t, state)
@@ -37,7 +37,7 @@ Orbit orbit(const SolverRung& rung, const std::string& step, bool told = false)
                    end</param></component>)",
         step);
     REQUIRE_MESSAGE(s.loaded(), s.error());
-    s.warnings_expected = s.keep_events = told;
+    s.warnings_expected = s.keep_events = reported;
     double calls = 0;
     const double before = s.simulation().totals().kinetic;
     while (s.simulation().time() < 10 - 1e-9)
@@ -45,7 +45,7 @@ Orbit orbit(const SolverRung& rung, const std::string& step, bool told = false)
         s.step();
         calls += static_cast<double>(s.simulation().stepper().report().evaluations);
     }
-    CHECK(s.count("script.error") == (told ? 1 : 0));
+    CHECK(s.count("script.error") == (reported ? 1 : 0));
     double work = 0;
     for (const double w : s.simulation().stepper().work()) work += w;
     return {distance(s.vec("planet", "position"), {-1.8538537094055792, -0.130885404839925551, 0}), calls * 2 * M_PI / 10,
@@ -79,16 +79,16 @@ TEST_CASE("A6: DormandPrince54 goes round in one step of 10 s, as well in steps 
     }
 }
 
-TEST_CASE("A6: the other rungs, each with up to 25000 calls per orbit, and a tenth of the steps")
+TEST_CASE("A6: the other algorithms, each with up to 25000 calls per orbit, and a tenth of the steps")
 {
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         int steps;            ///< per s
         double calls, error;  ///< per orbit; m
         double coarse;        ///< m, with a tenth of the steps
         double order;
-        bool told = false;  ///< that the coarse one's force is not finite: it meets the sun
+        bool reported = false;  ///< that the coarse one's force is not finite: it meets the sun
     };
     const Row table[] = {
         {{"SemiImplicitEuler"}, 4000, 25133, 1.0e-2, 0.10, 1},
@@ -103,9 +103,10 @@ TEST_CASE("A6: the other rungs, each with up to 25000 calls per orbit, and a ten
     };
     for (const Row& row : table)
     {
-        const std::string name = name_of(row.rung);
+        const std::string name = name_of(row.algorithm);
         CAPTURE(name);
-        const Orbit fine = orbit(row.rung, per_second(row.steps)), coarse = orbit(row.rung, per_second(row.steps / 10), row.told);
+        const Orbit fine = orbit(row.algorithm, per_second(row.steps)),
+                    coarse = orbit(row.algorithm, per_second(row.steps / 10), row.reported);
         MESSAGE(name << ": " << fine.error << " " << fine.calls << "; " << coarse.error << " " << coarse.calls);
         CHECK(fine.calls == doctest::Approx(row.calls).epsilon(0.02));
         CHECK(fine.error < 2 * row.error);
@@ -113,11 +114,11 @@ TEST_CASE("A6: the other rungs, each with up to 25000 calls per orbit, and a ten
         if (row.order == 0) continue;
         CHECK(fine.error > 0.5 * row.error);
         CHECK(coarse.error > 0.5 * row.coarse);
-        const double order = observed_order(fine.error, orbit(row.rung, per_second(2 * row.steps)).error);
+        const double order = observed_order(fine.error, orbit(row.algorithm, per_second(2 * row.steps)).error);
         MESSAGE(name << " order " << order);
         CHECK(order == doctest::Approx(row.order).epsilon(0.1));
     }
-    const auto error = [](const SolverRung& rung, int steps) { return orbit(rung, per_second(steps)).error; };
+    const auto error = [](const SolverAlgorithm& algorithm, int steps) { return orbit(algorithm, per_second(steps)).error; };
     check_same({"Exact"}, {"RotationSplitting"}, 330, error);
     check_same({"Automatic"}, {"RungeKutta4"}, 1000, error);
 }

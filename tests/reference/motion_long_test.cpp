@@ -1,5 +1,6 @@
 // A7 and A8: 1e7 steps. A7, oscillator w = 1, dt = 0.01 s: what each symplectic method keeps instead of the energy stays to rounding,
-// 1e-12 sqrt(n / 1e6) relative, and the energy within what that allows. Every other solver, with its law: motion_oscillator_rungs_test.cpp.
+// 1e-12 sqrt(n / 1e6) relative, and the energy within what that allows. Every other solver, with its law:
+// motion_oscillator_algorithms_test.cpp.
 //   SemiImplicitEuler     1e7 steps   keeps x^2 + v^2 - h x v       energy within h/2
 //   StoermerVerlet        1e7         v^2 + (1 - h^2/4) x^2         h^2/4
 //   RotationSplitting 2   1e7         x^2 + (1 - h^2/4) v^2         h^2/4
@@ -8,7 +9,7 @@
 //   RungeKutta4           1e6         loses n h^6 / 72, its law
 //   Exponential           1e5         1e-12
 // A8, the clock: n dt to the last bit after 1e7 steps of 1e-3 s and of 1/60 s
-#include "reference/rungs.h"
+#include "reference/algorithms.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -24,9 +25,9 @@ struct Swing
 };
 
 /// a, b: what a method keeps is x^2 + a x v + b v^2, here 1 at the start.
-Swing swing(const SolverRung& rung, std::int64_t steps, double a = 0, double b = 1)
+Swing swing(const SolverAlgorithm& algorithm, std::int64_t steps, double a = 0, double b = 1)
 {
-    Scene s(spring_scene(rung, 1, 0), "dt=\"0.01\"");
+    Scene s(spring_scene(algorithm, 1, 0), "dt=\"0.01\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     Swing out;
     for (std::int64_t i = 0; i < steps; i += 997)
@@ -37,7 +38,7 @@ Swing swing(const SolverRung& rung, std::int64_t steps, double a = 0, double b =
         out.worst = std::fmax(out.worst, std::fabs(out.last));
         out.kept = std::fmax(out.kept, std::fabs(x * x + a * x * v + b * v * v - 1));
     }
-    MESSAGE(name_of(rung) << ": energy " << out.worst << ", kept " << out.kept << ", at the end " << out.last);
+    MESSAGE(name_of(algorithm) << ": energy " << out.worst << ", kept " << out.kept << ", at the end " << out.last);
     return out;
 }
 
@@ -48,7 +49,7 @@ TEST_CASE("A7: energy over 1e7 steps: bounded where it should be, lost by the la
     const double h2 = kStep * kStep;
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         std::int64_t steps;
         double a, b, worst;
     };
@@ -58,9 +59,9 @@ TEST_CASE("A7: energy over 1e7 steps: bounded where it should be, lost by the la
                          {{"ImplicitMidpoint", "relative_tolerance=\"1e-15\""}, 1'000'000, 0, 1, 0}};
     for (const Row& row : table)
     {
-        const std::string name = name_of(row.rung);
+        const std::string name = name_of(row.algorithm);
         CAPTURE(name);
-        const Swing found = swing(row.rung, row.steps, row.a, row.b);
+        const Swing found = swing(row.algorithm, row.steps, row.a, row.b);
         const double rounding = 1e-12 * std::sqrt(static_cast<double>(row.steps) / 1e6);
         CHECK(found.kept < rounding);
         CHECK(found.worst < 1.01 * row.worst + rounding);

@@ -13,7 +13,7 @@ inline constexpr double kAlpha = 0.2, kQuarter = .48608973195735393546;
 /// A block on two plates, so that each edge meets a body of its own and its impact can be located; turned about the edge at the
 /// origin by `tilt` from standing flat, spinning with `spin` towards flat. The plates reach `under` (m) below it: where that is much,
 /// it comes to lie on their ends as well as on its edge, and what the impact leaves is not Housner's.
-inline std::string block(double tilt, double spin, double under, const Rung& rung)
+inline std::string block(double tilt, double spin, double under, const Algorithm& algorithm)
 {
     const Vec3 arm{-std::sin(kAlpha - tilt), 0, std::cos(kAlpha - tilt)};
     const std::string attitude = " orientation=\"" + text(std::cos(tilt / 2)) + " 0 " + text(std::sin(tilt / 2)) + " 0\"";
@@ -22,14 +22,14 @@ inline std::string block(double tilt, double spin, double under, const Rung& run
     return box("left", {1, 2, 0.5}, "position=\"" + text(Vec3{left, 0, -0.5}) + "\"", "Static") +
            box("right", {1, 2, 0.5}, "position=\"" + text(Vec3{1 - under, 0, -0.5}) + "\"", "Static") +
            box("block", {std::sin(kAlpha), 0.5, std::cos(kAlpha)}, at(arm, cross({0, -spin, 0}, arm)) + attitude + turning) +
-           contact("block", rung, plastic(rung), 2,
-                   "against=\"left right\" " + stiffness(rung, 1e5, 1e7, "response.steps_per_contact=\"20\""));
+           contact("block", algorithm, plastic(algorithm), 2,
+                   "against=\"left right\" " + stiffness(algorithm, 1e5, 1e7, "response.steps_per_contact=\"20\""));
 }
 
 /// s: when the block first meets the other plate, as it is told.
-inline double first_impact(const Rung& rung, double h)
+inline double first_impact(const Algorithm& algorithm, double h)
 {
-    Scene s(block(0.1, 0, 0.1, rung) + gravity("block"), "dt=\"" + text(h) + "\"");
+    Scene s(block(0.1, 0, 0.1, algorithm) + gravity("block"), "dt=\"" + text(h) + "\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = s.keep_events = true;
     while (s.simulation().time() < 0.6) s.step();
@@ -40,7 +40,7 @@ inline double first_impact(const Rung& rung, double h)
 
 inline constexpr Vec3 kDownhill{0.783963147838, 0, -9.778624738829};  // 9.81 (sin .08, 0, -cos .08)
 
-inline std::string wheel(const Rung& rung)
+inline std::string wheel(const Algorithm& algorithm)
 {
     const double alpha = std::numbers::pi / 8, spin = 1.2;
     std::string points;
@@ -50,13 +50,13 @@ inline std::string wheel(const Rung& rung)
            "\"/><component id=\"wheel\" type=\"State/RigidBody\" shape=\"wheel.shape\" center_of_mass=\"0 0 0\" inertia=\"" +
            text(Vec3{1, 1e-3, 1}) + "\" angular_velocity=\"0 " + text(spin) + " 0\" " +
            at({0, 0, std::cos(alpha)}, {spin * std::cos(alpha), 0, spin * std::sin(alpha)}) + "/>" + gravity("wheel", kDownhill) +
-           contact("wheel ground", rung, plastic(rung), 3, stiffness(rung, 1e5, 1e7, "response.steps_per_contact=\"20\""));
+           contact("wheel ground", algorithm, plastic(algorithm), 3, stiffness(algorithm, 1e5, 1e7, "response.steps_per_contact=\"20\""));
 }
 
 /// Spins after each step of a rimless wheel.
-inline std::vector<double> walk(const Rung& rung, double h, double until)
+inline std::vector<double> walk(const Algorithm& algorithm, double h, double until)
 {
-    Scene s(wheel(rung), "dt=\"" + text(h) + "\"");
+    Scene s(wheel(algorithm), "dt=\"" + text(h) + "\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = true;
     std::vector<double> out;

@@ -7,7 +7,7 @@
 //   w+ = r w-,  r = (I + cos 45) / (I + 1);   w-^2 = w+^2 + 2 g (cos(.08 - pi/8) - cos(.08 + pi/8)) / (1 + I)
 // fixed point 1.0954628 and contraction of w^2 cos^2 45 = .5 for I = 0; 1.0958222331616213, .50041388537773225 for I = 1e-3.
 //
-// | problem | rung                                    | bound                                                               |
+// | problem | algorithm                                    | bound                                                               |
 // |---------|-----------------------------------------|---------------------------------------------------------------------|
 // | C23     | impact alone, all that locate           | w'/w to 6e-8 (started 1e-7 rad ahead of it: the arms are off by it) |
 // |         | quarter period, located + Impulse       | .15 h: an edge that stands is stepped with order 1 (asserted)       |
@@ -32,11 +32,11 @@ using namespace plab::test;
 
 TEST_CASE("C23: at the impact of a rocking block the old edge lets go")
 {
-    for (const Rung& rung : kRungs)
+    for (const Algorithm& algorithm : kAlgorithms)
     {
-        if (!rung.locates()) continue;
-        CAPTURE(rung.name());
-        Scene s(block(1e-7, 1, 1e-7, rung), "dt=\"1/100\"");  // no gravity: at 1 rad/s it is there in 1e-7 s
+        if (!algorithm.locates()) continue;
+        CAPTURE(algorithm.name());
+        Scene s(block(1e-7, 1, 1e-7, algorithm), "dt=\"1/100\"");  // no gravity: at 1 rad/s it is there in 1e-7 s
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = s.keep_events = true;
         s.step();
@@ -47,15 +47,15 @@ TEST_CASE("C23: at the impact of a rocking block the old edge lets go")
 
 TEST_CASE("C23: a rocking block comes down after Housner's quarter period")
 {
-    for (const Rung& rung : kRungs)
+    for (const Algorithm& algorithm : kAlgorithms)
     {
-        CAPTURE(rung.name());
+        CAPTURE(algorithm.name());
         double off[3];
         int k = 0;
-        for (const double h : {0.01, 0.0025, 0.000625}) off[k] = std::fabs(first_impact(rung, h) - kQuarter), ++k;
-        const double share = !rung.locates() ? 1.15 : rung.rows() ? 0.45 : 0.15;
+        for (const double h : {0.01, 0.0025, 0.000625}) off[k] = std::fabs(first_impact(algorithm, h) - kQuarter), ++k;
+        const double share = !algorithm.locates() ? 1.15 : algorithm.rows() ? 0.45 : 0.15;
         for (k = 0; k < 3; ++k) CHECK(off[k] < share * 0.01 / (1 << (2 * k)));
-        if (rung.locates() && !rung.rows()) CHECK((off[0] / off[1] > 3 && off[0] / off[1] < 6));
+        if (algorithm.locates() && !algorithm.rows()) CHECK((off[0] / off[1] > 3 && off[0] / off[1] < 6));
     }
     CHECK(std::fabs(first_impact({"LocalRoot", "Impulse"}, 0.000625) - kQuarter) < 0.5 * (kQuarter - 0.485519587413140505));
 }
@@ -63,23 +63,23 @@ TEST_CASE("C23: a rocking block comes down after Housner's quarter period")
 TEST_CASE("C24: a rimless wheel comes to its limit cycle, half as far away with each step")
 {
     constexpr double kFixed = 1.0958222331616213;
-    for (const Rung& rung : {Rung{"LocalRoot", "Impulse"}, Rung{"LocalBisection", "Impulse"}, Rung{"None", "Rows"},
-                             Rung{"Speculative", "Rows"}, Rung{"LocalRoot", "Rows"}})
+    for (const Algorithm& algorithm : {Algorithm{"LocalRoot", "Impulse"}, Algorithm{"LocalBisection", "Impulse"}, Algorithm{"None", "Rows"},
+                                       Algorithm{"Speculative", "Rows"}, Algorithm{"LocalRoot", "Rows"}})
         for (const double h : {0.0025, 0.001})
         {
-            CAPTURE(rung.name());
+            CAPTURE(algorithm.name());
             CAPTURE(h);
-            const std::vector<double> w = walk(rung, h, 8);
+            const std::vector<double> w = walk(algorithm, h, 8);
             REQUIRE(w.size() >= 7);
-            const bool trembles = rung.rows() && !rung.is("None");
+            const bool trembles = algorithm.rows() && !algorithm.is("None");
             if (trembles)
             {
                 CHECK(std::fabs(*std::max_element(w.begin() + 6, w.end()) - kFixed) < 12 * h);
                 CHECK(*std::min_element(w.begin() + 6, w.end()) > kFixed - 0.1);
             }
             else
-                CHECK(std::fabs(w[6] - kFixed) < (rung.rows() ? 6 : 12) * h);
-            if (rung.rows() || h > 0.001) continue;
+                CHECK(std::fabs(w[6] - kFixed) < (algorithm.rows() ? 6 : 12) * h);
+            if (algorithm.rows() || h > 0.001) continue;
             const double end = w.back() * w.back(), first = w[0] * w[0] - end, second = w[1] * w[1] - end;
             CHECK(std::fabs(second / first - 0.5) < 0.035);
         }

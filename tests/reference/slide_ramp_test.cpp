@@ -1,4 +1,4 @@
-// A box on a ramp: C14b and C14c of the catalogue, by every rung (contact_rungs.h). Bounds: about twice what is reached.
+// A box on a ramp: C14b and C14c of the catalogue, by every algorithm (contact_algorithms.h). Bounds: about twice what is reached.
 #include <numbers>
 
 #include "slide.h"
@@ -19,23 +19,24 @@ TEST_CASE("C14b: a box slides down 30 degrees with mu = 0.3 at g (sin - mu cos)"
         {"located", "Impulse", {6e-15, 2e-15}},
         {"*", "springs", {3.2e-13, 2.2e-5}, {0, 3e-6}},
     };
-    check_rungs(every_rung(), table,
-                [a](const Rung& rung)
-                {
-                    Scene s(brick() + gravity("a", leaning(std::numbers::pi / 6)) + held(rung, 0.3), step_of(0.01));
-                    REQUIRE_MESSAGE(s.loaded(), s.error());
-                    s.run(1);
-                    return std::array{std::fabs(s.vec("a", "linear_velocity").x / a - 1), std::fabs(s.vec("a", "position").x - 0.5 * a)};
-                });
+    check_algorithms(
+        every_algorithm(), table,
+        [a](const Algorithm& algorithm)
+        {
+            Scene s(brick() + gravity("a", leaning(std::numbers::pi / 6)) + held(algorithm, 0.3), step_of(0.01));
+            REQUIRE_MESSAGE(s.loaded(), s.error());
+            s.run(1);
+            return std::array{std::fabs(s.vec("a", "linear_velocity").x / a - 1), std::fabs(s.vec("a", "position").x - 0.5 * a)};
+        });
 }
 
 namespace
 {
 /// m: where a box of 30 degrees is after `until`, friction `off` from what would hold it.
-double on_ramp(const Rung& rung, double off, double h, double until)
+double on_ramp(const Algorithm& algorithm, double off, double h, double until)
 {
     const double angle = std::numbers::pi / 6;
-    Scene s(brick() + gravity("a", leaning(angle)) + held(rung, std::tan(angle) * (1 + off)), step_of(h));
+    Scene s(brick() + gravity("a", leaning(angle)) + held(algorithm, std::tan(angle) * (1 + off)), step_of(h));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(until);
     return s.vec("a", "position").x;
@@ -44,16 +45,16 @@ double on_ramp(const Rung& rung, double off, double h, double until)
 
 TEST_CASE("C14c: a box on a ramp at mu = tan(angle) (1 -+ 1e-6) holds for an hour with Direct, and slides by the difference")
 {
-    for (const Rung& rung : every_rung())
+    for (const Algorithm& algorithm : every_algorithm())
     {
-        if (!rung.by("Direct")) continue;
-        CAPTURE(rung.name());
-        CHECK(std::fabs(on_ramp(rung, 1e-6, 0.1, rung.is("None") ? 3600 : 360)) < 1e-9);
-        CHECK(std::fabs(on_ramp(rung, -1e-6, 0.1, 100) - 0.5 * kG * 0.5 * 1e-6 * 1e4) < 1e-5);
+        if (!algorithm.by("Direct")) continue;
+        CAPTURE(algorithm.name());
+        CHECK(std::fabs(on_ramp(algorithm, 1e-6, 0.1, algorithm.is("None") ? 3600 : 360)) < 1e-9);
+        CHECK(std::fabs(on_ramp(algorithm, -1e-6, 0.1, 100) - 0.5 * kG * 0.5 * 1e-6 * 1e4) < 1e-5);
     }
 }
 
-TEST_CASE("C14c: by every rung at 1/100: what it moves at mu = tan(angle) (1 + 1e-6), and beside what is due at (1 - 1e-6)")
+TEST_CASE("C14c: by every algorithm at 1/100: what it moves at mu = tan(angle) (1 + 1e-6), and beside what is due at (1 - 1e-6)")
 {
     // m: in 5 s (springs: .5 s); in as much again; beside what is due in both, 0.25 mm (2.5e-6 m).
     // What has begun to slip in the first steps is braked by a millionth of the weight only, so it goes on. Impulses that hold do so below
@@ -67,16 +68,17 @@ TEST_CASE("C14c: by every rung at 1/100: what it moves at mu = tan(angle) (1 + 1
         {"*", "Penalty", {7.6e-4, 7.4e-4, 1.5e-3}, {1e-4, 1e-4, 3e-4}},
         {"*", "HuntCrossley", {4.5e-3, 4.5e-3, 9e-3}, {1e-3, 1e-3, 2e-3}},
     };
-    check_rungs(every_rung(), table,
-                [](const Rung& rung)
-                {
-                    const double t = rung.springs() ? 0.5 : 5, due = 0.5 * kG * 0.5 * 1e-6 * 4 * t * t;
-                    const double once = on_ramp(rung, 1e-6, 0.01, t), twice = on_ramp(rung, 1e-6, 0.01, 2 * t);
-                    return std::array{std::fabs(once), std::fabs(twice - once), std::fabs(on_ramp(rung, -1e-6, 0.01, 2 * t) - due)};
-                });
+    check_algorithms(
+        every_algorithm(), table,
+        [](const Algorithm& algorithm)
+        {
+            const double t = algorithm.springs() ? 0.5 : 5, due = 0.5 * kG * 0.5 * 1e-6 * 4 * t * t;
+            const double once = on_ramp(algorithm, 1e-6, 0.01, t), twice = on_ramp(algorithm, 1e-6, 0.01, 2 * t);
+            return std::array{std::fabs(once), std::fabs(twice - once), std::fabs(on_ramp(algorithm, -1e-6, 0.01, 2 * t) - due)};
+        });
 }
 
-TEST_CASE("C14c: one percent below slipping every rung holds")
+TEST_CASE("C14c: one percent below slipping every algorithm holds")
 {
     // m: in the first half of a second; in ten times as much (springs: once more).
     constexpr Bound<2> table[] = {
@@ -88,10 +90,11 @@ TEST_CASE("C14c: one percent below slipping every rung holds")
         {"*", "Penalty", {4e-5, 1e-18}, {5e-6, 0}},
         {"*", "HuntCrossley", {4.7e-4, 1e-18}, {5e-5, 0}},
     };
-    check_rungs(every_rung(), table,
-                [](const Rung& rung)
-                {
-                    const double first = on_ramp(rung, 0.01, 0.01, 0.5);
-                    return std::array{std::fabs(first), std::fabs(on_ramp(rung, 0.01, 0.01, rung.springs() ? 1 : 5) - first)};
-                });
+    check_algorithms(
+        every_algorithm(), table,
+        [](const Algorithm& algorithm)
+        {
+            const double first = on_ramp(algorithm, 0.01, 0.01, 0.5);
+            return std::array{std::fabs(first), std::fabs(on_ramp(algorithm, 0.01, 0.01, algorithm.springs() ? 1 : 5) - first)};
+        });
 }

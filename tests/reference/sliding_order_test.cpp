@@ -102,10 +102,10 @@ Leaving errors_on_dome(const std::string& response, int steps_per_second)
     double low = 0, high = 2;
     for (int i = 0; i < 60; ++i)
     {
-        Swing way{0, kSpeed / kLength};
+        Swing method{0, kSpeed / kLength};
         const double middle = 0.5 * (low + high);
-        way.advance(kG / kLength, middle);
-        (way.angle < angle ? low : high) = middle;
+        method.advance(kG / kLength, middle);
+        (method.angle < angle ? low : high) = middle;
     }
     Swing leaves{0, kSpeed / kLength};
     leaves.advance(kG / kLength, low);

@@ -1,7 +1,7 @@
 // B5: stiff numbers with rates, the rates in scripts, whole runs in one to ten steps of the scene. References: test set for IVP solvers
 // (Mazzia, Magherini), recomputed there in quadruple precision. Correct digits (scd: relative, of the worst component) at rtol 1e-9:
 //
-//   rung             Robertson, 1e11 s   van der Pol, 1e-6, 2 s   HIRES, 321.8122 s
+//   algorithm             Robertson, 1e11 s   van der Pol, 1e-6, 2 s   HIRES, 321.8122 s
 //   Radau5           10.4                                                    with absolute_tolerance 1e-18
 //   Radau5           6.3                 9.8                      8.3, 8.6   as it is set without a word, 1e-12; in 1 step, in 10
 //   Automatic        6.3                 9.8                      8.6        is Radau5 as it is set without a word: it has no tolerances
@@ -11,7 +11,7 @@
 // are Radau5's, with an absolute tolerance well below.
 #include <vector>
 
-#include "reference/rungs.h"
+#include "reference/algorithms.h"
 
 using namespace plab;
 using namespace plab::test;
@@ -57,20 +57,20 @@ const Reaction kHires{"1 0 0 0 0 0 0 0.0057",
                       {0.7371312573325668e-3, 0.1442485726316185e-3, 0.5888729740967575e-4, 0.1175651343283149e-2, 0.2386356198831331e-2,
                        0.6238968252742796e-2, 0.2849998395185769e-2, 0.2850001604814231e-2}};
 
-Scene scene_of(const Reaction& r, const SolverRung& rung, int steps)
+Scene scene_of(const Reaction& r, const SolverAlgorithm& algorithm, int steps)
 {
     char dt[40];
     std::snprintf(dt, sizeof dt, "dt=\"%.17g\"", r.until / steps);
-    return Scene(solver(rung) + "<component id=\"z\" type=\"State/Quantities\" values=\"" + r.values +
+    return Scene(solver(algorithm) + "<component id=\"z\" type=\"State/Quantities\" values=\"" + r.values +
                      "\"/><component id=\"law\" type=\"Script/Lua\" between=\"z\"><param name=\"code\">function force(t, state) " + r.code +
                      " end</param></component>",
                  dt);
 }
 
 /// Correct digits of the worst component.
-double scd(const Reaction& r, const SolverRung& rung, int steps)
+double scd(const Reaction& r, const SolverAlgorithm& algorithm, int steps)
 {
-    Scene s = scene_of(r, rung, steps);
+    Scene s = scene_of(r, algorithm, steps);
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.step(steps);
     const Reals z = std::get<Reals>(s.get("z", "values"));
@@ -134,20 +134,20 @@ namespace
 {
 
 /// Relative, of the worst component.
-double relative_error(const Reaction& r, const SolverRung& rung, int steps) { return std::pow(10, -scd(r, rung, steps)); }
+double relative_error(const Reaction& r, const SolverAlgorithm& algorithm, int steps) { return std::pow(10, -scd(r, algorithm, steps)); }
 
 }  // namespace
 
 TEST_CASE("B5: HIRES by the solvers that are not made for it")
 {
-    // Its fastest rate is about 200 1/s for a while: explicit rungs need 64000 (orders 1 and 2) or 32000 steps. Without places a kick is
-    // the whole of a step, so StoermerVerlet is Heun's method and RotationSplitting of order 2 is RungeKutta4.
-    const auto error = [](const SolverRung& rung, int steps) { return relative_error(kHires, rung, steps); };
-    const RungRow table[] = {
+    // Its fastest rate is about 200 1/s for a while: explicit algorithms need 64000 (orders 1 and 2) or 32000 steps. Without places a kick
+    // is the whole of a step, so StoermerVerlet is Heun's method and RotationSplitting of order 2 is RungeKutta4.
+    const auto error = [](const SolverAlgorithm& algorithm, int steps) { return relative_error(kHires, algorithm, steps); };
+    const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 64000, 5.9e-4, 0}, {{"StoermerVerlet"}, 64000, 6.3e-6, 0}, {{"RungeKutta4"}, 32000, 1.1e-10, 0},
         {{"ImplicitMidpoint"}, 1000, 1.0e-2, 2},   {{"Exponential"}, 1000, 2.7e-7, 0},
     };
-    for (const RungRow& row : table) check_rung(row, error);
+    for (const AlgorithmRow& row : table) check_algorithm(row, error);
     check_same({"RotationSplitting", "order=\"2\""}, {"RungeKutta4"}, 16000, error);
     // Beyond their limits they swing within what nonlinear rates allow: wrong, finite, and nothing tells of it.
     CHECK(error({"SemiImplicitEuler"}, 32000) > 0.3);
@@ -158,7 +158,7 @@ TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are n
 {
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         std::string event;              ///< for both
         double robertson, van_der_pol;  ///< relative; 0: the event says it all
     };
@@ -174,10 +174,10 @@ TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are n
     for (const Row& row : table)
         for (const Reaction* reaction : {&kRobertson, &kVanDerPol})
         {
-            const std::string name = name_of(row.rung);
+            const std::string name = name_of(row.algorithm);
             CAPTURE(name);
             CAPTURE(reaction->values);
-            Scene s = scene_of(*reaction, row.rung, 1000);
+            Scene s = scene_of(*reaction, row.algorithm, 1000);
             REQUIRE_MESSAGE(s.loaded(), s.error());
             s.warnings_expected = s.keep_events = true;
             s.step(1000);
@@ -185,7 +185,7 @@ TEST_CASE("B5: Robertson and van der Pol in 1000 steps by the solvers that are n
             const bool lost = row.event == "lost";
             CHECK((lost ? s.count("script.error") + s.count("state.not_finite") >= 1 : s.count(row.event) == 1));
             const double bound = reaction == &kRobertson ? row.robertson : row.van_der_pol;
-            if (bound > 0) CHECK(relative_error(*reaction, row.rung, 1000) < 2 * bound);
+            if (bound > 0) CHECK(relative_error(*reaction, row.algorithm, 1000) < 2 * bound);
         }
     // ImplicitMidpoint is not L-stable. Robertson: it rings about the answer, the second number 5e7 times too large (4e-6). Van der Pol: it
     // does not find its midpoints, and says so.

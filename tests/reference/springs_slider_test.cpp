@@ -1,7 +1,7 @@
 // A stiff spring on a slider at any step: m = 1 on a vertical slider, k = 1e6, c = 20, rest position 0.01 m below the start, 1 s
 // (1000 rad/s); and 1e-3 kg against 1e3 kg on k = 1e6. References: the damped oscillator.
 //
-// rung                       steps of                place, relative to 0.01 m   ledger, relative to the spring's energy
+// algorithm                       steps of                place, relative to 0.01 m   ledger, relative to the spring's energy
 // Exponential                1/2 .. 1/1000 s         1e-11                       1e-9
 // Automatic                  1/2 .. 1/240 s          1e-9                        1e-8
 #include "reference/motion.h"
@@ -15,16 +15,16 @@ namespace
 constexpr double kStiffness = 1e6, kDamping = 20, kGravity = 9.81, kStretch = 0.01;
 
 /// Below the start, m.
-double exact_way(double t)
+double exact_position(double t)
 {
     const double w = std::sqrt(kStiffness), zeta = kDamping / (2 * w), root = std::sqrt(1 - zeta * zeta);
     const double end = kStretch + kGravity / kStiffness;
     return end * (1 - std::exp(-zeta * w * t) * (std::cos(w * root * t) + zeta / root * std::sin(w * root * t)));
 }
 
-std::string on_slider(const SolverRung& rung)
+std::string on_slider(const SolverAlgorithm& algorithm)
 {
-    return solver(rung) + R"(<component id="mass" type="State/RigidBody" mass="1" inertia="1 1 1"/>
+    return solver(algorithm) + R"(<component id="mass" type="State/RigidBody" mass="1" inertia="1 1 1"/>
         <component id="rail" type="Constraint/Slider" b="mass" anchor="0 0 0" axis="0 0 1"/>
         <component id="spring" type="Constraint/SpringDamper" b="mass" anchor_a="0 0 -1" anchor_b="0 0 0" length="0.99"
             stiffness="1e6" damping="20"/>
@@ -44,7 +44,7 @@ TEST_CASE("a spring of 1000 rad/s on a slider is right at any step, and its book
 {
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         int steps;
         double place, ledger;
     };
@@ -53,18 +53,18 @@ TEST_CASE("a spring of 1000 rad/s on a slider is right at any step, and its book
           Row{{"Exponential"}, 1000, 1e-11, 1e-9}, Row{{"Automatic"}, 2, 1e-9, 1e-8}, Row{{"Automatic"}, 10, 1e-9, 1e-8},
           Row{{"Automatic"}, 60, 1e-9, 1e-8}, Row{{"Automatic"}, 240, 1e-9, 1e-8}})
     {
-        CAPTURE(row.rung.type);
+        CAPTURE(row.algorithm.type);
         CAPTURE(row.steps);
-        Scene s(on_slider(row.rung), per_second(row.steps));
+        Scene s(on_slider(row.algorithm), per_second(row.steps));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         double worst = 0, books = 0;
         for (int i = 1; i <= row.steps; ++i)
         {
             s.step();
-            worst = std::fmax(worst, std::fabs(s.vec("mass", "position").z + exact_way(s.simulation().time())));
+            worst = std::fmax(worst, std::fabs(s.vec("mass", "position").z + exact_position(s.simulation().time())));
             books = std::fmax(books, std::fabs(s.simulation().totals().kinetic - sum(s.simulation().stepper().work())));
         }
-        MESSAGE(row.rung.type << " 1/" << row.steps << ": " << worst / kStretch << " " << books / 50);
+        MESSAGE(row.algorithm.type << " 1/" << row.steps << ": " << worst / kStretch << " " << books / 50);
         CHECK(worst < row.place * kStretch);
         CHECK(books < row.ledger * 0.5 * kStiffness * kStretch * kStretch);
     }
@@ -74,13 +74,13 @@ TEST_CASE("1e-3 kg against 1e3 kg on a stiff spring: the stretch by its closed f
 {
     const double light = 1e-3, heavy = 1e3, reduced = light * heavy / (light + heavy), c = 2 * 0.01 * std::sqrt(kStiffness * reduced);
     for (const int steps : {2, 10, 60, 240})
-        for (const SolverRung& rung : {SolverRung{"Exponential"}, SolverRung{"Automatic"}})
+        for (const SolverAlgorithm& algorithm : {SolverAlgorithm{"Exponential"}, SolverAlgorithm{"Automatic"}})
         {
-            CAPTURE(rung.type);
+            CAPTURE(algorithm.type);
             CAPTURE(steps);
             char damping[32];
             std::snprintf(damping, sizeof damping, "%.17g", c);
-            Scene s(solver(rung) + R"(<component id="a" type="State/RigidBody" mass="1e-3" inertia="1e-5 1e-5 1e-5"/>
+            Scene s(solver(algorithm) + R"(<component id="a" type="State/RigidBody" mass="1e-3" inertia="1e-5 1e-5 1e-5"/>
                 <component id="b" type="State/RigidBody" mass="1e3" inertia="100 100 100" position="1.01 0 0"/>
                 <component id="spring" type="Constraint/SpringDamper" a="a" b="b" anchor_a="0 0 0" anchor_b="0 0 0" length="1" stiffness="1e6" damping=")" +
                         damping + "\"/>",
@@ -97,12 +97,12 @@ TEST_CASE("1e-3 kg against 1e3 kg on a stiff spring: the stretch by its closed f
 TEST_CASE("a stiff spring that nothing holds to its line swings along it, whichever way that points")
 {
     // Beside the line it pushes out and in by turns, 16 rad to a step: what is exact on the line would let rounding grow beside it.
-    for (const SolverRung& rung : {SolverRung{"Exponential"}, SolverRung{"Automatic"}})
+    for (const SolverAlgorithm& algorithm : {SolverAlgorithm{"Exponential"}, SolverAlgorithm{"Automatic"}})
         for (const std::string place : {"1.1 0 0", "0.66 0.88 0"})
         {
-            CAPTURE(rung.type);
+            CAPTURE(algorithm.type);
             CAPTURE(place);
-            Scene s(solver(rung) + R"(<component id="mass" type="State/RigidBody" mass="1" inertia="1 1 1" position=")" + place +
+            Scene s(solver(algorithm) + R"(<component id="mass" type="State/RigidBody" mass="1" inertia="1 1 1" position=")" + place +
                         R"("/><component id="spring" type="Constraint/SpringDamper" b="mass" anchor_a="0 0 0" anchor_b="0 0 0" length="1"
                             stiffness="1e6"/>)",
                     per_second(60));

@@ -1,7 +1,7 @@
-// B1, B3 and B4 by the rungs: a spring from soft to 1e12 N/m, quadratic drag, stiff drag. References: closed forms.
+// B1, B3 and B4 by the algorithms: a spring from soft to 1e12 N/m, quadratic drag, stiff drag. References: closed forms.
 //
 // B1, m = 1, damping ratio 0.05, from rest at 1 m, 0.3 s; error of the place in m
-//   rung                         step      k
+//   algorithm                         step      k
 //   Exponential                  1e-2 s    1e2 .. 1e12: 1e-12
 //   Automatic                    1e-2 s    the same from 1e4 on; 1e2: 1e-5 (RungeKutta4)
 //   Radau5                       1e-2 s    1e2 .. 1e12: 1e-8
@@ -33,9 +33,9 @@ double exact_speed(double k, double t)
 }
 
 /// m, of the place and of the speed over w: the error of the place alone passes 0 as it swings.
-double spring_error(const SolverRung& rung, double k, const std::string& step)
+double spring_error(const SolverAlgorithm& algorithm, double k, const std::string& step)
 {
-    Scene s(spring_scene(rung, k, 0.1 * std::sqrt(k)), step);
+    Scene s(spring_scene(algorithm, k, 0.1 * std::sqrt(k)), step);
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(0.3);
     return std::hypot(s.vec("mass", "position").x - exact_place(k, 0.3),
@@ -47,9 +47,9 @@ struct Fall
     double speed = 0, place = 0, last = 0;  ///< relative errors at 5 s, and of the final speed at 65 s
 };
 
-Fall fall_error(const SolverRung& rung, int steps)
+Fall fall_error(const SolverAlgorithm& algorithm, int steps)
 {
-    Scene s(solver(rung) + R"(<component id="ball" type="State/RigidBody" mass="1" inertia="1 1 1"/>
+    Scene s(solver(algorithm) + R"(<component id="ball" type="State/RigidBody" mass="1" inertia="1 1 1"/>
                               <component id="g" type="Field/Gravity" between="ball"/>
                               <component id="drag" type="Field/Drag" between="ball" quadratic="0.01"/>)",
             per_second(steps));
@@ -63,9 +63,9 @@ Fall fall_error(const SolverRung& rung, int steps)
     return out;
 }
 
-Scene windy(const SolverRung& rung, const std::string& step)
+Scene windy(const SolverAlgorithm& algorithm, const std::string& step)
 {
-    return Scene(solver(rung) + R"(<component id="ball" type="State/RigidBody" mass="1" inertia="1 1 1"/>
+    return Scene(solver(algorithm) + R"(<component id="ball" type="State/RigidBody" mass="1" inertia="1 1 1"/>
                                    <component id="drag" type="Field/Drag" between="ball" linear="1e6" medium_velocity="10 0 0"/>)",
                  step);
 }
@@ -78,16 +78,16 @@ TEST_CASE("B1: the references of the closed form")
     CHECK(exact_place(1e6, 0.3) / -1.3249336825406493e-7 == doctest::Approx(1).epsilon(1e-9));
 }
 
-TEST_CASE("B1: springs of 1e2 to 1e12 N/m in steps of 10 ms: the stiff rungs follow, the explicit one with error control to 1e8")
+TEST_CASE("B1: springs of 1e2 to 1e12 N/m in steps of 10 ms: the stiff algorithms follow, the explicit one with error control to 1e8")
 {
     for (const double k : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
     {
         CAPTURE(k);
-        for (const SolverRung& rung : {SolverRung{"Exponential"}, SolverRung{"Automatic"}})
+        for (const SolverAlgorithm& algorithm : {SolverAlgorithm{"Exponential"}, SolverAlgorithm{"Automatic"}})
         {
-            const double error = spring_error(rung, k, "dt=\"1/100\"");
-            MESSAGE(rung.type << " " << k << ": " << error);
-            CHECK(error < (rung.type == "Automatic" && k < 1e3 ? 1e-5 : 1e-12));  // there it is RungeKutta4
+            const double error = spring_error(algorithm, k, "dt=\"1/100\"");
+            MESSAGE(algorithm.type << " " << k << ": " << error);
+            CHECK(error < (algorithm.type == "Automatic" && k < 1e3 ? 1e-5 : 1e-12));  // there it is RungeKutta4
         }
         const double radau = spring_error({"Radau5"}, k, "dt=\"1/100\"");
         MESSAGE("Radau5 " << k << ": " << radau);
@@ -102,11 +102,11 @@ TEST_CASE("B1: springs of 1e2 to 1e12 N/m in steps of 10 ms: the stiff rungs fol
     }
 }
 
-TEST_CASE("B1: rungs of fixed step below their limit, with their orders")
+TEST_CASE("B1: algorithms of fixed step below their limit, with their orders")
 {
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         int order;
         double soft, stiffer;  ///< m, at 1/1000 with k = 1e2 and 1e4
     };
@@ -115,13 +115,14 @@ TEST_CASE("B1: rungs of fixed step below their limit, with their orders")
         {{"ImplicitMidpoint"}, 2, 3e-5, 1e-2}, {{"RungeKutta4"}, 4, 1e-9, 2e-5},    {{"RotationSplitting"}, 4, 1e-12, 1e-7}};
     for (const Row& row : table)
     {
-        CAPTURE(row.rung.type);
-        CAPTURE(row.rung.attributes);
-        const double soft = spring_error(row.rung, 1e2, per_second(1000)), stiffer = spring_error(row.rung, 1e4, per_second(1000));
-        const double coarse = spring_error(row.rung, 1e2, per_second(100)), middle = spring_error(row.rung, 1e2, per_second(200)),
-                     fine = spring_error(row.rung, 1e2, per_second(400));
-        MESSAGE(row.rung.type << ": " << soft << " " << stiffer << " orders " << observed_order(coarse, middle) << " "
-                              << observed_order(middle, fine));
+        CAPTURE(row.algorithm.type);
+        CAPTURE(row.algorithm.attributes);
+        const double soft = spring_error(row.algorithm, 1e2, per_second(1000)),
+                     stiffer = spring_error(row.algorithm, 1e4, per_second(1000));
+        const double coarse = spring_error(row.algorithm, 1e2, per_second(100)), middle = spring_error(row.algorithm, 1e2, per_second(200)),
+                     fine = spring_error(row.algorithm, 1e2, per_second(400));
+        MESSAGE(row.algorithm.type << ": " << soft << " " << stiffer << " orders " << observed_order(coarse, middle) << " "
+                                   << observed_order(middle, fine));
         CHECK(soft < row.soft);
         CHECK(stiffer < row.stiffer);
         CHECK(observed_order(coarse, middle) == doctest::Approx(row.order).epsilon(0.15));
@@ -129,13 +130,14 @@ TEST_CASE("B1: rungs of fixed step below their limit, with their orders")
     }
 }
 
-TEST_CASE("B1: beyond its limit an explicit rung is told of by name, never silently not a number")
+TEST_CASE("B1: beyond its limit an explicit algorithm is told of by name, never silently not a number")
 {
-    for (const SolverRung& rung : {SolverRung{"SemiImplicitEuler"}, SolverRung{"StoermerVerlet"}, SolverRung{"RungeKutta4"},
-                                   SolverRung{"RotationSplitting"}, SolverRung{"RotationSplitting", "order=\"2\""}})
+    for (const SolverAlgorithm& algorithm :
+         {SolverAlgorithm{"SemiImplicitEuler"}, SolverAlgorithm{"StoermerVerlet"}, SolverAlgorithm{"RungeKutta4"},
+          SolverAlgorithm{"RotationSplitting"}, SolverAlgorithm{"RotationSplitting", "order=\"2\""}})
     {
-        CAPTURE(rung.type);
-        Scene s(spring_scene(rung, 1e8, 0), "dt=\"1/100\"");
+        CAPTURE(algorithm.type);
+        Scene s(spring_scene(algorithm, 1e8, 0), "dt=\"1/100\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = s.keep_events = true;
         s.step(400);
@@ -144,11 +146,11 @@ TEST_CASE("B1: beyond its limit an explicit rung is told of by name, never silen
     }
 }
 
-TEST_CASE("B3: quadratic drag by the rungs")
+TEST_CASE("B3: quadratic drag by the algorithms")
 {
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         int steps, order;  ///< 0: error control
         double bound, last;
     };
@@ -164,15 +166,15 @@ TEST_CASE("B3: quadratic drag by the rungs")
                          {{"Radau5"}, 10, 0, 1e-8, 1e-12}};
     for (const Row& row : table)
     {
-        CAPTURE(row.rung.type);
-        CAPTURE(row.rung.attributes);
-        const Fall error = fall_error(row.rung, row.steps);
-        MESSAGE(row.rung.type << ": " << error.speed << " " << error.place << " " << error.last);
+        CAPTURE(row.algorithm.type);
+        CAPTURE(row.algorithm.attributes);
+        const Fall error = fall_error(row.algorithm, row.steps);
+        MESSAGE(row.algorithm.type << ": " << error.speed << " " << error.place << " " << error.last);
         CHECK(error.speed < row.bound);
         CHECK(error.place < row.bound);
         CHECK(error.last < row.last);
         if (row.order == 0) continue;
-        const double order = observed_order(fall_error(row.rung, 10).place, fall_error(row.rung, 20).place);
+        const double order = observed_order(fall_error(row.algorithm, 10).place, fall_error(row.algorithm, 20).place);
         MESSAGE("order " << order);
         CHECK(order == doctest::Approx(row.order).epsilon(0.15));
     }
@@ -182,18 +184,18 @@ TEST_CASE("B4: a jump of the wind on stiff drag")
 {
     struct Row
     {
-        SolverRung rung;
+        SolverAlgorithm algorithm;
         double speed, place;  ///< m/s, m, at 1 s in steps of 0.01 s
     };
     for (const Row& row : {Row{{"Exponential"}, 1e-12, 1e-12}, Row{{"Automatic"}, 1e-12, 1e-12}, Row{{"Radau5"}, 1e-8, 1e-8}})
     {
-        CAPTURE(row.rung.type);
-        Scene s = windy(row.rung, "dt=\"1/100\"");
+        CAPTURE(row.algorithm.type);
+        Scene s = windy(row.algorithm, "dt=\"1/100\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(1);
         const double speed = std::fabs(s.vec("ball", "linear_velocity").x - 10),
                      place = std::fabs(s.vec("ball", "position").x - (10 - 1e-5));
-        MESSAGE(row.rung.type << ": " << speed << " " << place);
+        MESSAGE(row.algorithm.type << ": " << speed << " " << place);
         CHECK(speed < row.speed);
         CHECK(place < row.place);
     }
@@ -205,29 +207,29 @@ TEST_CASE("B4: a jump of the wind on stiff drag")
         CHECK(std::fabs(midpoint.vec("ball", "linear_velocity").x - 10) < 10.001);
     }
     // The transient itself.
-    for (const SolverRung& rung :
-         {SolverRung{"DormandPrince54"}, SolverRung{"RungeKutta4"}, SolverRung{"Radau5"}, SolverRung{"Exponential"}})
+    for (const SolverAlgorithm& algorithm :
+         {SolverAlgorithm{"DormandPrince54"}, SolverAlgorithm{"RungeKutta4"}, SolverAlgorithm{"Radau5"}, SolverAlgorithm{"Exponential"}})
     {
-        CAPTURE(rung.type);
-        Scene s = windy(rung, "dt=\"1e-7\"");
+        CAPTURE(algorithm.type);
+        Scene s = windy(algorithm, "dt=\"1e-7\"");
         s.run(2e-6);
         const double error = std::fabs(s.vec("ball", "linear_velocity").x - 10 * (1 - std::exp(-2.0)));
-        MESSAGE(rung.type << ": " << error);
+        MESSAGE(algorithm.type << ": " << error);
         CHECK(error < 1e-5);
     }
 }
 
-TEST_CASE("B4: explicit rungs that cannot follow say so")
+TEST_CASE("B4: explicit algorithms that cannot follow say so")
 {
     Scene pair = windy({"DormandPrince54", "max_substeps=\"1000\""}, "dt=\"1/100\"");
     pair.warnings_expected = pair.keep_events = true;
     pair.step(2);
     CHECK(pair.count("solver.gave_up") >= 1);
-    for (const SolverRung& rung :
-         {SolverRung{"SemiImplicitEuler"}, SolverRung{"StoermerVerlet"}, SolverRung{"RungeKutta4"}, SolverRung{"RotationSplitting"}})
+    for (const SolverAlgorithm& algorithm : {SolverAlgorithm{"SemiImplicitEuler"}, SolverAlgorithm{"StoermerVerlet"},
+                                             SolverAlgorithm{"RungeKutta4"}, SolverAlgorithm{"RotationSplitting"}})
     {
-        CAPTURE(rung.type);
-        Scene s = windy(rung, "dt=\"1/100\"");
+        CAPTURE(algorithm.type);
+        Scene s = windy(algorithm, "dt=\"1/100\"");
         s.warnings_expected = s.keep_events = true;
         s.step(200);
         CHECK(s.count("state.not_finite") >= 1);

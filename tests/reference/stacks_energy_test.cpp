@@ -19,18 +19,18 @@ double energy(const Scene& s)
     return sum;
 }
 
-struct Course
+struct Trajectory
 {
     double highest = 0, last = 0;  ///< energy over that at the start, less 1
     double rise = 0;               ///< largest of a step, of the energy at the start
-    std::size_t told = 0;
+    std::size_t reported = 0;
 };
-Course play(const std::string& body, double until)
+Trajectory play(const std::string& body, double until)
 {
     Scene s(body, "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = s.warnings_expected = true;  // steps this long take bodies through one another, which is told
-    Course out;
+    Trajectory out;
     const double start = energy(s);
     for (double before = start; s.simulation().time() < until;)
     {
@@ -39,7 +39,7 @@ Course play(const std::string& body, double until)
         out.highest = std::max(out.highest, now / start - 1), out.rise = std::max(out.rise, (now - before) / start);
         out.last = now / start - 1, before = now;
     }
-    out.told = s.count("manager.not_converged");
+    out.reported = s.count("manager.not_converged");
     return out;
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("D3: 216 elastic balls fall on the ground at 1/60: Direct and sweeps k
     for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
     {
         CAPTURE(manager);
-        const Course c = play(balls(manager), 1);
+        const Trajectory c = play(balls(manager), 1);
         CHECK(c.highest < 1e-12);
         CHECK(c.last > (manager == std::string("SoftStep") ? -0.2 : -1e-3));
     }
@@ -95,7 +95,7 @@ TEST_CASE("boxes thrown into a heap at 8 m/s: no manager makes energy, and what 
                 CAPTURE(manager);
                 CAPTURE(friction);
                 CAPTURE(restitution);
-                const Course c = play(thrown(manager, friction, restitution), 0.7);
+                const Trajectory c = play(thrown(manager, friction, restitution), 0.7);
                 // Without friction and loss what is left is the error of turning, order 2.
                 CHECK(c.highest < 2e-3);
                 CHECK(c.rise < 5e-3);

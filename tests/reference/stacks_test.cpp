@@ -1,5 +1,5 @@
 // Stacks, slides, racks and towers of contacts that are rows (Response/Rows), for each manager. C.., D.. as in the catalogue
-// of reference problems. What a cheap rung gets wrong stands here with a bound.
+// of reference problems. What a cheap algorithm gets wrong stands here with a bound.
 #include <array>
 
 #include "statics_scene.h"
@@ -39,7 +39,7 @@ TEST_CASE("D2: twenty cubes stand for 10 s at 1/60: Direct to 1e-9 m")
     CHECK(t.shift < 1e-9);
 }
 
-TEST_CASE("D2: the cheap rungs: ten cubes with sweeps at 1/240, with sub-steps at 1/60")
+TEST_CASE("D2: the cheap algorithms: ten cubes with sweeps at 1/240, with sub-steps at 1/60")
 {
     const Tower swept = stand(std::vector<double>(10, 1.0), "SequentialImpulse", "1/240", 5);
     CHECK(std::fabs(swept.sink) < 1e-3);

@@ -1,7 +1,7 @@
-/// Problems of statics for any rung (contact_rungs.h): stacks (D1, D2), a table (D6), a ladder (D7), and what they should carry.
+/// Problems of statics for any algorithm (contact_algorithms.h): stacks (D1, D2), a table (D6), a ladder (D7), and what they should carry.
 #pragma once
 
-#include "reference/contact_rungs.h"
+#include "reference/contact_algorithms.h"
 #include "statics_scene.h"
 
 namespace plab::test
@@ -10,15 +10,15 @@ namespace plab::test
 inline constexpr double kG = 9.81;  // m/s^2
 
 /// Those that let nothing give way. Springs sink by m g / k: penalty_test.cpp; stacks and mass ratios on them: tests/stability.
-inline std::vector<Rung> rigid_rungs()
+inline std::vector<Algorithm> rigid_algorithms()
 {
-    std::vector<Rung> out = standing_rungs();
-    std::erase_if(out, [](const Rung& rung) { return rung.springs(); });
+    std::vector<Algorithm> out = standing_algorithms();
+    std::erase_if(out, [](const Algorithm& algorithm) { return algorithm.springs(); });
     return out;
 }
 
 /// Unit cubes one upon another.
-inline std::string stack(const std::vector<double>& masses, const Rung& rung)
+inline std::string stack(const std::vector<double>& masses, const Algorithm& algorithm)
 {
     std::string body = kGround, ids;
     for (std::size_t i = 0; i < masses.size(); ++i)
@@ -26,7 +26,7 @@ inline std::string stack(const std::vector<double>& masses, const Rung& rung)
         body += box(name_of_box(i), {0.5, 0.5, 0.5}, masses[i], {0, 0, static_cast<double>(i) + 0.5});
         ids += name_of_box(i) + " ";
     }
-    return body + gravity(ids) + contact(ids + "ground", rung, 0, 0.8);
+    return body + gravity(ids) + contact(ids + "ground", algorithm, 0, 0.8);
 }
 
 /// Largest relative error of what a face carries.
@@ -44,14 +44,14 @@ inline double worst_load(const Scene& s, const std::vector<double>& masses)
 
 struct Stood
 {
-    double load = 0;  ///< largest relative error of what a face carries
-    double sunk = 0;  ///< m, the top
-    double told = 0;  ///< times that it was said that contacts did not converge, or sink
+    double load = 0;      ///< largest relative error of what a face carries
+    double sunk = 0;      ///< m, the top
+    double reported = 0;  ///< times that it was said that contacts did not converge, or sink
 };
 /// `over`: the loads are means over so many of the last steps; what sweeps leave unfinished jumps from step to step.
-inline Stood stand(const Rung& rung, const std::vector<double>& masses, std::int64_t steps, std::int64_t over = 1)
+inline Stood stand(const Algorithm& algorithm, const std::vector<double>& masses, std::int64_t steps, std::int64_t over = 1)
 {
-    Scene s(stack(masses, rung), "dt=\"1/60\"");
+    Scene s(stack(masses, algorithm), "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = s.warnings_expected = true;  // what falls through is told as a warning
     s.step(steps - over);
@@ -74,13 +74,13 @@ struct FourFeet
     static double x_of(std::size_t foot) { return (foot & 1) != 0 ? a : -a; }
     static double y_of(std::size_t foot) { return (foot & 2) != 0 ? b : -b; }
 
-    static std::string scene(const Rung& rung);
+    static std::string scene(const Algorithm& algorithm);
     /// Of forces of the feet, relative: from the split of least norm, affine in their places; from the sum and the moments.
     static double off_least(const std::vector<double>& f);
     static double off_balance(const std::vector<double>& f);
 };
 
-inline std::string FourFeet::scene(const Rung& rung)
+inline std::string FourFeet::scene(const Algorithm& algorithm)
 {
     std::string feet, shapes;
     for (std::size_t i = 0; i < 4; ++i)
@@ -98,7 +98,7 @@ inline std::string FourFeet::scene(const Rung& rung)
         "<component id=\"table\" type=\"State/RigidBody\" shape=\"table.shape\" mass=\"10\" inertia=\"1 2 3\" "
         "center_of_mass=\"0 0 0\" position=\"0 0 0.1\"/>";
     return kGround + shapes + box("load", {0.1, 0.1, 0.1}, load, {x, y, 0.25}) + gravity("table load") +
-           contact("table load ground", rung, 0, 0.5);
+           contact("table load ground", algorithm, 0, 0.5);
 }
 inline double FourFeet::off_least(const std::vector<double>& f)
 {
@@ -137,10 +137,10 @@ struct Ladder
         const double k = std::sqrt(kG * (mu * L * c + 0.5 * L * sn) / (L * L * (1.0 / 12 + 0.25 * sn * sn)));
         return 0.5 * L * off * (std::cosh(k * t) - 1);
     }
-    static std::string scene(const Rung& rung, double theta);
+    static std::string scene(const Algorithm& algorithm, double theta);
 };
 
-inline std::string Ladder::scene(const Rung& rung, double theta)
+inline std::string Ladder::scene(const Algorithm& algorithm, double theta)
 {
     const double c = std::cos(theta), sn = std::sin(theta);
     // The capsule's axis is z, tilted towards +x, where the wall is.
@@ -152,7 +152,7 @@ inline std::string Ladder::scene(const Rung& rung, double theta)
            "\"/><component id=\"ladder\" type=\"State/RigidBody\" shape=\"rod\" mass=\"3\" material=\"wood\" orientation=\"" + turn +
            "\" position=\"" + text(Vec3{0, 0, 0.5 * L * sn + r}) +
            "\"/><component id=\"smooth\" type=\"Material/Pair\" a=\"ice\" b=\"wood\" friction=\"0\" restitution=\"0\"/>" +
-           gravity("ladder") + contact("ladder ground wall", rung, 0, mu);
+           gravity("ladder") + contact("ladder ground wall", algorithm, 0, mu);
 }
 
 }  // namespace plab::test

@@ -1,5 +1,5 @@
-// Statics under Response/Rows with Manager/Direct: what contacts carry, in closed form. D1, D2 as in the catalogue; the other rungs and
-// problems: statics_rungs_test.cpp.
+// Statics under Response/Rows with Manager/Direct: what contacts carry, in closed form. D1, D2 as in the catalogue; the other algorithms
+// and problems: statics_algorithms_test.cpp.
 #include <algorithm>
 
 #include "statics_problems.h"
@@ -12,10 +12,10 @@ namespace
 
 struct Loads
 {
-    double first = 0;      ///< largest relative error of what a face carries, in the first step
-    double worst = 0;      ///< the same, of each step
-    double moved = 0;      ///< m, the top
-    std::size_t told = 0;  ///< events that contacts did not converge
+    double first = 0;          ///< largest relative error of what a face carries, in the first step
+    double worst = 0;          ///< the same, of each step
+    double moved = 0;          ///< m, the top
+    std::size_t reported = 0;  ///< events that contacts did not converge
 };
 
 /// Direct has to be right in each step.
@@ -31,7 +31,7 @@ Loads loads_of(const std::vector<double>& masses, std::int64_t steps)
         out.worst = std::max(out.worst, worst_load(s, masses));
         if (i == 0) out.first = out.worst;
     }
-    out.told = s.count("manager.not_converged");
+    out.reported = s.count("manager.not_converged");
     const std::size_t top = masses.size() - 1;
     out.moved = distance(s.vec(name_of_box(top), "position"), {0, 0, static_cast<double>(top) + 0.5});
     return out;
@@ -50,7 +50,7 @@ TEST_CASE("D1: r kg on 1 kg, r = 1 to 1e8: reactions (1 + r) m g and r m g to ro
         // by r eps of its own load. Beside that the tolerance, some 1e-13 m/s of g h = 0.16 m/s. Reached: 2.3e-12, and 4.1e-16 r.
         CHECK(loads.worst < 4e-12 + 6e-16 * r);
         CHECK(loads.moved < 5e-13 + 1e-17 * r);
-        CHECK(loads.told == 0);
+        CHECK(loads.reported == 0);
     }
 }
 

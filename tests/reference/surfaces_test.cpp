@@ -27,13 +27,13 @@ std::string cylinder(const std::string& id, double radius, double height, const 
 
 TEST_CASE("a ball on a height field at height 0 does what it does on a plane, bit for bit, or to rounding")
 {
-    for (const Rung& rung : kRungs)
+    for (const Algorithm& algorithm : kAlgorithms)
     {
-        CAPTURE(rung.name());
+        CAPTURE(algorithm.name());
         const auto scene = [&](const std::string& ground)
         {
             return ground + sphere("a", 0.1, at({-1, 0.3, 0.4}, {2, 0.31, 0}) + " angular_velocity=\"1 2 3\"") + gravity("a") +
-                   contact("a ground", rung, 0.4, 0.3);
+                   contact("a ground", algorithm, 0.4, 0.3);
         };
         Scene on_plane(scene(std::string(kGround))), on_field(scene(flat()));
         REQUIRE_MESSAGE(on_field.loaded(), on_field.error());
@@ -43,26 +43,27 @@ TEST_CASE("a ball on a height field at height 0 does what it does on a plane, bi
             const double place = distance(on_plane.vec("a", "position"), on_field.vec("a", "position"));
             const double spin = distance(on_plane.vec("a", "angular_velocity"), on_field.vec("a", "angular_velocity"));
             // Who certifies looks at other times: a field is not convex, so its bounds are others.
-            CHECK(place <= (rung.certifies() ? 1e-9 : 0));
-            CHECK(spin <= (rung.certifies() ? 1e-8 : 0));
+            CHECK(place <= (algorithm.certifies() ? 1e-9 : 0));
+            CHECK(spin <= (algorithm.certifies() ? 1e-8 : 0));
         }
     }
 }
 
 TEST_CASE("what slides over inner edges of a flat grid keeps its speed, and rolls on with friction")
 {
-    for (const Rung& rung : kRungs)
+    for (const Algorithm& algorithm : kAlgorithms)
     {
-        CAPTURE(rung.name());
+        CAPTURE(algorithm.name());
         Scene s(flat() + sphere("a", 0.1, at({-1.3, 0.3, 0.1}, {1.3, 0.17, 0})) +
-                box("b", {0.15, 0.1, 0.05}, at({-1.1, -1, 0.05}, {1.1, 0.29, 0})) + gravity("a b") + contact("a b ground", rung, 0));
+                box("b", {0.15, 0.1, 0.05}, at({-1.1, -1, 0.05}, {1.1, 0.29, 0})) + gravity("a b") + contact("a b ground", algorithm, 0));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(1.5);
         CHECK(distance(s.vec("a", "linear_velocity"), {1.3, 0.17, 0}) < 1e-12);
         CHECK(distance(s.vec("b", "linear_velocity"), {1.1, 0.29, 0}) < 1e-12);
         CHECK(length(s.vec("b", "angular_velocity")) < 1e-12);
         // It slides until it rolls, at 5/7 of its speed.
-        Scene rolls(flat() + sphere("a", 0.1, at({-1.3, 0.3, 0.1}, {1.4, 0.14, 0})) + gravity("a") + contact("a ground", rung, 0, 0.8));
+        Scene rolls(flat() + sphere("a", 0.1, at({-1.3, 0.3, 0.1}, {1.4, 0.14, 0})) + gravity("a") +
+                    contact("a ground", algorithm, 0, 0.8));
         rolls.run(1.5);
         CHECK(distance(rolls.vec("a", "linear_velocity"), {1, 0.1, 0}) < 1e-3);
         CHECK(std::fabs(rolls.vec("a", "position").z - 0.1) < 1e-8);
@@ -105,12 +106,12 @@ struct Swing
     double place = 0, energy = 0;
     std::size_t begins = 0, ends = 0;
 };
-Swing swing(const Rung& rung, bool rolls, int steps, const std::string& wall)
+Swing swing(const Algorithm& algorithm, bool rolls, int steps, const std::string& wall)
 {
     const double R = 0.6, r = 0.1, start = 0.5;
     const double period = 4 * std::comp_ellint_1(std::sin(start / 2)) * std::sqrt((rolls ? 7. / 5 : 1.) * (R - r) / kG);
     const Vec3 p = (R - r) * Vec3{std::sin(start), 0, -std::cos(start)};
-    Scene s(wall + sphere("a", r, at(p, {})) + gravity("a") + contact("a wall", rung, 0, rolls ? 10 : 0), step_of(period / steps));
+    Scene s(wall + sphere("a", r, at(p, {})) + gravity("a") + contact("a wall", algorithm, 0, rolls ? 10 : 0), step_of(period / steps));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;
     const double before = energy(s);
@@ -123,16 +124,17 @@ TEST_CASE("a ball swings in a bowl like a pendulum, and rolls in a bore with 7/5
 {
     const std::string bowl = still("wall", "Bowl", "radius=\"0.6\""),
                       bore = still("wall", "Bore", "radius=\"0.6\" height=\"1\" orientation=\"axis 1 0 0 1.5707963267948966\"");
-    for (const Rung& rung : {Rung{"None", "Rows"}, {"Speculative", "Rows"}, {"LocalRoot", "Rows"}, {"LocalRoot", "Impulse"}})
+    for (const Algorithm& algorithm : {Algorithm{"None", "Rows"}, {"Speculative", "Rows"}, {"LocalRoot", "Rows"}, {"LocalRoot", "Impulse"}})
     {
-        CAPTURE(rung.name());
+        CAPTURE(algorithm.name());
         for (const bool rolls : {false, true})
         {
             CAPTURE(rolls);
-            const Swing coarse = swing(rung, rolls, 200, rolls ? bore : bowl), fine = swing(rung, rolls, 800, rolls ? bore : bowl);
-            MESSAGE(rung.name(), std::string(rolls ? " rolls" : " slides"), ": off by ", coarse.place, " m, ", fine.place, " m; order ",
-                    std::log2(coarse.place / fine.place) / 2, "; energy ", coarse.energy, " ", fine.energy, " J; begins ", coarse.begins,
-                    " ", fine.begins, ", ends ", coarse.ends, " ", fine.ends);
+            const Swing coarse = swing(algorithm, rolls, 200, rolls ? bore : bowl),
+                        fine = swing(algorithm, rolls, 800, rolls ? bore : bowl);
+            MESSAGE(algorithm.name(), std::string(rolls ? " rolls" : " slides"), ": off by ", coarse.place, " m, ", fine.place,
+                    " m; order ", std::log2(coarse.place / fine.place) / 2, "; energy ", coarse.energy, " ", fine.energy, " J; begins ",
+                    coarse.begins, " ", fine.begins, ", ends ", coarse.ends, " ", fine.ends);
             CHECK(coarse.place < 0.02);
             CHECK(fine.place < 0.005);
             CHECK(coarse.begins == 1);
@@ -145,19 +147,19 @@ TEST_CASE("a ball that slides or rolls over a ball or a cylinder stays in one co
 {
     // It leaves where cos theta = 2/3 (slides), 10/17 (rolls). Before that, at cos theta = 0.75:
     const double R = 0.5, r = 0.1, start = 0.1;
-    for (const Rung& rung : {Rung{"None", "Rows"}, {"Speculative", "Rows"}, {"LocalRoot", "Rows"}, {"LocalRoot", "Impulse"}})
+    for (const Algorithm& algorithm : {Algorithm{"None", "Rows"}, {"Speculative", "Rows"}, {"LocalRoot", "Rows"}, {"LocalRoot", "Impulse"}})
         for (const bool rolls : {false, true})
             for (const std::string& hill :
                  {still("hill", "Sphere", "radius=\"0.5\""),
                   still("hill", "Cylinder", "radius=\"0.5\" height=\"1\" orientation=\"axis 1 0 0 1.5707963267948966\"")})
             {
-                CAPTURE(rung.name());
+                CAPTURE(algorithm.name());
                 CAPTURE(rolls);
                 double off[2] = {0, 0};
                 for (int k = 0; k < 2; ++k)
                 {
                     Scene s(hill + sphere("a", r, at((R + r) * Vec3{std::sin(start), 0, std::cos(start)})) + gravity("a") +
-                                contact("a hill", rung, 0, rolls ? 10 : 0),
+                                contact("a hill", algorithm, 0, rolls ? 10 : 0),
                             step_of(k == 0 ? 1. / 240 : 1. / 960));
                     s.keep_events = true;
                     const double factor = rolls ? 10. / 7 : 2;  // v^2 = factor g (R + r) (cos start - cos theta)
@@ -169,7 +171,7 @@ TEST_CASE("a ball that slides or rolls over a ball or a cylinder stays in one co
                     CHECK(s.count("contact.end") == 0);
                     CHECK(std::fabs(length(s.vec("a", "position")) - (R + r)) < 1e-4);
                 }
-                MESSAGE(rung.name(), std::string(rolls ? " rolls" : " slides"), ": v^2 off by ", off[0], ", ", off[1], "; order ",
+                MESSAGE(algorithm.name(), std::string(rolls ? " rolls" : " slides"), ": v^2 off by ", off[0], ", ", off[1], "; order ",
                         std::log2(off[0] / off[1]) / 2);
             }
 }
@@ -178,12 +180,12 @@ TEST_CASE("a box lies in a bore on two edges, and carries its weight there")
 {
     // Edges at 30 degrees from the vertical: each presses with m g / (2 cos 30).
     const double half = 0.3, low = 0.1;
-    for (const Rung& rung : {Rung{"None", "Rows"}, {"LocalRoot", "Rows"}, {"LocalRoot", "Impulse"}, {"None", "Impulse"}})
+    for (const Algorithm& algorithm : {Algorithm{"None", "Rows"}, {"LocalRoot", "Rows"}, {"LocalRoot", "Impulse"}, {"None", "Impulse"}})
     {
-        CAPTURE(rung.name());
+        CAPTURE(algorithm.name());
         Scene s(still("wall", "Bore", "radius=\"0.6\" height=\"4\" orientation=\"axis 1 0 0 1.5707963267948966\"") +
                 box("b", {half, 0.5, low}, at({0, 0, low - 0.6 * std::sqrt(0.75)}, {}, 3)) + gravity("b") +
-                contact("b wall", rung, 0, 0.2));
+                contact("b wall", algorithm, 0, 0.2));
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.run(2);
         CHECK(distance(s.vec("b", "position"), {0, 0, low - 0.6 * std::sqrt(0.75)}) < 1e-7);
@@ -199,16 +201,16 @@ TEST_CASE("solids of every kind come to rest on waves, on a mesh and in a bowl")
           still("wall", "HeightField",
                 "columns=\"31\" rows=\"31\" spacing=\"0.2\" roughness=\"0.03\" wave_height=\"0.1\" wave_length=\"4\""),
           still("wall", "Bowl", "radius=\"3\" position=\"0 0 3\"")})
-        for (const Rung& rung : {Rung{"Speculative", "Rows"}, {"LocalBisection", "Rows"}, {"LocalRoot", "Impulse"}})
+        for (const Algorithm& algorithm : {Algorithm{"Speculative", "Rows"}, {"LocalBisection", "Rows"}, {"LocalRoot", "Impulse"}})
         {
             CAPTURE(ground);
-            CAPTURE(rung.name());
+            CAPTURE(algorithm.name());
             Scene s(ground + sphere("a", 0.1, at({0, 0, 0.5})) + box("b", {0.2, 0.15, 0.1}, at({0.6, 0.2, 0.7})) +
                     cylinder("c", 0.1, 0.3, at({-0.6, 0.3, 0.6}) + " orientation=\"axis 1 0 0 1\"") + gravity("a b c") +
-                    contact("a b c wall", rung, 0, 0.6));
+                    contact("a b c wall", algorithm, 0, 0.6));
             REQUIRE_MESSAGE(s.loaded(), s.error());
             // Where triangles rise beyond the plane of contact, bounds are of first order: resolution.grazing.
-            s.warnings_expected = rung.certifies();
+            s.warnings_expected = algorithm.certifies();
             const double before = energy(s);
             double most = before;
             for (int i = 0; i < 720; ++i) s.step(), most = std::max(most, energy(s));

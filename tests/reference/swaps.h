@@ -1,4 +1,4 @@
-/// What the tests of swaps share: scenes in which every rung has something to do, and requests.
+/// What the tests of swaps share: scenes in which every algorithm has something to do, and requests.
 #pragma once
 
 #include <algorithm>
@@ -95,11 +95,11 @@ inline std::string type_name(const Scene& s, const std::string& id)
     return s.simulation().world().type_of(s.simulation().world().find(id))->info.name;
 }
 /// "kept", "lost" ... as the reply says of a field; empty if it says nothing.
-inline std::string fate_of(const simulation::Reply& reply, const std::string& field)
+inline std::string transfer_of(const simulation::Reply& reply, const std::string& field)
 {
     constexpr const char* kNames[] = {"kept", "converted", "given", "fresh", "lost"};
-    for (const simulation::FieldFate& f : reply.swaps.at(0).fields)
-        if (f.field.rfind(field, 0) == 0) return kNames[static_cast<int>(f.fate)];
+    for (const simulation::TransferredField& f : reply.swaps.at(0).fields)
+        if (f.field.rfind(field, 0) == 0) return kNames[static_cast<int>(f.transfer)];
     return {};
 }
 

@@ -60,14 +60,14 @@ TEST_CASE("standing contacts: kept, converted or lost, as the reply says, under 
             if (is_soft(to)) values = {{"steps_per_contact", std::string("20")}, {"stiffness", std::string("1e5")}};
             const Reply reply = swapped(s, "contact.response", "Response/" + to, values);
             const Held after = held_by(s);
-            const std::string fate = fate_of(reply, "contacts (4 points)");
+            const std::string transfer = transfer_of(reply, "contacts (4 points)");
             if (to == "None")
             {
-                CHECK(fate == "lost");
+                CHECK(transfer == "lost");
                 CHECK(after.points == 0);
                 continue;
             }
-            CHECK(fate == (is_soft(from) || is_soft(to) ? "converted" : "kept"));
+            CHECK(transfer == (is_soft(from) || is_soft(to) ? "converted" : "kept"));
             CHECK(after.ids == before.ids);
             CHECK(distance(after.force, before.force) <= 1e-12 * length(before.force));
             // Nothing moves: the new law holds it as the old one did.
@@ -86,9 +86,9 @@ TEST_CASE("resolutions, managers and spaces keep what contacts hold")
     s.run(1);
     const Held before = held_by(s);
     for (const std::string& manager : managers())
-        CHECK(fate_of(swapped(s, "contact.response.manager", "Manager/" + manager), "contacts (4 points)") == "kept");
-    CHECK(fate_of(swapped(s, "contact.resolution", "Resolution/None"), "contacts (4 points)") == "kept");
-    CHECK(fate_of(swapped(s, "contact", "CDetection/ODE", {{"space", std::string("quadtree")}}), "contacts (4 points)") == "kept");
+        CHECK(transfer_of(swapped(s, "contact.response.manager", "Manager/" + manager), "contacts (4 points)") == "kept");
+    CHECK(transfer_of(swapped(s, "contact.resolution", "Resolution/None"), "contacts (4 points)") == "kept");
+    CHECK(transfer_of(swapped(s, "contact", "CDetection/ODE", {{"space", std::string("quadtree")}}), "contacts (4 points)") == "kept");
     const Held after = held_by(s);
     CHECK(after.ids == before.ids);
     CHECK(after.force == before.force);

@@ -129,16 +129,16 @@ TEST_CASE("a joint exchanged on the way: ball, hinge, fixed, removed")
     s.run(1), hinge.run(1);
     const Totals before = s.simulation().totals();
     const Reply reply = swapped(s, "joint", "Constraint/Hinge", {{"axis", std::string("0 1 0")}});
-    CHECK(fate_of(reply, "point_a") == "kept");
-    CHECK(fate_of(reply, "axis") == "given");
-    CHECK(fate_of(reply, "frame_a") == "fresh");
+    CHECK(transfer_of(reply, "point_a") == "kept");
+    CHECK(transfer_of(reply, "axis") == "given");
+    CHECK(transfer_of(reply, "frame_a") == "fresh");
     CHECK(s.simulation().totals().kinetic == before.kinetic);
     CHECK(s.simulation().totals().momentum == before.momentum);
     s.run(10);
     CHECK(s.real("joint", "position_error") <= 1e-12);
     // Fixed: it stands still from then on, the blow is in the ledger.
     const Reply fixed = swapped(s, "joint", "Constraint/Fixed");
-    CHECK(fate_of(fixed, "axis") == "lost");
+    CHECK(transfer_of(fixed, "axis") == "lost");
     s.step();
     const Vec3 held = s.vec("bob", "position");
     s.run(11);

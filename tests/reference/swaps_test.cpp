@@ -1,4 +1,4 @@
-// Swaps across rungs: H1, H2 and H7 of the catalogue of reference problems. Others: contact_swaps, swaps_solvers, swaps_storm.
+// Swaps across algorithms: H1, H2 and H7 of the catalogue of reference problems. Others: contact_swaps, swaps_solvers, swaps_storm.
 #include "swaps.h"
 
 using namespace plab;
@@ -8,15 +8,15 @@ using namespace plab::test;
 namespace
 {
 
-struct Rung
+struct Algorithm
 {
     std::string resolution, response, more;
 };
 
 /// Each response with each resolution that it can have, each manager.
-std::vector<Rung> contact_rungs()
+std::vector<Algorithm> contact_algorithms()
 {
-    std::vector<Rung> out;
+    std::vector<Algorithm> out;
     const std::string soft = "response.friction='0.4' response.stiffness='1e4' response.restitution='0.5' response.steps_per_contact='10'";
     const std::string hard = "response.friction='0.4'";
     for (const std::string& resolution : resolutions())
@@ -48,14 +48,14 @@ double energy_of(const Scene& s)
 
 }  // namespace
 
-TEST_CASE("H1: a heap on each contact rung: exchanging any of its parts for itself changes no bit")
+TEST_CASE("H1: a heap on each contact algorithm: exchanging any of its parts for itself changes no bit")
 {
-    for (const Rung& rung : contact_rungs())
+    for (const Algorithm& algorithm : contact_algorithms())
     {
-        CAPTURE(rung.resolution);
-        CAPTURE(rung.response);
-        CAPTURE(rung.more);
-        const std::string scene = heap() + ground_and_contact(rung.resolution, rung.response, rung.more);
+        CAPTURE(algorithm.resolution);
+        CAPTURE(algorithm.response);
+        CAPTURE(algorithm.more);
+        const std::string scene = heap() + ground_and_contact(algorithm.resolution, algorithm.response, algorithm.more);
         Scene alone(scene, dt(60)), exchanged(scene, dt(60));
         REQUIRE_MESSAGE(alone.loaded(), alone.error());
         alone.warnings_expected = exchanged.warnings_expected = true;
@@ -120,7 +120,7 @@ TEST_CASE("H2: in free flight any swap of any algorithm leaves momentum, spin an
             CHECK(before.kinetic == after.kinetic);
             CHECK(before.momentum == after.momentum);
             CHECK(before.angular_momentum == after.angular_momentum);
-            CHECK(fate_of(reply, "contacts").empty());
+            CHECK(transfer_of(reply, "contacts").empty());
             s.step();
         }
     };

@@ -180,19 +180,19 @@ TEST_CASE("a manager that makes energy is told, and what it makes stays unexplai
         REQUIRE_MESSAGE(spec, test::reasons(spec));
         simulation::Simulation s(types);
         REQUIRE(s.load(*spec));
-        int told = 0;
+        int reported = 0;
         for (int i = 0; i < 240; ++i)
         {
             REQUIRE(s.step());
             for (const Event& e : s.events())
-                told += e.kind == "contact.gains_energy" && s.world().id_of(e.component) == "contact.response.manager" ? 1 : 0;
+                reported += e.kind == "contact.gains_energy" && s.world().id_of(e.component) == "contact.response.manager" ? 1 : 0;
         }
         const simulation::Totals t = s.totals();
         const double made = s.stepper().contact_energy()[s.world().find("contact.response.manager")].made;
         // Whatever is there more than at the start is nobody's work, and the manager's making.
         CHECK(made == doctest::Approx(t.kinetic - 0.5));
         CHECK(t.kinetic - s.kinetic_at_start() - t.work == doctest::Approx(made));
-        return told;
+        return reported;
     };
     CHECK(run("0.01") == 1);
     CHECK(run("0") == 0);

@@ -24,12 +24,12 @@ model::SceneSpec fragment(Scene& s, const std::string& body)
     return *scene;
 }
 
-Fate fate_of(const SwapReport& report, const std::string& field)
+FieldTransfer transfer_of(const SwapReport& report, const std::string& field)
 {
-    for (const FieldFate& f : report.fields)
-        if (f.field == field) return f.fate;
+    for (const TransferredField& f : report.fields)
+        if (f.field == field) return f.transfer;
     FAIL("no word about ", field);
-    return Fate::Lost;
+    return FieldTransfer::Lost;
 }
 
 }  // namespace
@@ -65,11 +65,11 @@ TEST_CASE("a swap says what was kept, given, fresh and lost, and what the first 
 
     const Reply none = s.ask(swap("contact.response", "Response/None"));
     REQUIRE(none.done);
-    CHECK(fate_of(none.swaps[0], "restitution") == Fate::Lost);
+    CHECK(transfer_of(none.swaps[0], "restitution") == FieldTransfer::Lost);
     const Reply back = s.ask(swap("contact.response", "Response/Impulse", {{"restitution", std::string("0.25")}}));
     REQUIRE(back.done);
-    CHECK(fate_of(back.swaps[0], "restitution") == Fate::Given);
-    CHECK(fate_of(back.swaps[0], "friction") == Fate::Fresh);
+    CHECK(transfer_of(back.swaps[0], "restitution") == FieldTransfer::Given);
+    CHECK(transfer_of(back.swaps[0], "friction") == FieldTransfer::Fresh);
     CHECK(s.real("contact.response", "restitution") == 0.25);
 }
 

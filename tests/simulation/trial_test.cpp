@@ -72,7 +72,7 @@ TEST_CASE("a trial steps those whom the swap can touch, and nobody else")
     s.step(20);
     const Reply gear = ask(s, {SwapOperation{"gears.1", kImpulse, {}}});
     REQUIRE_MESSAGE(gear.done, first_error(gear.errors));
-    CHECK(gear.trial.fate == TrialReport::Fate::Made);
+    CHECK(gear.trial.outcome == TrialReport::Outcome::Made);
     CHECK(gear.trial.objects == 2);
     CHECK(!gear.trial.everything);
     // Energies are those of the train: 1/2 1 w^2 + 1/2 2 (w/2)^2, with w from the 3 rad/s that were shared.
@@ -145,20 +145,20 @@ TEST_CASE("a trial that takes longer than its budget is given up: carried out wi
     const Reply no = ask(refused, {swap("1e9")}, budget(20, true));
     CHECK(!no.done);
     CHECK_MESSAGE(first_error(no.errors).find("budget of 20 ms") != std::string::npos, first_error(no.errors));
-    CHECK(no.trial.fate == TrialReport::Fate::GivenUp);
+    CHECK(no.trial.outcome == TrialReport::Outcome::GivenUp);
     CHECK(no.pause_ns < 500e6);
     CHECK(refused.hash() == before);
     refused.step();
     const Reply yes = ask(s, {swap("1e9")}, budget(20));
     REQUIRE_MESSAGE(yes.done, first_error(yes.errors));
-    CHECK(yes.trial.fate == TrialReport::Fate::GivenUp);
+    CHECK(yes.trial.outcome == TrialReport::Outcome::GivenUp);
     CHECK(yes.trial.budget_ns == 20e6);
     CHECK(yes.pause_ns < 500e6);
     CHECK(std::isnan(yes.swaps[0].with_new.energy));
     CHECK(s.real("s", "stiffness") == 1e9);
     const Reply none = ask(s, {swap("0")}, no_trial());
     CHECK(none.done);
-    CHECK(none.trial.fate == TrialReport::Fate::None);
+    CHECK(none.trial.outcome == TrialReport::Outcome::None);
 }
 
 TEST_CASE("one request exchanges all that a pattern names, as one transaction")
@@ -247,7 +247,7 @@ TEST_CASE("the cost of a swap is a median of repeats, and its difference is told
     CHECK_MESSAGE(words.find(" us more") != std::string::npos, words);
 
     // A type for itself: nothing but noise. The clock is no perfect witness, so not each time.
-    int told = 0;
+    int reported = 0;
     for (int i = 0; i < 40; ++i)
     {
         const Reply same = ask(s, {SwapOperation{"gears.0", "Constraint/AngularVelocity/Graph", {}}});
@@ -256,11 +256,11 @@ TEST_CASE("the cost of a swap is a median of repeats, and its difference is told
         const bool differs = !std::isnan(same.swaps[0].with_old.cost_ns);
         CHECK(differs == costs_differ(same.trial.with_old, same.trial.with_new));
         CHECK((text_of(same.trial).find("no difference that can be told") == std::string::npos) == differs);
-        told += differs ? 1 : 0;
+        reported += differs ? 1 : 0;
         if (differs) MESSAGE(text_of(same.trial));
     }
-    CHECK_MESSAGE(told <= 4, told, " of 40");
-    MESSAGE(told, " of 40 swaps of a type for itself were told to differ");
+    CHECK_MESSAGE(reported <= 4, reported, " of 40");
+    MESSAGE(reported, " of 40 swaps of a type for itself were told to differ");
     CHECK(text_of(ask(s, {SetOperation{"a", "mass", std::string("2")}}).trial).find("costs") == std::string::npos);
 }
 

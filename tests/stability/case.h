@@ -1,4 +1,4 @@
-/// A stiff or extreme case: a table of rungs by values of one parameter, each cell a scene that is run and judged.
+/// A stiff or extreme case: a table of algorithms by values of one parameter, each cell a scene that is run and judged.
 #pragma once
 
 #include <functional>
@@ -15,12 +15,12 @@ struct Case
     std::string name;       ///< one word, for --case
     std::string title;      ///< a heading
     std::string text;       ///< scene, measure of error, bounds
-    std::string rung;       ///< what the rows are
+    std::string algorithm;  ///< what the rows are
     std::string parameter;  ///< what the columns are, with its unit
-    std::vector<std::string> rungs, values;
-    std::function<Outcome(std::size_t rung, std::size_t value)> run;
+    std::vector<std::string> algorithms, values;
+    std::function<Outcome(std::size_t algorithm, std::size_t value)> run;
     /// Cells of the default test: those that are quick and tell most.
-    std::function<bool(std::size_t rung, std::size_t value)> quick;
+    std::function<bool(std::size_t algorithm, std::size_t value)> quick;
     unsigned cpu_seconds = 20;  ///< of one cell, then it counts as hanging
 };
 

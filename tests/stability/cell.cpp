@@ -57,7 +57,7 @@ Outcome outcome_of(const std::string& line, int status)
 
 }  // namespace
 
-Outcome run_cell(const Case& which, std::size_t rung, std::size_t value)
+Outcome run_cell(const Case& which, std::size_t algorithm, std::size_t value)
 {
     int ends[2];
     if (pipe(ends) != 0) return {Verdict::Silent, 0, "no pipe"};
@@ -67,7 +67,7 @@ Outcome run_cell(const Case& which, std::size_t rung, std::size_t value)
     {
         (void)close(ends[0]);
         limit_me(which.cpu_seconds);
-        _exit(send(ends[1], to_line(which.run(rung, value))) ? 0 : 1);
+        _exit(send(ends[1], to_line(which.run(algorithm, value))) ? 0 : 1);
     }
     (void)close(ends[1]);
     const std::string line = receive(ends[0]);

@@ -7,6 +7,6 @@ namespace plab::stability
 {
 
 /// Runs the cell. A crash or a hang is an outcome: Silent, with the signal's name.
-Outcome run_cell(const Case& which, std::size_t rung, std::size_t value);
+Outcome run_cell(const Case& which, std::size_t algorithm, std::size_t value);
 
 }  // namespace plab::stability

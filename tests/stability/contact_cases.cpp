@@ -20,17 +20,18 @@ Case overlap()
            "back what the overlap stored). Stable to 1, bounded to 1e3; through the floor is beyond all bounds.",
            "contact",
            "depth, m",
-           names_of(contact_rungs()),
+           names_of(contact_algorithms()),
            brief(depths),
            {},
            {}};
     c.run = [depths](std::size_t r, std::size_t v)
     {
-        const ContactRung& rung = contact_rungs()[r];
+        const ContactAlgorithm& algorithm = contact_algorithms()[r];
         const double d = depths[v];
         Trial t(ground() + gravity() + ball("ball", 0.5, 1, {0, 0, 0.5 - d}) + ball("other", 0.5, 1, {1 - d, 0, 0.5}) +
-                    contact(rung, attribute("response.friction", 0.3) +
-                                      (rung.spring() ? attribute("response.stiffness", 1e4) + attribute("response.restitution", 0.2) : "")),
+                    contact(algorithm,
+                            attribute("response.friction", 0.3) +
+                                (algorithm.spring() ? attribute("response.stiffness", 1e4) + attribute("response.restitution", 0.2) : "")),
                 dt(1.0 / 60));
         double worst = 0;
         t.run(2, [&] { worst = std::fmax(worst, t.simulation().totals().kinetic / (2 * kG)); });
@@ -56,13 +57,13 @@ Case painleve()
         "bounded to 0.1.",
         "contact",
         "friction",
-        names_of(contact_rungs()),
+        names_of(contact_algorithms()),
         brief(frictions),
         {},
         {}};
     c.run = [frictions](std::size_t r, std::size_t v)
     {
-        const ContactRung& rung = contact_rungs()[r];
+        const ContactAlgorithm& algorithm = contact_algorithms()[r];
         const double angle = 3.14159265358979323846 / 3;
         const Vec3 along{std::cos(angle), 0, std::sin(angle)}, middle{along.x, 0, along.z + 0.01};
         const double tilt = 0.5 * (3.14159265358979323846 / 2 - angle);  // a capsule lies along z
@@ -72,8 +73,9 @@ Case painleve()
                                   attribute("inertia", Vec3{1.0 / 3, 1.0 / 3, 1e-4}) + attribute("position", middle) +
                                   attribute("orientation", text(std::cos(tilt)) + " 0 " + text(std::sin(tilt)) + " 0") +
                                   attribute("linear_velocity", Vec3{-5, 0, 0})) +
-                    contact(rung, attribute("response.friction", frictions[v]) +
-                                      (rung.spring() ? attribute("response.stiffness", 1e6) + attribute("response.restitution", 0.2) : "")),
+                    contact(algorithm,
+                            attribute("response.friction", frictions[v]) +
+                                (algorithm.spring() ? attribute("response.stiffness", 1e6) + attribute("response.restitution", 0.2) : "")),
                 dt(1.0 / 240));
         double worst = 0;
         const auto energy = [&] { return t.simulation().totals().kinetic + kG * t.vec("rod", "position").z; };
@@ -93,9 +95,9 @@ Case painleve()
 
 Case zeno()
 {
-    std::vector<ContactRung> rungs = contact_rungs();
+    std::vector<ContactAlgorithm> algorithms = contact_algorithms();
     for (const char* resolution : {"Bisection", "LocalBisection", "ConservativeAdvancement", "LocalRoot"})
-        rungs.push_back({std::string("Rows, ") + resolution, "Rows", resolution, "Direct"});
+        algorithms.push_back({std::string("Rows, ") + resolution, "Rows", resolution, "Direct"});
     const std::vector<double> restitutions{0, 0.5, 0.9, 0.99, 0.9999};
     Case c{"zeno",
            "Bounces without end",
@@ -105,17 +107,18 @@ Case zeno()
            "0.1.",
            "contact",
            "restitution",
-           names_of(rungs),
+           names_of(algorithms),
            brief(restitutions),
            {},
            {}};
-    c.run = [rungs, restitutions](std::size_t r, std::size_t v)
+    c.run = [algorithms, restitutions](std::size_t r, std::size_t v)
     {
-        const ContactRung& rung = rungs[r];
+        const ContactAlgorithm& algorithm = algorithms[r];
         const double e = restitutions[v];
-        Trial t(ground() + gravity() + ball("ball", 0.1, 1, {0, 0, 0.3}) +
-                    contact(rung, attribute("response.restitution", e) + (rung.spring() ? attribute("response.stiffness", 1e6) : "")),
-                dt(1.0 / 60));
+        Trial t(
+            ground() + gravity() + ball("ball", 0.1, 1, {0, 0, 0.3}) +
+                contact(algorithm, attribute("response.restitution", e) + (algorithm.spring() ? attribute("response.stiffness", 1e6) : "")),
+            dt(1.0 / 60));
         t.run(8);
         if (!t.loaded()) return t.judge(0, {});
         const double z = t.vec("ball", "position").z - 0.1, energy = kG * z + t.simulation().totals().kinetic;

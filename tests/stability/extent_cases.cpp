@@ -10,10 +10,10 @@ namespace
 {
 
 /// Springs such that the weight presses them in by 1e-4 of the body's radius.
-std::string law(const ContactRung& rung, double mass, double g, double radius)
+std::string law(const ContactAlgorithm& algorithm, double mass, double g, double radius)
 {
-    if (!rung.spring()) return attribute("response.friction", 0.5);
-    const double depth = 1e-4 * radius, power = rung.response == "Penalty" ? 1 : 1.5;
+    if (!algorithm.spring()) return attribute("response.friction", 0.5);
+    const double depth = 1e-4 * radius, power = algorithm.response == "Penalty" ? 1 : 1.5;
     return attribute("response.friction", 0.5) + attribute("response.stiffness", mass * g / std::pow(depth, power)) +
            attribute("response.restitution", 0.2) + attribute("response.steps_per_contact", 20);
 }
@@ -35,16 +35,16 @@ Case sizes()
            "m). Error: distance from its rest at the end, relative to half its size. Stable to 1e-3, bounded to 1.",
            "contact",
            "size, m",
-           names_of(contact_rungs()),
+           names_of(contact_algorithms()),
            brief(extents),
            {},
            {}};
     c.run = [extents](std::size_t r, std::size_t v)
     {
-        const ContactRung& rung = contact_rungs()[r];
+        const ContactAlgorithm& algorithm = contact_algorithms()[r];
         const double size = extents[v], mass = 1000 * size * size * size, time = std::sqrt(size);
         Trial t(ground() + gravity() + box("box", Vec3{0.5, 0.5, 0.5} * size, mass, {0, 0, size}) +
-                    contact(rung, law(rung, mass, kG, size / 2)),
+                    contact(algorithm, law(algorithm, mass, kG, size / 2)),
                 dt(time / 60));
         const double error = drop(t, size, 4 * time);
         return t.judge(error, {1e-3, 1});
@@ -63,15 +63,16 @@ Case places()
            "relative to half its size, or how far it has wandered, m. Stable to 1e-3, bounded to 1.",
            "contact",
            "distance, m",
-           names_of(contact_rungs()),
+           names_of(contact_algorithms()),
            brief(away),
            {},
            {}};
     c.run = [away](std::size_t r, std::size_t v)
     {
-        const ContactRung& rung = contact_rungs()[r];
+        const ContactAlgorithm& algorithm = contact_algorithms()[r];
         const Vec3 at{away[v], -away[v], 1};
-        Trial t(ground() + gravity() + box("box", {0.5, 0.5, 0.5}, 1000, at) + contact(rung, law(rung, 1000, kG, 0.5)), dt(1.0 / 60));
+        Trial t(ground() + gravity() + box("box", {0.5, 0.5, 0.5}, 1000, at) + contact(algorithm, law(algorithm, 1000, kG, 0.5)),
+                dt(1.0 / 60));
         const double error = drop(t, 1, 3);
         if (!t.loaded()) return t.judge(0, {});
         const Vec3 p = t.vec("box", "position");
@@ -89,7 +90,7 @@ double span(double step) { return std::fmin(1.0, kMostSteps * step); }
 
 Case motion_steps()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     Case c{"step",
            "Steps from a microsecond to a tenth of a second",
            "1 kg on a spring of 100 N/m, pulled by 0.1 m, that spins with 3 rad/s; 1 s, at most 10000 steps. Error: distance from the "
@@ -125,15 +126,15 @@ Case contact_steps()
            "0.5.",
            "contact",
            "step, s",
-           names_of(contact_rungs()),
+           names_of(contact_algorithms()),
            brief(kSteps),
            {},
            {}};
     c.run = [](std::size_t r, std::size_t v)
     {
-        const ContactRung& rung = contact_rungs()[r];
+        const ContactAlgorithm& algorithm = contact_algorithms()[r];
         Trial t(ground() + gravity() + box("box", {0.5, 0.5, 0.5}, 1000, {0, 0, 0.5}) + ball("ball", 0.5, 500, {0, 0, 1.6}) +
-                    contact(rung, law(rung, 1500, kG, 0.5)),
+                    contact(algorithm, law(algorithm, 1500, kG, 0.5)),
                 dt(kSteps[v]));
         t.run(span(kSteps[v]));
         if (!t.loaded()) return t.judge(0, {});

@@ -36,7 +36,7 @@ double drift(Trial& t, double until)
 
 Case spin()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     const std::vector<double> speeds{1, 10, 1e2, 1e3, 1e4};
     Case c{
         "spin",
@@ -61,7 +61,7 @@ Case spin()
 
 Case gyroscope()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     const std::vector<double> speeds{10, 1e2, 1e3, 1e4};
     Case c{"gyroscope",
            "A fast wheel in a hinge",
@@ -113,7 +113,7 @@ struct Inertia
 
 Case degenerate()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     static const std::vector<Inertia> kinds{{"needle", "1e-12 1 1"},
                                             {"disc", "1 1 2"},
                                             {"thin disc, 1e-12", "1e-12 1e-12 2e-12"},
@@ -150,7 +150,7 @@ Case degenerate()
 
 Case denormal()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     const std::vector<double> sizes{1e-100, 1e-160, 1e-300, 1e-310};
     Case c{"denormal",
            "Denormal numbers",

@@ -67,17 +67,19 @@ Case ratios()
            {}};
     c.run = [factors](std::size_t r, std::size_t v)
     {
-        const Coupling& rung = couplings()[r];
+        const Coupling& algorithm = couplings()[r];
         const double f = factors[v];
         const std::string code =
             "<component id=\"torque\" type=\"Script/Lua\" driven=\"a\"><param name=\"code\">function force(t, state) driven:add_torque(" +
-            std::string(rung.bodies ? "vec(0, 0, 6)" : "6") + ") end</param></component>";
-        Trial t((rung.bodies ? wheel("a", 0) + wheel("b", 3) : shaft("a") + shaft("b")) + coupling("gear", rung.type, "a", "b", f) + code,
+            std::string(algorithm.bodies ? "vec(0, 0, 6)" : "6") + ") end</param></component>";
+        Trial t((algorithm.bodies ? wheel("a", 0) + wheel("b", 3) : shaft("a") + shaft("b")) +
+                    coupling("gear", algorithm.type, "a", "b", f) + code,
                 dt(1.0 / 60));
         t.run(1);
         if (!t.loaded()) return t.judge(0, {});
-        const auto speed = [&](const char* id) { return rung.bodies ? t.vec(id, "angular_velocity").z : t.real(id, "angular_velocity"); };
-        const double exact = rung.one_way ? 6 : 6 / (1 + f * f), a = speed("a"), b = speed("b");
+        const auto speed = [&](const char* id)
+        { return algorithm.bodies ? t.vec(id, "angular_velocity").z : t.real(id, "angular_velocity"); };
+        const double exact = algorithm.one_way ? 6 : 6 / (1 + f * f), a = speed("a"), b = speed("b");
         return t.judge(std::fmax(std::fabs(a / exact - 1), std::fabs(b / (f * a) - 1)), {1e-9, 1});
     };
     c.quick = [](std::size_t, std::size_t v) { return v == 0 || v == 4; };
@@ -97,24 +99,24 @@ std::vector<Mesh> bad_meshes(std::size_t v)
     return {{"a", "b", 3}};
 }
 
-Outcome run_bad_gears(const Coupling& rung, std::size_t v)
+Outcome run_bad_gears(const Coupling& algorithm, std::size_t v)
 {
     const bool prescribed = v == 3;
     std::string parts;
     for (const char* id : {"a", "b", "c"})
-        parts +=
-            rung.bodies ? wheel(id, 3 * (id[0] - 'a'), 10) : shaft(id, 10, prescribed ? attribute("prescribed", std::string("true")) : "");
+        parts += algorithm.bodies ? wheel(id, 3 * (id[0] - 'a'), 10)
+                                  : shaft(id, 10, prescribed ? attribute("prescribed", std::string("true")) : "");
     const std::vector<Mesh> meshes = bad_meshes(v);
     for (std::size_t i = 0; i < meshes.size(); ++i)
-        parts += coupling("g" + std::to_string(i + 1), rung.type, meshes[i].driver, meshes[i].driven, meshes[i].factor);
-    if (prescribed && rung.bodies)
+        parts += coupling("g" + std::to_string(i + 1), algorithm.type, meshes[i].driver, meshes[i].driven, meshes[i].factor);
+    if (prescribed && algorithm.bodies)
         for (const char* id : {"a", "b"})
             parts += component(std::string("motor.") + id, "Constraint/Motor",
                                attribute("b", std::string(id)) + attribute("axis", Vec3{0, 0, 1}) + attribute("speed", 10));
     Trial t(parts, dt(1.0 / 60));
     t.run(1);
     if (!t.loaded()) return t.judge(0, {});
-    const auto speed = [&](const char* id) { return rung.bodies ? t.vec(id, "angular_velocity").z : t.real(id, "angular_velocity"); };
+    const auto speed = [&](const char* id) { return algorithm.bodies ? t.vec(id, "angular_velocity").z : t.real(id, "angular_velocity"); };
     double worst = 0;
     if (v >= 2) worst = std::fabs(speed("c") / 10 - 1);
     for (const Mesh& m : meshes)
@@ -147,7 +149,7 @@ Case bad_gears()
 
 Case bad_joints()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     Case c{"joint_contradiction",
            "Joints that contradict one another",
            "A body of 1 kg under its weight, held by rods of 1 m to two points 3 m apart; in two hinges askew (it is locked, and five rows "

@@ -113,17 +113,17 @@ Case pendulum()
 }
 
 /// Those that hold what rests at the cost of some microseconds; springs take thousands of pieces for a step.
-std::vector<ContactRung> quick_contacts()
+std::vector<ContactAlgorithm> quick_contacts()
 {
-    std::vector<ContactRung> out;
-    for (const ContactRung& rung : contact_rungs())
-        if (!rung.spring()) out.push_back(rung);
+    std::vector<ContactAlgorithm> out;
+    for (const ContactAlgorithm& algorithm : contact_algorithms())
+        if (!algorithm.spring()) out.push_back(algorithm);
     return out;
 }
 
 Case resting_cube()
 {
-    const auto rungs = quick_contacts();
+    const auto algorithms = quick_contacts();
     Case c{
         "long_rest",
         "A cube on a slope for ten million steps",
@@ -131,17 +131,17 @@ Case resting_cube()
         "way of its centre, m. Stable to 1e-6, bounded to 0.1.",
         "contact",
         "steps",
-        names_of(rungs),
+        names_of(algorithms),
         brief(kCounts),
         {},
         {}};
-    c.run = [rungs](std::size_t r, std::size_t v)
+    c.run = [algorithms](std::size_t r, std::size_t v)
     {
         const double slope = 15 * std::acos(-1.0) / 180;
         const Vec3 weight{kG * std::sin(slope), 0, -kG * std::cos(slope)};
         Trial t(ground() + box("cube", {0.5, 0.5, 0.5}, 1, {0, 0, 0.5}) +
                     component("weight", "Field/Gravity", attribute("between", std::string("*")) + attribute("acceleration", weight)) +
-                    contact(rungs[r], attribute("response.friction", 0.5)),
+                    contact(algorithms[r], attribute("response.friction", 0.5)),
                 dt(kStep), kNoLimit);
         t.run(kCounts[v] * kStep);
         if (!t.loaded()) return t.judge(0, {});

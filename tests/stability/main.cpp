@@ -1,4 +1,4 @@
-// Stiff and extreme cases by rungs: prints the matrix, checks it against expected.txt, renews table and document.
+// Stiff and extreme cases by algorithms: prints the matrix, checks it against expected.txt, renews table and document.
 //
 //   stability [--all] [--case NAME] [--print] [--update] [--write FILE.md]
 //
@@ -57,7 +57,7 @@ bool takes_part(const Options& options, const Case& c, std::size_t r, std::size_
 int run(const Options& options, const Case& c, Table& table)
 {
     int differences = 0;
-    for (std::size_t r = 0; r < c.rungs.size(); ++r)
+    for (std::size_t r = 0; r < c.algorithms.size(); ++r)
         for (std::size_t v = 0; v < c.values.size(); ++v)
         {
             if (!takes_part(options, c, r, v)) continue;
@@ -65,7 +65,8 @@ int run(const Options& options, const Case& c, Table& table)
             const Outcome* expected = table.find(key_of(c, r, v));
             const bool same = expected && agree(*expected, measured);
             if (options.print)
-                std::printf("%-14s %-24s %-10s %s\n", c.name.c_str(), c.rungs[r].c_str(), c.values[v].c_str(), to_line(measured).c_str());
+                std::printf("%-14s %-24s %-10s %s\n", c.name.c_str(), c.algorithms[r].c_str(), c.values[v].c_str(),
+                            to_line(measured).c_str());
             else if (!same)
                 std::printf("%s\n  expected %s\n  measured %s\n", key_of(c, r, v).c_str(),
                             expected ? to_line(*expected).c_str() : "nothing", to_line(measured).c_str());

@@ -12,11 +12,11 @@ namespace
 const std::vector<double> kRatios{1, 1e2, 1e4, 1e6, 1e8};
 
 /// Friction for all; springs that a mass presses in by about 1e-5 m, with as few sub-steps as they need.
-std::string law(const ContactRung& rung, double mass)
+std::string law(const ContactAlgorithm& algorithm, double mass)
 {
     const std::string friction = attribute("response.friction", 0.5);
-    if (!rung.spring()) return friction;
-    return friction + attribute("response.stiffness", (rung.response == "Penalty" ? 1e6 : 1e8) * mass) +
+    if (!algorithm.spring()) return friction;
+    return friction + attribute("response.stiffness", (algorithm.response == "Penalty" ? 1e6 : 1e8) * mass) +
            attribute("response.restitution", 0.2) + attribute("response.steps_per_contact", 20);
 }
 
@@ -26,12 +26,12 @@ constexpr std::uint64_t kManyBodies = 500'000;
 std::string cube_name(int i) { return "cube" + std::to_string(100 + i); }
 
 /// Unit cubes on the floor, masses from below, for 1 s; springs for `load`, kg. How far one has sunk or wandered, m.
-Outcome tower(const ContactRung& rung, const std::vector<double>& masses, double load)
+Outcome tower(const ContactAlgorithm& algorithm, const std::vector<double>& masses, double load)
 {
     std::string parts = ground() + gravity();
     for (std::size_t i = 0; i < masses.size(); ++i)
         parts += box(cube_name(static_cast<int>(i)), {0.5, 0.5, 0.5}, masses[i], {0, 0, static_cast<double>(i) + 0.5});
-    Trial t(parts + contact(rung, law(rung, load)), dt(1.0 / 60), kManyBodies / masses.size());
+    Trial t(parts + contact(algorithm, law(algorithm, load)), dt(1.0 / 60), kManyBodies / masses.size());
     t.run(1);
     if (!t.loaded()) return t.judge(0, {});
     double worst = 0;
@@ -52,11 +52,11 @@ Case heavy_on_light()
         "(1e6 N/m per kg). Error: how far a cube is from where it should be, m. Stable to 1e-3, bounded to half a cube.",
         "contact",
         "mass ratio",
-        names_of(contact_rungs()),
+        names_of(contact_algorithms()),
         brief(kRatios),
         {},
         {}};
-    c.run = [](std::size_t r, std::size_t v) { return tower(contact_rungs()[r], {1, kRatios[v]}, kRatios[v]); };
+    c.run = [](std::size_t r, std::size_t v) { return tower(contact_algorithms()[r], {1, kRatios[v]}, kRatios[v]); };
     c.quick = [](std::size_t r, std::size_t v) { return r >= 3 && (v == 0 || v == 4); };
     return c;
 }
@@ -70,17 +70,18 @@ Case head_on()
         "the speeds after, relative to 1 m/s. Stable to 1e-6, bounded to 1.",
         "contact",
         "mass ratio",
-        names_of(contact_rungs()),
+        names_of(contact_algorithms()),
         brief(kRatios),
         {},
         {}};
     c.run = [](std::size_t r, std::size_t v)
     {
-        const ContactRung& rung = contact_rungs()[r];
+        const ContactAlgorithm& algorithm = contact_algorithms()[r];
         const double m = kRatios[v];
-        Trial t(ball("light", 0.1, 1, {0, 0, 0}) + ball("heavy", 0.1, m, {-0.25, 0, 0}, "linear_velocity=\"1 0 0\"") +
-                    contact(rung, attribute("response.restitution", 1) + (rung.spring() ? attribute("response.stiffness", 1e6) : "")),
-                dt(1.0 / 60));
+        Trial t(
+            ball("light", 0.1, 1, {0, 0, 0}) + ball("heavy", 0.1, m, {-0.25, 0, 0}, "linear_velocity=\"1 0 0\"") +
+                contact(algorithm, attribute("response.restitution", 1) + (algorithm.spring() ? attribute("response.stiffness", 1e6) : "")),
+            dt(1.0 / 60));
         t.run(0.5);
         if (!t.loaded()) return t.judge(0, {});
         const double light = t.vec("light", "linear_velocity").x - 2 * m / (1 + m);
@@ -109,7 +110,7 @@ std::string chain(double heavy)
 
 Case heavy_chain()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     Case c{"mass_chain",
            "A chain that carries a heavy body",
            "Five links of 1 m in ball joints, let go from the level; the last one has the given mass, the others 1 kg; 0.5 s at 1/240 s. "
@@ -154,12 +155,12 @@ Case stack()
            "bounded to half a cube.",
            "contact",
            "cubes",
-           names_of(contact_rungs()),
+           names_of(contact_algorithms()),
            {"10", "20", "50", "100"},
            {},
            {}};
     c.run = [heights](std::size_t r, std::size_t v)
-    { return tower(contact_rungs()[r], std::vector<double>(static_cast<std::size_t>(heights[v]), 1.0), 1); };
+    { return tower(contact_algorithms()[r], std::vector<double>(static_cast<std::size_t>(heights[v]), 1.0), 1); };
     c.quick = [](std::size_t r, std::size_t v) { return r >= 3 && v == 0; };
     return c;
 }

@@ -1,4 +1,4 @@
-/// What became of one extreme case with one rung of a ladder: measured, never declared.
+/// What became of one extreme case with one algorithm of a ladder: measured, never declared.
 #pragma once
 
 #include <cstdint>

@@ -53,13 +53,13 @@ std::string cell_text(const Outcome* cell, Notes& notes)
 
 std::string section(const Case& c, const Table& table)
 {
-    std::string out = "## " + c.title + "\n\n" + c.text + "\n\n| " + c.rung + " \\ " + c.parameter + " |", line = "|---|";
+    std::string out = "## " + c.title + "\n\n" + c.text + "\n\n| " + c.algorithm + " \\ " + c.parameter + " |", line = "|---|";
     for (const std::string& v : c.values) out += " " + v + " |", line += "---|";
     out += "\n" + line + "\n";
     Notes notes;
-    for (std::size_t r = 0; r < c.rungs.size(); ++r)
+    for (std::size_t r = 0; r < c.algorithms.size(); ++r)
     {
-        out += "| " + c.rungs[r] + " |";
+        out += "| " + c.algorithms[r] + " |";
         for (std::size_t v = 0; v < c.values.size(); ++v) out += " " + cell_text(table.find(key_of(c, r, v)), notes) + " |";
         out += "\n";
     }
@@ -70,7 +70,7 @@ std::string summary(const std::vector<Case>& cases, const Table& table)
 {
     std::array<int, 5> counts{};
     for (const Case& c : cases)
-        for (std::size_t r = 0; r < c.rungs.size(); ++r)
+        for (std::size_t r = 0; r < c.algorithms.size(); ++r)
             for (std::size_t v = 0; v < c.values.size(); ++v)
                 if (const Outcome* cell = table.find(key_of(c, r, v))) ++counts[static_cast<std::size_t>(cell->verdict)];
     std::string out;
@@ -85,7 +85,7 @@ std::string page(const std::vector<Case>& cases, const Table& table)
 {
     std::string out =
         "# Stability: stiff and extreme cases\n\n"
-        "What each rung does where things get stiff, fast, tiny, huge or senseless. Written by `build/bin/stability --write "
+        "What each algorithm does where things get stiff, fast, tiny, huge or senseless. Written by `build/bin/stability --write "
         "server/docs/stability.md` from `tests/stability/expected.txt`; a test holds that table against what is measured.\n\n"
         "A number alone is a stable cell and its error. *Degraded*: finite and bounded, but wrong by more than the case's bound, or with a "
         "warning. *Refused*: not accepted, with a message. **Diverged**: beyond all bounds, and the named event said so. **SILENT**: "

@@ -58,16 +58,16 @@ inline std::string gravity(double g = kG)
 }
 
 /// A way to answer contacts.
-struct ContactRung
+struct ContactAlgorithm
 {
     std::string name, response, resolution, manager;
     bool spring() const { return response == "Penalty" || response == "HuntCrossley"; }
 };
 
 /// Each response with the resolution that suits it, rows with each manager.
-inline const std::vector<ContactRung>& contact_rungs()
+inline const std::vector<ContactAlgorithm>& contact_algorithms()
 {
-    static const std::vector<ContactRung> rungs{
+    static const std::vector<ContactAlgorithm> algorithms{
         {"Penalty", "Penalty", "", ""},
         {"HuntCrossley", "HuntCrossley", "", ""},
         {"Impulse, LocalRoot", "Impulse", "LocalRoot", ""},
@@ -75,23 +75,24 @@ inline const std::vector<ContactRung>& contact_rungs()
         {"Rows, SequentialImpulse", "Rows", "None", "SequentialImpulse"},
         {"Rows, SoftStep", "Rows", "None", "SoftStep"},
     };
-    return rungs;
+    return algorithms;
 }
 
-inline std::vector<std::string> names_of(const std::vector<ContactRung>& rungs)
+inline std::vector<std::string> names_of(const std::vector<ContactAlgorithm>& algorithms)
 {
     std::vector<std::string> out;
-    for (const ContactRung& r : rungs) out.push_back(r.name);
+    for (const ContactAlgorithm& r : algorithms) out.push_back(r.name);
     return out;
 }
 
 /// `response_more`: further attributes, as response.friction="..".
-inline std::string contact(const ContactRung& rung, const std::string& response_more = "")
+inline std::string contact(const ContactAlgorithm& algorithm, const std::string& response_more = "")
 {
     return component("contact", "CDetection/ODE",
-                     attribute("between", "*") + attribute("response", "Response/" + rung.response) +
-                         (rung.resolution.empty() ? "" : attribute("resolution", "Resolution/" + rung.resolution)) +
-                         (rung.manager.empty() ? "" : attribute("response.manager", "Manager/" + rung.manager)) + " " + response_more);
+                     attribute("between", "*") + attribute("response", "Response/" + algorithm.response) +
+                         (algorithm.resolution.empty() ? "" : attribute("resolution", "Resolution/" + algorithm.resolution)) +
+                         (algorithm.manager.empty() ? "" : attribute("response.manager", "Manager/" + algorithm.manager)) + " " +
+                         response_more);
 }
 
 inline std::string solver(const std::string& name) { return component("solver", "Solver/" + name); }

@@ -38,7 +38,7 @@ Case scripts()
 {
     std::vector<std::string> names;
     for (const Fault& f : faults()) names.emplace_back(f.name);
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     Case c{"script",
            "Scripts that fail",
            "A script acts on one body of 1 kg that moves with 1 m/s; another falls freely. 2 s at 1/60 s. Error: of the other's speed, "

@@ -11,16 +11,16 @@ namespace
 
 const std::vector<double> kSpeeds{1, 1e2, 1e3, 1e4};
 
-struct Rung
+struct Algorithm
 {
     std::string name;
-    ContactRung contact;
+    ContactAlgorithm contact;
 };
 
-std::vector<Rung> rungs()
+std::vector<Algorithm> algorithms()
 {
-    std::vector<Rung> out;
-    for (const std::string& resolution : rungs_of("Resolution"))
+    std::vector<Algorithm> out;
+    for (const std::string& resolution : algorithms_of("Resolution"))
     {
         if (resolution != "Speculative") out.push_back({resolution + ", Impulse", {"", "Impulse", resolution, ""}});
         out.push_back({resolution + ", Rows", {"", "Rows", resolution, "Direct"}});
@@ -32,9 +32,9 @@ std::vector<Rung> rungs()
 
 Case wall(bool spins)
 {
-    const auto all = rungs();
+    const auto all = algorithms();
     std::vector<std::string> names;
-    for (const Rung& r : all) names.push_back(r.name);
+    for (const Algorithm& r : all) names.push_back(r.name);
     Case c{
         spins ? "wall_corner" : "wall",
         spins ? "A spinning box against a thin wall" : "A ball against a thin wall",
@@ -57,16 +57,17 @@ Case wall(bool spins)
     c.run = [all, spins](std::size_t r, std::size_t v)
     {
         const double speed = kSpeeds[v];
-        const ContactRung& rung = all[r].contact;
+        const ContactAlgorithm& algorithm = all[r].contact;
         const std::string flyer =
             spins ? box("flyer", {0.5, 0.01, 0.01}, 1, {-0.3, 0, 0},
                         attribute("angular_velocity", Vec3{0, 0, speed}) +
                             attribute("orientation", "0.70710678118654757 0 0 0.70710678118654757"))
                   : ball("flyer", 0.05, 1, {-5.37 * speed / 60 - 0.055, 0, 0}, attribute("linear_velocity", Vec3{speed, 0, 0}));
-        Trial t(component("wall.shape", "Shape/Box", attribute("half_extents", Vec3{0.005, 5, 5})) +
-                    component("wall", "State/Static", attribute("shape", std::string("wall.shape"))) + flyer +
-                    contact(rung, attribute("response.restitution", 1) + (rung.spring() ? attribute("response.stiffness", 1e8) : "")),
-                dt(1.0 / 60));
+        Trial t(
+            component("wall.shape", "Shape/Box", attribute("half_extents", Vec3{0.005, 5, 5})) +
+                component("wall", "State/Static", attribute("shape", std::string("wall.shape"))) + flyer +
+                contact(algorithm, attribute("response.restitution", 1) + (algorithm.spring() ? attribute("response.stiffness", 1e8) : "")),
+            dt(1.0 / 60));
         double worst = -1;
         t.run(spins ? 0.1 : 20.0 / 60, [&] { worst = std::fmax(worst, t.vec("flyer", "position").x); });
         if (!t.loaded()) return t.judge(0, {});

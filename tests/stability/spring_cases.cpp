@@ -25,7 +25,7 @@ std::string oscillator(double k, double c)
 
 Case spring()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     Case c{
         "spring",
         "A spring of any stiffness",
@@ -57,7 +57,7 @@ Case spring()
 
 Case damped_spring()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     Case c{
         "spring_damped",
         "A spring with its critical damper",
@@ -87,7 +87,7 @@ Case damped_spring()
 
 Case drag()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     const std::vector<double> drags{1e-2, 1, 1e2, 1e4, 1e8, 1e12};
     Case c{"drag",
            "Drag that stops at once",
@@ -116,7 +116,7 @@ Case drag()
 
 Case penalty()
 {
-    const auto solvers = rungs_of("Solver");
+    const auto solvers = algorithms_of("Solver");
     Case c{
         "penalty",
         "Spring contacts of any stiffness",

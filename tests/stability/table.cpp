@@ -5,9 +5,9 @@
 namespace plab::stability
 {
 
-std::string key_of(const Case& which, std::size_t rung, std::size_t value)
+std::string key_of(const Case& which, std::size_t algorithm, std::size_t value)
 {
-    return which.name + " | " + which.rungs[rung] + " | " + which.values[value];
+    return which.name + " | " + which.algorithms[algorithm] + " | " + which.values[value];
 }
 
 Table Table::read(const std::string& file)
@@ -32,9 +32,9 @@ const Outcome* Table::find(const std::string& key) const
 bool Table::write(const std::string& file, const std::vector<Case>& cases) const
 {
     std::ofstream out(file);
-    out << "# case | rung | value = verdict, error, why. Renewed by: build/bin/stability --all --update\n";
+    out << "# case | algorithm | value = verdict, error, why. Renewed by: build/bin/stability --all --update\n";
     for (const Case& c : cases)
-        for (std::size_t r = 0; r < c.rungs.size(); ++r)
+        for (std::size_t r = 0; r < c.algorithms.size(); ++r)
             for (std::size_t v = 0; v < c.values.size(); ++v)
                 if (const Outcome* cell = find(key_of(c, r, v))) out << key_of(c, r, v) << " = " << to_line(*cell) << "\n";
     return static_cast<bool>(out);

@@ -10,8 +10,8 @@
 namespace plab::stability
 {
 
-/// "case | rung | value"
-std::string key_of(const Case& which, std::size_t rung, std::size_t value);
+/// "case | algorithm | value"
+std::string key_of(const Case& which, std::size_t algorithm, std::size_t value);
 
 class Table
 {

@@ -82,7 +82,7 @@ Outcome Trial::judge(double error, Bounds bounds) const
     return {Verdict::Silent, error, how()};
 }
 
-std::vector<std::string> rungs_of(const std::string& family)
+std::vector<std::string> algorithms_of(const std::string& family)
 {
     std::vector<std::string> out;
     for (const std::string& name : test::library().names())

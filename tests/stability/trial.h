@@ -69,8 +69,8 @@ private:
     bool finished_ = true;
 };
 
-/// Names of all types of a family, in order: a new rung appears by itself.
-std::vector<std::string> rungs_of(const std::string& family);
+/// Names of all types of a family, in order: a new algorithm appears by itself.
+std::vector<std::string> algorithms_of(const std::string& family);
 /// Loads every plugin, so that cells in processes of their own need not.
 void load_plugins();
 

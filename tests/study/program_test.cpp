@@ -241,10 +241,10 @@ TEST_CASE("the catalogue of the repository can be read, and each of its plans ho
     for (const auto& entry : json["studies"])
     {
         std::vector<std::string> arguments{scene_file("studies/" + entry["scene"].get<std::string>()), "--list"};
-        for (const char* key : {"vary", "rungs"})
+        for (const char* key : {"vary", "algorithms"})
             if (entry.contains(key))
                 for (const auto& text : entry[key])
-                    arguments.insert(arguments.end(), {key == std::string("vary") ? "--vary" : "--rung", text});
+                    arguments.insert(arguments.end(), {key == std::string("vary") ? "--vary" : "--algorithm", text});
         const Outcome done = study(arguments);
         CHECK_MESSAGE(done.code == 0, entry["name"]);
         CHECK_MESSAGE(has(done.output, ", 0 refused"), entry["name"], ": ", done.output);
@@ -269,7 +269,7 @@ TEST_CASE("wrong use ends with code 2, nothing to study with code 1, and both sa
              {{scene, "--until", "1", "-o", "x", "--vary", "dt=1/60", "--vary", "dt=1/120"}, 2, "--vary dt is given twice"},
              {{scene, "--until", "1", "-o", "x", "--vary", "dt=1/60,1/60"}, 2, "one value given twice"},
              {{scene, "--until", "1", "-o", "x", "--scale", "nosuch.position=1"}, 1, "no quantity of that name is compared"},
-             {{scene, "--until", "1", "-o", "x", "--reference", "none", "--reference-rung", "dt=1/60"}, 2, "--reference auto only"},
+             {{scene, "--until", "1", "-o", "x", "--reference", "none", "--reference-algorithm", "dt=1/60"}, 2, "--reference auto only"},
              {{scene, "--until", "1", "-o", "x", "--suite", "y"}, 2, "leave SCENE out"},
              {{"nowhere.xml", "--until", "1", "-o", "x"}, 1, "nowhere.xml"},
              {{scene, "--until", "1", "-o", "x", "--reference", "exact:bounce"}, 1, "does not describe this scene"},

@@ -148,8 +148,8 @@ double gyration(const Bodies& bodies, Ref r)
 
 double reach_of(const LimitRows& rows, Row row, const Bodies& bodies)
 {
-    const double way = rows.upper[row] - rows.lower[row];
-    if (std::isfinite(way) && way > 0) return kReach * way;
+    const double range = rows.upper[row] - rows.lower[row];
+    if (std::isfinite(range) && range > 0) return kReach * range;
     if (rows.turns(row)) return kReach;
     const double size = std::fmin(gyration(bodies, rows.a[row]), gyration(bodies, rows.b[row]));
     return std::isfinite(size) ? kReach * size : 0.0;

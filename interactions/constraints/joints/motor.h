@@ -19,7 +19,7 @@ struct CoordinateRows : PairRows, SpinColumns
     Column<Vec3> travel_axis_a, placed_travel_axis;  // fixed in a
     Column<double> position, speed_now;              // rad or m, rad/s or m/s
 
-    void describe_coordinate(Schema& s, std::vector<std::string> ways);
+    void describe_coordinate(Schema& s, std::vector<std::string> coordinates);
     Result<void> place_coordinate(Row row, const Bodies& bodies);
     bool turns(Row row) const { return along[row] == "turn"; }
     bool of_shafts(Row row) const { return b[row].facet == Facet::Shaft; }

@@ -141,9 +141,9 @@ void finish_slider(const StepContext& step, Rows which, SliderRows& rows, const 
     {
         const Sides s = rows.sides(row, bodies);
         const Vec3 n = rotate(s.a.q * rows.frame_a[row], Vec3{0, 0, 1});
-        const double way = dot(n, s.d);
-        rows.travel[row] = rows.travelled[row] += way;
-        rows.point_a[row] += way * rotate(rows.frame_a[row], Vec3{0, 0, 1});
+        const double rolled = dot(n, s.d);
+        rows.travel[row] = rows.travelled[row] += rolled;
+        rows.point_a[row] += rolled * rotate(rows.frame_a[row], Vec3{0, 0, 1});
         rows.travel_rate[row] = dot(n, s.rate) + dot(cross(s.a.w, n), s.d);
         rows.take_report(row, reports, step.component_of_row[row]);
     }

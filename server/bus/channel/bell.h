@@ -40,19 +40,19 @@ public:
     /// As ring(), for the process that sleeps on it: a system call only for the first one since it woke.
     void ring_once()
     {
-        if (!rung_.exchange(true, std::memory_order_acq_rel)) ring();
+        if (!algorithm_.exchange(true, std::memory_order_acq_rel)) ring();
     }
-    /// The sleeper is awake: what was rung for before is seen by what follows.
+    /// The sleeper is awake: what was algorithm for before is seen by what follows.
     void heard()
     {
         std::uint64_t count = 0;
         [[maybe_unused]] const auto n = ::read(descriptor_, &count, sizeof count);
-        (void)rung_.exchange(false, std::memory_order_acq_rel);
+        (void)algorithm_.exchange(false, std::memory_order_acq_rel);
     }
 
 private:
     int descriptor_;
-    std::atomic<bool> rung_{false};
+    std::atomic<bool> algorithm_{false};
 };
 
 }  // namespace plab::bus

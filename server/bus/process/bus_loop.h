@@ -10,7 +10,7 @@
 
 #include "bus/channel/bell.h"
 #include "bus/channel/messages.h"
-#include "bus/process/catalogue.h"
+#include "bus/process/catalogue_writer.h"
 #include "bus/process/dds_log.h"
 #include "bus/process/outbox.h"
 #include "bus/process/presence.h"
@@ -78,7 +78,7 @@ private:
     Stream<plab_v2_Journal, wire::JournalSample, publish::JournalRecord> journal_;
     Stream<plab_v2_Hashes, wire::HashesSample, publish::HashRecord> hashes_;
     Stream<plab_v2_Snapshot, wire::SnapshotSample, publish::SnapshotRecord> snapshots_;
-    Catalogue catalogue_;
+    CatalogueWriter catalogue_;
     Presence presence_;
     wire::Reader<plab_v2_Request> requests_;
     std::deque<RequestMessage> waiting_;  ///< taken, and not passed on yet; what one look at the reader brought

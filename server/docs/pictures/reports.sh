@@ -22,7 +22,7 @@ study() {
 mkdir -p "$folder"
 study paper work-precision,convergence,energy,digits scenes/fan_and_balloons.xml \
     --vary gears=Assign,Impulse,Graph --vary contact.resolution=None,Bisection,LocalRoot --vary dt=1/30,1/60,1/120,1/240 \
-    --reference-rung "gears=Graph contact.resolution=LocalRoot dt=1/480" \
+    --reference-algorithm "gears=Graph contact.resolution=LocalRoot dt=1/480" \
     --quantity red.position --quantity green.position --quantity fan.angle --until 4
 study stack work-precision,convergence,digits scenes/studies/stack.xml \
     --vary manager=SequentialImpulse,SoftStep,Direct --vary dt=1/30,1/60,1/120,1/240 --reference exact:rest \

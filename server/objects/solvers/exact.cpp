@@ -91,13 +91,13 @@ void advance_exact(const StepContext& context, Row row, ExactRows& rows, Dynamic
     const StepContext start = context;  // evaluations change the host's
     if (system.is_constrained())
     {
-        rows.told.fall_back(start, row, Fallback::Constrained, "RungeKutta4",
-                            "joints hold the group together, so that no closed form is known");
+        rows.resolved.fall_back(start, row, Fallback::Constrained, "RungeKutta4",
+                                "joints hold the group together, so that no closed form is known");
         return advance_runge_kutta4(start, row, {}, system);
     }
-    if (system.forces_are_uniform() && advance_in_closed_form(start.dt, system)) return rows.told.say(start, row, "Exact");
-    rows.told.fall_back(start, row, Fallback::NotUniform, "RotationSplitting",
-                        "forces depend on time, place or velocity, so that no closed form is known");
+    if (system.forces_are_uniform() && advance_in_closed_form(start.dt, system)) return rows.resolved.say(start, row, "Exact");
+    rows.resolved.fall_back(start, row, Fallback::NotUniform, "RotationSplitting",
+                            "forces depend on time, place or velocity, so that no closed form is known");
     advance_by_splitting(start.dt, 4, system);
 }
 

@@ -11,9 +11,9 @@ namespace plab::solvers
 
 struct ExactRows
 {
-    ResolvedColumns told;
+    ResolvedColumns resolved;
 
-    void describe(Schema& schema) { told.describe(schema); }
+    void describe(Schema& schema) { resolved.describe(schema); }
 };
 
 /// One step over context.dt, from coordinates 0.

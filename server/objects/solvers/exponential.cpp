@@ -360,7 +360,7 @@ void ExponentialRows::describe(Schema& schema)
         .at_most(2000);
     schema.output(evaluations, "evaluations", unit::one, "force evaluations in the last step");
     schema.output(linear, "linear", unit::one, "whether the forces were linear, so that the step is exact");
-    told.describe(schema);
+    resolved.describe(schema);
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 
@@ -376,13 +376,13 @@ void advance_exponential(const StepContext& context, Row row, ExponentialRows& r
     const auto most = static_cast<std::size_t>(rows.max_size[row]);
     const ExponentialCounts counts = advance_by_exponential(start.dt, false, most, memory, system);
     if (!is_trial(start)) rows.evaluations[row] = counts.evaluations, rows.linear[row] = counts.linear;
-    if (counts.fine) return rows.told.say(start, row, "Exponential");
-    rows.told.fall_back(start, row, Fallback::TooLarge, "Radau5",
-                        counts.too_large
-                            ? "the group holds " + std::to_string(FlatSystem(system).size()) +
-                                  " numbers (places and speeds), of which more than max_size = " + std::to_string(most) + " move"
-                        : counts.sways ? "what stiff forces do beside their line changes within the step"
-                                       : "the exponential of this step overflows");
+    if (counts.fine) return rows.resolved.say(start, row, "Exponential");
+    rows.resolved.fall_back(start, row, Fallback::TooLarge, "Radau5",
+                            counts.too_large
+                                ? "the group holds " + std::to_string(FlatSystem(system).size()) +
+                                      " numbers (places and speeds), of which more than max_size = " + std::to_string(most) + " move"
+                            : counts.sways ? "what stiff forces do beside their line changes within the step"
+                                           : "the exponential of this step overflows");
     const Radau5Counts done = advance_by_radau(start.dt, kRadauTolerance, kRadauSubsteps, memory.radau, system);
     if (is_trial(start)) return;
     rows.evaluations[row] = done.evaluations, rows.linear[row] = false;

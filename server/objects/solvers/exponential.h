@@ -53,7 +53,7 @@ struct ExponentialRows
     Column<std::int64_t> max_size;
     Column<std::int64_t> evaluations;
     Column<bool> linear;
-    ResolvedColumns told;
+    ResolvedColumns resolved;
     Column<ExponentialMemory> memory;
 
     void describe(Schema& schema);

@@ -175,7 +175,7 @@ void Radau5Rows::describe(Schema& schema)
 {
     describe_control(schema);
     schema.output(factorisations, "factorisations", unit::one, "pairs of linear systems that were factorised in the last step");
-    schema.state(told_size, "told_size", unit::one, "an event told that the group is large");
+    schema.state(reported_size, "told_size", unit::one, "an event told that the group is large");
     schema.scratch(memory, "memory", "working vectors and matrices");
 }
 
@@ -197,8 +197,8 @@ constexpr std::size_t kLarge = 300;
 
 void tell_size(const StepContext& start, Row row, Radau5Rows& rows, std::size_t n)
 {
-    if (n <= kLarge || rows.told_size[row]) return;
-    rows.told_size[row] = true;
+    if (n <= kLarge || rows.reported_size[row]) return;
+    rows.reported_size[row] = true;
     start.emit(row, "solver.large", Severity::Warning,
                "a group of " + std::to_string(n) +
                    " numbers (places and speeds): each internal step factorises dense matrices of that size, " +

@@ -30,7 +30,7 @@ struct Radau5Counts : SubstepCounts
 struct Radau5Rows : ErrorControlRows
 {
     Column<std::int64_t> factorisations;
-    Column<bool> told_size;
+    Column<bool> reported_size;
     Column<Radau5Memory> memory;
 
     void describe(Schema& schema);

@@ -38,7 +38,7 @@ struct Contact
 
 /// A pair that touches since before: detection moves b by `shift` before looking, and takes |shift| off the depth, so
 /// that a gap of a rounding error does not end a standing contact.
-struct StandingPair
+struct PersistentPair
 {
     Ref a, b;
     Vec3 shift;
@@ -49,14 +49,14 @@ class ContactSink
 {
 public:
     virtual ~ContactSink() = default;
-    virtual std::span<const StandingPair> standing() const = 0;
+    virtual std::span<const PersistentPair> persistent() const = 0;
     /// Only the standing pairs are asked for: no broad phase is needed (trial times of one pair).
-    virtual bool only_standing() const { return false; }
+    virtual bool only_persistent() const { return false; }
     /// m: contacts whose gap is up to this are wanted too, with depth < 0.
     virtual double margin() const { return 0; }
     /// m, by body: how far its surface may get from where it is now. Not empty: pairs of bodies whose bounds, grown by
     /// that, overlap are wanted by near(), and no contacts.
-    virtual std::span<const double> reach() const { return {}; }
+    virtual std::span<const double> motion_margin() const { return {}; }
     virtual void near(Ref /*a*/, Ref /*b*/) {}
     /// normal from a to b; a and b in the order in which `precedes` says they stand.
     virtual void add(const Contact& contact) = 0;

@@ -44,31 +44,32 @@ void Advance::split_by_contact(std::span<const std::uint32_t> groups)
     }
 }
 
-void Advance::collect_shadows(std::span<const std::uint32_t> groups)
+void Advance::collect_observed(std::span<const std::uint32_t> groups)
 {
     group_flags_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t g : groups) group_flags_[g] = 1;
-    shadows_.clear();
+    observed_.clear();
     const auto look = [&](std::uint32_t g)
     {
         for (const std::uint32_t up : step_.groups.all[g].upstream)
-            if (!group_flags_[up]) group_flags_[up] = 1, shadows_.push_back(up);
+            if (!group_flags_[up]) group_flags_[up] = 1, observed_.push_back(up);
     };
     for (const std::uint32_t g : groups) look(g);
-    for (std::size_t i = 0; i < shadows_.size(); ++i) look(shadows_[i]);
-    std::sort(shadows_.begin(), shadows_.end());
+    for (std::size_t i = 0; i < observed_.size(); ++i) look(observed_[i]);
+    std::sort(observed_.begin(), observed_.end());
 }
 
 void Advance::advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial)
 {
-    collect_shadows(groups);
+    collect_observed(groups);
     // Whom the members read goes along from where the members are, and comes back to where it had got to.
-    if (!shadows_.empty())
+    if (!observed_.empty())
     {
-        for (const std::uint32_t g : shadows_) motion_.rewind(g);
-        const bool together = std::all_of(shadows_.begin(), shadows_.end(), [&](std::uint32_t g) { return motion_.segment_begin(g) == 0; });
-        if (together && from > 0) motion_.advance_smooth(shadows_, {}, 0, from, {}, true);
-        for (const std::uint32_t g : shadows_)
+        for (const std::uint32_t g : observed_) motion_.rewind(g);
+        const bool together =
+            std::all_of(observed_.begin(), observed_.end(), [&](std::uint32_t g) { return motion_.segment_begin(g) == 0; });
+        if (together && from > 0) motion_.advance_smooth(observed_, {}, 0, from, {}, true);
+        for (const std::uint32_t g : observed_)
             if (!together && motion_.segment_begin(g) < from)
                 motion_.advance_smooth(std::span(&g, 1), {}, motion_.segment_begin(g), from, {}, true);
     }
@@ -76,11 +77,11 @@ void Advance::advance(std::span<const std::uint32_t> groups, double from, double
     if (forces_.any())
     {
         forces_.take(groups, smooth_, in_contact_, from, to);
-        forces_.advance(shadows_, from, to, book, trial);
+        forces_.advance(observed_, from, to, book, trial);
     }
-    if (!in_contact_.empty()) hard_.advance(in_contact_, shadows_, from, to, book, trial);
-    if (!smooth_.empty()) motion_.advance_smooth(smooth_, shadows_, from, to, book, trial);
-    for (const std::uint32_t g : shadows_) motion_.restore_end(g);
+    if (!in_contact_.empty()) hard_.advance(in_contact_, observed_, from, to, book, trial);
+    if (!smooth_.empty()) motion_.advance_smooth(smooth_, observed_, from, to, book, trial);
+    for (const std::uint32_t g : observed_) motion_.restore_end(g);
 }
 
 }  // namespace plab::simulation

@@ -28,7 +28,7 @@ public:
 
 private:
     void split_by_contact(std::span<const std::uint32_t> groups);
-    void collect_shadows(std::span<const std::uint32_t> groups);
+    void collect_observed(std::span<const std::uint32_t> groups);
 
     StepState& step_;
     GroupMotion& motion_;
@@ -38,7 +38,7 @@ private:
     BatchedAdvance batches_;
     bool some_without_solver_ = false;
     std::vector<std::uint8_t> group_flags_;
-    std::vector<std::uint32_t> smooth_, in_contact_, shadows_;
+    std::vector<std::uint32_t> smooth_, in_contact_, observed_;
 };
 
 }  // namespace plab::simulation

@@ -30,7 +30,7 @@ constexpr double kUnseen = 0.25;
 double thinnest(const Geometry& g)
 {
     if (const double known = least_half_width(g); known > 0) return known;
-    return 0.5 * std::min({half_way_through(g, {1, 0, 0}), half_way_through(g, {0, 1, 0}), half_way_through(g, {0, 0, 1})});
+    return 0.5 * std::min({half_width_along(g, {1, 0, 0}), half_width_along(g, {0, 1, 0}), half_width_along(g, {0, 0, 1})});
 }
 }  // namespace
 
@@ -84,8 +84,8 @@ double ContactForces::margin_for(double h) const
     {
         const double size = std::min(contacts_.radius_of_body()[p.a.index], contacts_.radius_of_body()[p.b.index]);
         if (std::isfinite(size)) margin = std::max(margin, kLeastMargin * size);
-        const double way = 2 * closing_bound(p) * h;
-        if (std::isfinite(way)) margin = std::max(margin, way);
+        const double travel = 2 * closing_bound(p) * h;
+        if (std::isfinite(travel)) margin = std::max(margin, travel);
     }
     // A spring that took over from a hard contact reaches beyond the surface.
     double open = 0;
@@ -115,8 +115,8 @@ double ContactForces::time_through(const NearPair& p) const
 {
     const world::HostTables& host = step_.world.host();
     const Bodies& bodies = host.bodies;
-    const Vec3 way = bodies.velocity[p.b.index] - bodies.velocity[p.a.index];
-    const double speed = length(way), turning = closing_bound(p) - speed;
+    const Vec3 travel = bodies.velocity[p.b.index] - bodies.velocity[p.a.index];
+    const double speed = length(travel), turning = closing_bound(p) - speed;
     double least = std::numeric_limits<double>::infinity();
     for (const Ref r : {p.a, p.b})
         for (const Ref shape : bodies.shapes[r.index])
@@ -124,7 +124,7 @@ double ContactForces::time_through(const NearPair& p) const
             const Geometry& g = host.shapes.geometry[shape.index];
             if (g.kind == GeometryKind::Plane) continue;
             double rate = 0;  // 1/s
-            if (speed > 0) rate += speed / half_way_through(g, rotate_back(bodies.orientation[r.index] * g.pose.q, way * (1 / speed)));
+            if (speed > 0) rate += speed / half_width_along(g, rotate_back(bodies.orientation[r.index] * g.pose.q, travel * (1 / speed)));
             if (turning > 0) rate += turning / thinnest(g);
             if (rate > 0) least = std::min(least, 1 / rate);
         }
@@ -167,8 +167,9 @@ double ContactForces::spin_rate() const
 /// The error of a swing is its speed times pieces^-order: as it dies, fewer do for the same error.
 double ContactForces::pieces_per_contact(const ForceContact& contact, double wanted) const
 {
-    if (!(contact.lively < contact.liveliest)) return wanted;
-    return std::clamp(wanted * std::pow(contact.lively / contact.liveliest, 1.0 / order_), std::min(kFewestAtRest, wanted), wanted);
+    if (!(contact.swing_speed < contact.peak_swing_speed)) return wanted;
+    return std::clamp(wanted * std::pow(contact.swing_speed / contact.peak_swing_speed, 1.0 / order_), std::min(kFewestAtRest, wanted),
+                      wanted);
 }
 
 /// s: length of a piece while something pushes. Half of the pieces that a step may have are as short as was asked for, so
@@ -287,13 +288,13 @@ void ContactForces::start(double from)
     // How deep it will get is asked anew in each step: what hit hard may have come to rest.
     for (const Seen& s : at_end_)
         if (ForceContact* known = find_pushing(s.found); known && known->asked != step_.frame.tick)
-            known->asked = step_.frame.tick, expect(*known, s.found, std::fabs(s.parting));
+            known->asked = step_.frame.tick, expect(*known, s.found, std::fabs(s.separation_speed));
 }
 
 void ContactForces::advance_island(const Island& island, double from, double to, WorkBook book, bool trial)
 {
     Piece piece;
-    piece.system = &motion_.system_for(island.groups, island.shadows);
+    piece.system = &motion_.system_for(island.groups, island.observed);
     piece.solver = solver_of(island);
     piece.begin = piece.t = from, piece.end = to;
     piece.book = book, piece.trial = trial;
@@ -325,7 +326,7 @@ void ContactForces::advance_mixed(const Island& island, double from, double to, 
         margin_ = margin_for(next - t);
         lead_ = 0.5 * (next - t), taken_ = false;
         motion_.feel(this);
-        hard_.advance(island.groups, island.shadows, t, next, book, trial);
+        hard_.advance(island.groups, island.observed, t, next, book, trial);
         motion_.feel(nullptr);
         lead_ = 0;
         const double gone = next - std::exchange(t, next);

@@ -44,7 +44,7 @@ void ContactForces::run_outputs(std::vector<FoundContact>& found)
             c.stretch = known->stretch, c.rest_depth = known->rest_depth, c.preload = known->preload, c.approach = known->approach;
             law_contacts_.push_back(c);
         }
-        run_touch(step_.world, response, context, law_contacts_, step_.world.host().bodies, scratch_);
+        run_force_laws(step_.world, response, context, law_contacts_, step_.world.host().bodies, scratch_);
         for (const Contact& c : law_contacts_)
             for (const Ref r : {c.a, c.b}) scratch_.force[r.index] = scratch_.torque[r.index] = {};
     }
@@ -72,8 +72,8 @@ void ContactForces::emit_happenings()
 
 void ContactForces::emit_stiff()
 {
-    const bool told = std::exchange(step_.told.stiff, stiff_ != kNoIndex);
-    if (stiff_ == kNoIndex || told) return;
+    const bool reported = std::exchange(step_.reported.stiff, stiff_ != kNoIndex);
+    if (stiff_ == kNoIndex || reported) return;
     Event e;
     e.time = step_.frame.start_time, e.kind = "contact.stiff", e.severity = Severity::Warning, e.component = stiff_;
     e.message = "steps_per_contact asks for " + rounded_text(std::ceil(pieces_needed_)) +

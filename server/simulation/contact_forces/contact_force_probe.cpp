@@ -27,8 +27,8 @@ void copy(const Bodies& from, std::uint32_t i, Bodies& to, std::uint32_t k)
 
 }  // namespace
 
-void run_touch(world::World& world, std::uint32_t response, StepContext& context, std::span<Contact> contacts, Bodies& bodies,
-               Wrenches& wrenches)
+void run_force_laws(world::World& world, std::uint32_t response, StepContext& context, std::span<Contact> contacts, Bodies& bodies,
+                    Wrenches& wrenches)
 {
     const world::Component& c = world.component(response);
     world::Table& table = *world.tables()[c.table];
@@ -74,7 +74,7 @@ Vec3 ForceProbe::force(world::World& world, std::uint32_t response, double depth
     Contact c = contact_;
     c.depth = depth, c.stretch = stretch;
     StepContext context;
-    run_touch(world, response, context, std::span(&c, 1), bodies_, wrenches_);
+    run_force_laws(world, response, context, std::span(&c, 1), bodies_, wrenches_);
     return c.impulse;
 }
 

@@ -85,14 +85,14 @@ void ContactForces::anchor()
     for (const std::uint32_t b : bodies_) anchors_[b] = {bodies.position[b], bodies.orientation[b]};
 }
 
-void ContactForces::detect(std::uint32_t index, std::span<const StandingPair> pairs, double margin, std::vector<FoundContact>& out)
+void ContactForces::detect(std::uint32_t index, std::span<const PersistentPair> pairs, double margin, std::vector<FoundContact>& out)
 {
     const Detector& detector = contacts_.detectors()[index];
     ContactCollector sink(step_.world, out);
-    sink.look_for(index, pairs, true, margin);
-    ComponentCall look(step_, *step_.world.tables()[detector.table], detector.row);
-    look.context.events = nullptr, look.call.contacts = &sink;
-    (void)look.run(*detector.command);  // what fails fails in the look at the end of the step, which tells it
+    sink.begin_query(index, pairs, true, margin);
+    ComponentCall query(step_, *step_.world.tables()[detector.table], detector.row);
+    query.context.events = nullptr, query.call.contacts = &sink;
+    (void)query.run(*detector.command);  // what fails fails in the look at the end of the step, which tells it
 }
 
 void ContactForces::fill_surface(FoundContact& f) const
@@ -109,10 +109,10 @@ void ContactForces::inspect(double margin, std::vector<Seen>& out)
     found_.clear();
     for (std::size_t i = 0; i < pairs_.size();)
     {
-        standing_.clear();
+        persistent_.clear();
         const std::uint32_t d = pairs_[i].detector;
-        for (; i < pairs_.size() && pairs_[i].detector == d; ++i) standing_.push_back({pairs_[i].a, pairs_[i].b, {}});
-        detect(d, standing_, margin, found_);
+        for (; i < pairs_.size() && pairs_[i].detector == d; ++i) persistent_.push_back({pairs_[i].a, pairs_[i].b, {}});
+        detect(d, persistent_, margin, found_);
     }
     sort_contacts(found_, step_.world);
     out.clear();
@@ -147,11 +147,11 @@ void ContactForces::gather(bool lead)
         const std::uint32_t component = live_.pairs[pushing_[i].pair].detector;
         std::uint32_t d = 0;
         while (contacts_.detectors()[d].component != component) ++d;
-        standing_.clear();
+        persistent_.clear();
         for (; i < pushing_.size() && live_.pairs[pushing_[i].pair].detector == component; ++i)
             if (i == 0 || pushing_[i].pair != pushing_[i - 1].pair)
-                standing_.push_back({live_.pairs[pushing_[i].pair].a, live_.pairs[pushing_[i].pair].b, {}});
-        detect(d, standing_, margin_, found_);
+                persistent_.push_back({live_.pairs[pushing_[i].pair].a, live_.pairs[pushing_[i].pair].b, {}});
+        detect(d, persistent_, margin_, found_);
     }
     sort_contacts(found_, step_.world);
     for (std::size_t i = 0; i < found_.size(); ++i)
@@ -185,7 +185,7 @@ void ContactForces::run_laws(const StepContext& context, Wrenches& wrenches)
         law_contacts_.clear();
         for (; i < matched_.size() && found_[matched_[i].first].detector == d; ++i)
             law_contacts_.push_back(found_[matched_[i].first].contact);
-        run_touch(step_.world, contacts_.detectors()[d].response, own, law_contacts_, step_.world.host().bodies, wrenches);
+        run_force_laws(step_.world, contacts_.detectors()[d].response, own, law_contacts_, step_.world.host().bodies, wrenches);
         for (std::size_t k = first; k < i; ++k) found_[matched_[k].first].contact = law_contacts_[k - first];
     }
 }
@@ -270,9 +270,9 @@ void ContactForces::commit(double t, double h)
         // Of a swing at w, force times mobility changes by w^2 times its speed; the estimate fades within half a turn.
         const double rate = std::numbers::pi / known->half_period;
         const double speed = h > 0 ? length(c.impulse - known->force) * known->rates.mobility / (h * rate * rate) : 0.0;
-        known->lively = std::max(speed, known->lively * (1 - std::min(0.5, h / known->half_period)));
+        known->swing_speed = std::max(speed, known->swing_speed * (1 - std::min(0.5, h / known->half_period)));
         // What counts as much: the touch, or a swing as wide as the force's static give.
-        known->liveliest = std::max({known->liveliest, known->lively, length(c.impulse) * known->rates.mobility / rate});
+        known->peak_swing_speed = std::max({known->peak_swing_speed, known->swing_speed, length(c.impulse) * known->rates.mobility / rate});
         known->stretch = c.stretch, known->force = c.impulse, known->depth = c.depth;
         if (c.depth > 1.05 * known->peak) expect(*known, found_[i], 0);
         known->slack = c.impulse == Vec3{} && c.depth > known->open_depth + rounding(c);

@@ -179,7 +179,7 @@ bool ContactForces::soften_contact(const KnownContact& hard, const FoundContact&
     const double press = dot(held, c.normal);
     if (!(press > 0) && c.depth <= 0) return false;
     const std::uint32_t response = contacts_.detectors()[at.detector].response;
-    soft.feature = hard.feature, soft.id = hard.id, soft.begin = step_.frame.start_time + dt, soft.told = true;
+    soft.feature = hard.feature, soft.id = hard.id, soft.begin = step_.frame.start_time + dt, soft.reported = true;
     soft.depth = c.depth;
     probe_.take(step_.world.host().bodies, c, contacts_.smaller_radius(c.a, c.b), step_.frame.step);
     // Where the spring gives that force anyway, nothing need be remembered.
@@ -194,8 +194,8 @@ bool ContactForces::soften_contact(const KnownContact& hard, const FoundContact&
     soft.force = held;
     expect(soft, at, 0);
     // It may be taken over in the middle of an impact, which gets as many pieces as from the touch on.
-    soft.lively = std::fabs(contacts_.normal_velocity(c));
-    soft.liveliest = std::max(soft.lively, length(held) * soft.rates.mobility * soft.half_period / std::numbers::pi);
+    soft.swing_speed = std::fabs(contacts_.normal_velocity(c));
+    soft.peak_swing_speed = std::max(soft.swing_speed, length(held) * soft.rates.mobility * soft.half_period / std::numbers::pi);
     return true;
 }
 
@@ -204,9 +204,9 @@ ForcePair ContactForces::soften(const PairState& pair, std::uint32_t detector)
     ForcePair out;
     out.detector = pair.detector, out.a = pair.a, out.b = pair.b, out.since = pair.since, out.normal = pair.normal;
     out.law_type = laws_[detector].type, out.law = laws_[detector].values;
-    const StandingPair standing{pair.a, pair.b, {}};
+    const PersistentPair persistent{pair.a, pair.b, {}};
     found_.clear();
-    detect(detector, std::span(&standing, 1), contacts_.standing_margin(pair), found_);
+    detect(detector, std::span(&persistent, 1), contacts_.persistence_margin(pair), found_);
     sort_contacts(found_, step_.world);
     for (FoundContact& f : found_)
     {

@@ -26,7 +26,7 @@ double ContactForces::rounding(const Contact& c) const
 bool ContactForces::switches(const Seen& seen, const std::vector<Seen>& before)
 {
     const Contact& c = seen.found.contact;
-    if (const ForceContact* known = find_pushing(seen.found)) return c.depth < known->open_depth && seen.parting > 0;
+    if (const ForceContact* known = find_pushing(seen.found)) return c.depth < known->open_depth && seen.separation_speed > 0;
     if (c.depth <= rounding(c)) return false;
     if (const Seen* then = find_seen(before, seen.found)) return then->found.contact.depth <= rounding(c);
     // A new corner of bodies that touch anyway comes at the end of the piece: its depth has no beginning to be found.
@@ -61,10 +61,10 @@ double ContactForces::guess(double low, double high, const std::vector<Seen>& at
         if (then)
         {
             const double open = known ? known->open_depth : 0.0;
-            const double d0 = then->found.contact.depth - open, d1 = s.found.contact.depth - open, way = d1 - d0;
-            const double u = -d0 / way;
+            const double d0 = then->found.contact.depth - open, d1 = s.found.contact.depth - open, travel = d1 - d0;
+            const double u = -d0 / travel;
             t = u * h;
-            const double slow0 = way / -then->parting, slow1 = way / -s.parting;  // s per whole way
+            const double slow0 = travel / -then->separation_speed, slow1 = travel / -s.separation_speed;  // s per whole way
             if (slow0 > 0 && slow1 > 0 && slow0 < 3 * h && slow1 < 3 * h)
                 t = u * (1 - u) * (1 - u) * slow0 + u * u * (3 - 2 * u) * h + u * u * (u - 1) * slow1;
         }
@@ -122,8 +122,8 @@ void ContactForces::begin_contact(const Seen& seen, double time)
     ForceContact known;
     known.asked = step_.frame.tick;
     known.feature = c.feature, known.id = old ? old->id : contacts_.cache().new_id();
-    known.begin = time, known.depth = c.depth, known.approach = std::max(0.0, -seen.parting);
-    known.lively = known.liveliest = known.approach;
+    known.begin = time, known.depth = c.depth, known.approach = std::max(0.0, -seen.separation_speed);
+    known.swing_speed = known.peak_swing_speed = known.approach;
     if (overlap_is_old && c.depth > 0) known.rest_depth = known.open_depth = c.depth;
     expect(known, seen.found, known.approach);
     (old ? *old : pair->contacts[pair->count++]) = known;
@@ -144,7 +144,7 @@ void ContactForces::let_go(const Seen& seen, ForcePair& pair, double time)
 void ContactForces::follow_dormant(const Seen& seen, ForceContact& known, double time)
 {
     known.depth = seen.found.contact.depth;
-    if (known.depth > 0 && seen.parting < 0) begin_contact(seen, time);
+    if (known.depth > 0 && seen.separation_speed < 0) begin_contact(seen, time);
 }
 
 /// Points that had let go and do not overlap any more, or are not there any more.
@@ -182,7 +182,7 @@ void ContactForces::tell(ForceHappening::Kind kind, const ForcePair& pair, const
 
 void ContactForces::tell_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time)
 {
-    if (std::exchange(contact.told, true)) return;
+    if (std::exchange(contact.reported, true)) return;
     tell(ForceHappening::Kind::Impact, pair, at, contact.impulse, time);
 }
 
@@ -222,12 +222,12 @@ void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t)
     {
         const Contact& c = s.found.contact;
         ForceContact* known = find_known(s.found);
-        const double soon = std::fabs(s.parting) * instant + rounding(c);
+        const double soon = std::fabs(s.separation_speed) * instant + rounding(c);
         if (known && known->dormant)
             follow_dormant(s, *known, time);
-        else if (known && s.parting > 0 && c.depth <= known->open_depth + soon)
+        else if (known && s.separation_speed > 0 && c.depth <= known->open_depth + soon)
             let_go(s, *find_pair(contacts_.detectors()[s.found.detector].component, c.a, c.b), time);
-        else if (!known && (s.parting < 0 ? c.depth >= -soon : c.depth > 1e3 * rounding(c)))
+        else if (!known && (s.separation_speed < 0 ? c.depth >= -soon : c.depth > 1e3 * rounding(c)))
             begin_contact(s, time);
     }
     if (!gone_.empty()) end_gone(time);

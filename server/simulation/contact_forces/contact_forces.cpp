@@ -11,7 +11,8 @@ namespace
 {
 
 constexpr int kMostRounds = 64;
-constexpr double kSameReach = 1 + 1e-9, kLeastReach = 0.01;  // the latter of a body's radius: what rests is not looked at twice
+constexpr double kSameMotionMargin = 1 + 1e-9,
+                 kLeastMotionMargin = 0.01;  // the latter of a body's radius: what rests is not looked at twice
 
 }  // namespace
 
@@ -26,7 +27,7 @@ void ContactForces::rebuild()
     convert_contacts();
     if (!any_) return;
     const world::HostTables& host = world.host();
-    memento_.save(host), shadow_memento_.save(host);
+    memento_.save(host), observed_memento_.save(host);
     anchors_.resize(host.bodies.size());
     scratch_.bind(host.bodies, host.shafts);
     scratch_.force.assign(host.bodies.size(), {}), scratch_.torque.assign(host.bodies.size(), {});
@@ -40,7 +41,7 @@ void ContactForces::make_room()
     constexpr std::size_t kRoom = 32;
     near_.reserve(kRoom), near_found_.reserve(kRoom);
     islands_.resize(std::max(islands_.size(), std::min(kRoom, step_.groups.all.size())));
-    for (Island& island : islands_) island.groups.reserve(kRoom), island.shadows.reserve(kRoom);
+    for (Island& island : islands_) island.groups.reserve(kRoom), island.observed.reserve(kRoom);
 }
 
 bool ContactForces::dynamic(Ref r) const { return step_.world.host().bodies.dynamic(r.index); }
@@ -80,14 +81,14 @@ void ContactForces::begin_step()
     pieces_needed_ = 0, stiff_ = kNoIndex;
     surfaces_.clear();
     for (std::uint32_t d = 0; d < by_force_.size(); ++d) surfaces_.push_back(by_force_[d] ? contacts_.response_law(d) : SurfaceLaw{});
-    reach_.assign(step_.world.host().bodies.size(), 0.0);
-    fill_reach(step_.frame.step);
-    look_near();
-    spread_reach();
+    motion_margin_.assign(step_.world.host().bodies.size(), 0.0);
+    fill_motion_margins(step_.frame.step);
+    find_near();
+    spread_motion_margins();
     segment_ = live_;
 }
 
-void ContactForces::fill_reach(double h)
+void ContactForces::fill_motion_margins(double h)
 {
     // Speeds, and what the forces of now would do; half as much again for what they do later.
     GroupSystem& system = motion_.system_for(step_.all_groups, {});
@@ -95,40 +96,42 @@ void ContactForces::fill_reach(double h)
     system.begin(0, h, step_.book(), nullptr);
     system.evaluate(0, 0);
     const auto members = system.bodies();
-    for (std::size_t i = 0; i < members.size(); ++i) reach_[members[i]] = 0.75 * h * h * length(system.acceleration(i));
+    for (std::size_t i = 0; i < members.size(); ++i) motion_margin_[members[i]] = 0.75 * h * h * length(system.acceleration(i));
     const Bodies& bodies = step_.world.host().bodies;
-    for (std::uint32_t b = 0; b < reach_.size(); ++b)
+    for (std::uint32_t b = 0; b < motion_margin_.size(); ++b)
     {
         if (bodies.motion[b] == Motion::Static) continue;
-        const double way = speed_of({Facet::Body, b}) * h;
-        reach_[b] += bodies.dynamic(b) ? 1.5 * way : way;
+        const double travel = speed_of({Facet::Body, b}) * h;
+        motion_margin_[b] += bodies.dynamic(b) ? 1.5 * travel : travel;
     }
 }
 
 /// Whoever may be hit within the step may leave with the speed that the blow gives, and hit the next one.
-void ContactForces::spread_reach()
+void ContactForces::spread_motion_margins()
 {
-    for (int round = 0; raise_reach(); ++round)
+    for (int round = 0; raise_motion_margins(); ++round)
     {
         const bool is_last = round == kMostRounds;
-        if (is_last) level_reach();
-        look_near();
+        if (is_last) level_motion_margins();
+        find_near();
         if (is_last) return;
     }
 }
 
 /// Reaches of near pairs, until they agree; false if they did. Of two that meet head-on without a loss the one at rest leaves with
 /// 2 m / (m + m') of the other's speed. Round a circle of pairs these shares multiply to 1 at most: it comes to an end.
-bool ContactForces::raise_reach()
+bool ContactForces::raise_motion_margins()
 {
     const Bodies& bodies = step_.world.host().bodies;
     const auto hits = [&](Ref a, Ref b)
     {
         if (!dynamic(b)) return false;
         const double share = dynamic(a) ? 2 / (1 + bodies.mass[b.index] * bodies.inverse_mass[a.index]) : 2.0;
-        const double reach = share * reach_[a.index];
-        if (!(reach > reach_[b.index] * kSameReach && reach > kLeastReach * contacts_.radius_of_body()[b.index])) return false;
-        reach_[b.index] = reach;
+        const double motion_margin = share * motion_margin_[a.index];
+        if (!(motion_margin > motion_margin_[b.index] * kSameMotionMargin &&
+              motion_margin > kLeastMotionMargin * contacts_.radius_of_body()[b.index]))
+            return false;
+        motion_margin_[b.index] = motion_margin;
         return true;
     };
     bool raised = false;
@@ -145,11 +148,11 @@ bool ContactForces::raise_reach()
 }
 
 /// For a row longer than there are rounds: nobody is out of anybody's reach who is near the fastest.
-void ContactForces::level_reach()
+void ContactForces::level_motion_margins()
 {
-    const double most = *std::max_element(reach_.begin(), reach_.end());
-    for (std::uint32_t b = 0; b < reach_.size(); ++b)
-        if (dynamic({Facet::Body, b})) reach_[b] = std::max(reach_[b], most);
+    const double most = *std::max_element(motion_margin_.begin(), motion_margin_.end());
+    for (std::uint32_t b = 0; b < motion_margin_.size(); ++b)
+        if (dynamic({Facet::Body, b})) motion_margin_[b] = std::max(motion_margin_[b], most);
 }
 
 void ContactForces::add_near(std::uint32_t detector, Ref a, Ref b)
@@ -157,7 +160,7 @@ void ContactForces::add_near(std::uint32_t detector, Ref a, Ref b)
     if (dynamic(a) || dynamic(b)) near_.push_back({detector, a, b});
 }
 
-void ContactForces::look_near()
+void ContactForces::find_near()
 {
     const world::World& world = step_.world;
     for (std::uint32_t d = 0; d < by_force_.size(); ++d)
@@ -165,8 +168,8 @@ void ContactForces::look_near()
         if (!by_force_[d]) continue;
         const Detector& detector = contacts_.detectors()[d];
         near_found_.clear();
-        NearCollector sink(world, reach_, near_found_);
-        contacts_.look(detector, sink);
+        NearCollector sink(world, motion_margin_, near_found_);
+        contacts_.query(detector, sink);
         for (const NearCollector::Pair& p : near_found_) add_near(d, p.a, p.b);
         for (const ForcePair& p : live_.pairs)
             if (p.detector == detector.component) add_near(d, p.a, p.b);
@@ -177,11 +180,11 @@ void ContactForces::look_near()
                 near_.end());
 }
 
-bool ContactForces::within_reach(std::span<const std::uint32_t> groups, double h) const
+bool ContactForces::within_motion_margins(std::span<const std::uint32_t> groups, double h) const
 {
     for (const std::uint32_t g : groups)
         for (const std::uint32_t b : step_.groups.all[g].bodies)
-            if (speed_of({Facet::Body, b}) * h > reach_[b]) return false;
+            if (speed_of({Facet::Body, b}) * h > motion_margin_[b]) return false;
     return true;
 }
 
@@ -233,13 +236,13 @@ void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std:
                          double from, double to)
 {
     island_count_ = 0;
-    if (!within_reach(groups, to - from))
+    if (!within_motion_margins(groups, to - from))
     {
         // An impact within the step made somebody faster than anybody could know.
         for (const std::uint32_t g : groups)
             for (const std::uint32_t b : step_.groups.all[g].bodies)
-                reach_[b] = std::max(reach_[b], 2 * speed_of({Facet::Body, b}) * (to - from));
-        look_near();
+                motion_margin_[b] = std::max(motion_margin_[b], 2 * speed_of({Facet::Body, b}) * (to - from));
+        find_near();
     }
     if (near_.empty()) return;
     make_islands(groups);
@@ -262,25 +265,25 @@ void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std:
     std::erase_if(smooth, claimed), std::erase_if(in_contact, claimed);
 }
 
-void ContactForces::collect_shadows(Island& island, std::span<const std::uint32_t> shadows)
+void ContactForces::collect_observed(Island& island, std::span<const std::uint32_t> observed)
 {
     // Whom the forces of the island read, and who is moved as told and may be touched.
     bound_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t g : island.groups) bound_[g] = 1;
-    island.shadows.assign(shadows.begin(), shadows.end());
-    for (const std::uint32_t g : shadows) bound_[g] = 1;
+    island.observed.assign(observed.begin(), observed.end());
+    for (const std::uint32_t g : observed) bound_[g] = 1;
     const auto want = [&](std::uint32_t g)
     {
-        if (g != kNoIndex && !bound_[g]) bound_[g] = 1, island.shadows.push_back(g);
+        if (g != kNoIndex && !bound_[g]) bound_[g] = 1, island.observed.push_back(g);
     };
     for (const std::uint32_t g : island.groups)
         for (const std::uint32_t up : step_.groups.all[g].upstream) want(up);
-    for (std::size_t i = 0; i < island.shadows.size(); ++i)
-        for (const std::uint32_t up : step_.groups.all[island.shadows[i]].upstream) want(up);
+    for (std::size_t i = 0; i < island.observed.size(); ++i)
+        for (const std::uint32_t up : step_.groups.all[island.observed[i]].upstream) want(up);
     for (const NearPair& p : pairs_)
         for (const Ref r : {p.a, p.b})
             if (!dynamic(r)) want(step_.groups.of(r));
-    std::sort(island.shadows.begin(), island.shadows.end());
+    std::sort(island.observed.begin(), island.observed.end());
 }
 
 std::uint32_t ContactForces::solver_of(const Island& island) const
@@ -302,31 +305,31 @@ std::uint32_t ContactForces::solver_of(const Island& island) const
     return best;
 }
 
-void ContactForces::advance(std::span<const std::uint32_t> shadows, double from, double to, WorkBook book, bool trial)
+void ContactForces::advance(std::span<const std::uint32_t> observed, double from, double to, WorkBook book, bool trial)
 {
     for (std::size_t i = 0; i < island_count_; ++i)
     {
         Island& island = islands_[i];
         bind(island.groups);
-        collect_shadows(island, shadows);
+        collect_observed(island, observed);
         world::HostTables& host = step_.world.host();
         const auto each = [&](auto body, auto shaft, auto quantities)
         {
-            for (const std::uint32_t g : island.shadows)
+            for (const std::uint32_t g : island.observed)
             {
                 for (const std::uint32_t b : step_.groups.all[g].bodies) body(b);
                 for (const std::uint32_t s : step_.groups.all[g].shafts) shaft(s);
                 for (const std::uint32_t q : step_.groups.all[g].quantities) quantities(q);
             }
         };
-        each([&](auto b) { shadow_memento_.save_body(host, b); }, [&](auto s) { shadow_memento_.save_shaft(host, s); },
-             [&](auto q) { shadow_memento_.save_quantities(host, q); });
+        each([&](auto b) { observed_memento_.save_body(host, b); }, [&](auto s) { observed_memento_.save_shaft(host, s); },
+             [&](auto q) { observed_memento_.save_quantities(host, q); });
         if (island.mixed)
             advance_mixed(island, from, to, book, trial);
         else
             advance_island(island, from, to, book, trial);
-        each([&](auto b) { shadow_memento_.restore_body(host, b); }, [&](auto s) { shadow_memento_.restore_shaft(host, s); },
-             [&](auto q) { shadow_memento_.restore_quantities(host, q); });
+        each([&](auto b) { observed_memento_.restore_body(host, b); }, [&](auto s) { observed_memento_.restore_shaft(host, s); },
+             [&](auto q) { observed_memento_.restore_quantities(host, q); });
     }
 }
 

@@ -37,7 +37,7 @@ public:
     void take(std::span<const std::uint32_t> groups, std::vector<std::uint32_t>& smooth, std::vector<std::uint32_t>& in_contact,
               double from, double to);
     /// Advances what take() took. `shadows`: whom the groups read, and who is brought back by the caller.
-    void advance(std::span<const std::uint32_t> shadows, double from, double to, WorkBook book, bool trial);
+    void advance(std::span<const std::uint32_t> observed, double from, double to, WorkBook book, bool trial);
     /// Springs push in this system of one or more groups from now on, at the present state.
     void attach(GroupSystem& system, std::span<const std::uint32_t> groups);
     /// Flags groups that may touch another one by force.
@@ -86,14 +86,14 @@ private:
     };
     struct Island
     {
-        std::vector<std::uint32_t> groups, shadows;
+        std::vector<std::uint32_t> groups, observed;
         bool mixed = false;
     };
     /// A contact as found, with its speed of parting.
     struct Seen
     {
         FoundContact found;
-        double parting = 0;  ///< m/s
+        double separation_speed = 0;  ///< m/s
     };
     /// A body where the present piece began.
     struct Anchor
@@ -122,15 +122,15 @@ private:
     void transfer(const ForceState& from, ForceState& to, std::uint32_t group);
     bool touches(Ref a, Ref b, std::uint32_t group) const;
     void make_room();
-    void look_near();
-    void fill_reach(double h);
-    void spread_reach();
-    bool raise_reach();
-    void level_reach();
-    bool within_reach(std::span<const std::uint32_t> groups, double h) const;
+    void find_near();
+    void fill_motion_margins(double h);
+    void spread_motion_margins();
+    bool raise_motion_margins();
+    void level_motion_margins();
+    bool within_motion_margins(std::span<const std::uint32_t> groups, double h) const;
     void add_near(std::uint32_t detector, Ref a, Ref b);
     void make_islands(std::span<const std::uint32_t> groups);
-    void collect_shadows(Island& island, std::span<const std::uint32_t> shadows);
+    void collect_observed(Island& island, std::span<const std::uint32_t> observed);
     std::uint32_t solver_of(const Island& island) const;
     bool dynamic(Ref r) const;
     double speed_of(Ref r) const;
@@ -151,7 +151,7 @@ private:
     void bind(std::span<const std::uint32_t> groups);
     void list_pushing();
     void anchor();
-    void detect(std::uint32_t detector, std::span<const StandingPair> pairs, double margin, std::vector<FoundContact>& out);
+    void detect(std::uint32_t detector, std::span<const PersistentPair> pairs, double margin, std::vector<FoundContact>& out);
     void inspect(double margin, std::vector<Seen>& out);
     void fill_surface(FoundContact& found) const;
     void gather(bool lead);
@@ -222,7 +222,7 @@ private:
     std::vector<std::uint8_t> by_force_;  ///< by detector
     ForceState live_, segment_, end_;
     std::vector<NearPair> near_;
-    std::vector<double> reach_;  ///< m, by body, for the whole step
+    std::vector<double> motion_margin_;  ///< m, by body, for the whole step
 
     std::vector<Island> islands_;
     std::size_t island_count_ = 0;
@@ -238,14 +238,14 @@ private:
     int order_ = 1;                      ///< of the solver
     bool taken_ = false;                 ///< the forces of this piece of a mixed island are known
     double lead_ = 0;                    ///< s: how far ahead of the speeds springs are taken (mixed islands)
-    std::vector<StandingPair> standing_;
+    std::vector<PersistentPair> persistent_;
     std::vector<FoundContact> found_;
     std::vector<std::pair<std::size_t, ForceContact*>> matched_;  ///< found_ and what is known of it
     std::vector<Contact> law_contacts_;
     std::vector<Seen> at_start_, at_end_, at_trial_, at_low_, at_high_;
     std::vector<std::uint64_t> gone_, there_;  ///< ids of contacts
     ForceState before_;
-    world::MotionMemento memento_, shadow_memento_;
+    world::MotionMemento memento_, observed_memento_;
     Wrenches scratch_;
     ForceProbe probe_;
     std::vector<NearCollector::Pair> near_found_;

@@ -28,10 +28,10 @@ void ContactBook::add_point(Pressing& pressing, PairState& pair, const Contact& 
     const double before = dot(cache_.contact_of(pair, c.feature).impulse, c.normal);
     pressing.before += before;
     pressing.now += dot(c.impulse, c.normal);
-    const bool is_told = pair.pressed_tick == step_.frame.tick || pair.release == kUndecided;
-    if (!(before > 0) && !is_told) return;  // it only touches
+    const bool is_known = pair.pressed_tick == step_.frame.tick || pair.release == kUndecided;
+    if (!(before > 0) && !is_known) return;  // it only touches
     pressing.opens = std::min(pressing.opens, speed - c.turning);
-    pressing.parting = std::min(pressing.parting, speed - c.turning + std::max(0.0, -c.depth) / h);
+    pressing.separation_speed = std::min(pressing.separation_speed, speed - c.turning + std::max(0.0, -c.depth) / h);
 }
 
 bool ContactBook::note_release(PairState& pair, const Contact& first, const Pressing& pressing, double from, double h)
@@ -53,14 +53,15 @@ bool ContactBook::note_release(PairState& pair, const Contact& first, const Pres
     const Bodies& bodies = step_.world.host().bodies;
     const double taken = pressed * (mobility_at(bodies, first.a.index, first.point, first.normal) +
                                     mobility_at(bodies, first.b.index, first.point, first.normal));
-    if (pair.release < kUndecided || !(pressing.parting > kParts * taken)) return true;
+    if (pair.release < kUndecided || !(pressing.separation_speed > kParts * taken)) return true;
     if (h < step_.frame.step && !(pressing.opens > 0))
     {
         // In a bit of a step a gap may be too wide to close: the next step shows whether it holds on.
         pair.release = kUndecided;
         return true;
     }
-    Event e = contact_event("contact.release", pair, step_.frame.start_time + from + h * (taken / (taken + pressing.parting) - 0.5));
+    Event e =
+        contact_event("contact.release", pair, step_.frame.start_time + from + h * (taken / (taken + pressing.separation_speed) - 0.5));
     e.values = {first.point.x, first.point.y, first.point.z, first.normal.x, first.normal.y, first.normal.z};
     pair.release = static_cast<std::uint32_t>(releases_.size());
     releases_.push_back(std::move(e));

@@ -56,9 +56,9 @@ double opening_by_curves(double speed, double h, double radii) { return 4 * spee
 double sliding_margin(const world::HostTables& host, Ref a, Ref b, const Vec3& normal, double base, double radius, double h)
 {
     const Vec3 v = host.bodies.velocity[b.index] - host.bodies.velocity[a.index];
-    const double parting = dot(v, normal), along = length(v - parting * normal);
+    const double separation_speed = dot(v, normal), along = length(v - separation_speed * normal);
     const double curves = std::fabs(curve_radius(host.bodies, host.shapes, a.index) + curve_radius(host.bodies, host.shapes, b.index));
-    if (!(curves > 0) || parting > 2 * along * along * h / curves) return base;
+    if (!(curves > 0) || separation_speed > 2 * along * along * h / curves) return base;
     return base + std::min(opening_by_curves(along, h, curves), kMostShare * radius);
 }
 
@@ -97,7 +97,7 @@ void ContactBook::measure_bodies()
         }
 }
 
-void ContactBook::look(const Detector& detector, ContactSink& sink, std::span<const std::uint8_t> active)
+void ContactBook::query(const Detector& detector, ContactSink& sink, std::span<const std::uint8_t> active)
 {
     ComponentCall question(step_, *step_.world.tables()[detector.table], detector.row);
     question.context.active_bodies = active, question.call.contacts = &sink;
@@ -107,12 +107,12 @@ void ContactBook::look(const Detector& detector, ContactSink& sink, std::span<co
         question.context.emit(detector.row, "detection.failed", Severity::Failure, done.error().reason);
 }
 
-void ContactBook::detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
+void ContactBook::detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
                          std::vector<FoundContact>& out, double margin)
 {
     ContactCollector sink(step_.world, out);
-    sink.look_for(index, standing, only_standing, margin);
-    look(detector, sink);
+    sink.begin_query(index, persistent, only_persistent, margin);
+    query(detector, sink);
     step_.report.further_pairs += sink.further_pairs();
 }
 
@@ -126,19 +126,19 @@ void ContactBook::detect_all(std::vector<FoundContact>& out)
             detect_with_gaps(d, out);
             continue;
         }
-        standing_.clear();
+        persistent_.clear();
         double margin = 0;
         for (const PairState& p : cache_.pairs())
             if (p.resting && p.detector == detectors_[d].component)
-                standing_.push_back({p.a, p.b, {}}), margin = std::max(margin, standing_margin(p));
+                persistent_.push_back({p.a, p.b, {}}), margin = std::max(margin, persistence_margin(p));
         const std::size_t first = out.size();
-        detect(detectors_[d], d, standing_, false, out, margin);
+        detect(detectors_[d], d, persistent_, false, out, margin);
         // One look has one margin, that of the widest standing pair: gaps count for standing pairs only, each up to its own.
         const auto far = [&](const FoundContact& f)
         {
             if (f.contact.depth > 0) return false;
             const PairState* pair = find_pair(f);
-            return !pair || !pair->resting || f.contact.depth <= -standing_margin(*pair);
+            return !pair || !pair->resting || f.contact.depth <= -persistence_margin(*pair);
         };
         out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
     }
@@ -158,7 +158,7 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
         if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) continue;
         // The other one is round, too, of any radius.
         const double opens = opening_by_curves(2 * fastest, step_.frame.step, curve_radius(bodies, step_.world.host().shapes, b));
-        margin = std::max(margin, kStandingShare * radius_of_body_[b] + std::min(opens, kMostShare * radius_of_body_[b]));
+        margin = std::max(margin, kPersistenceShare * radius_of_body_[b] + std::min(opens, kMostShare * radius_of_body_[b]));
     }
     const double acceleration = detector.speculates ? number_of(detector.resolution, "acceleration") : 0.0;
     if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, step_.frame.step));
@@ -169,7 +169,7 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
     const auto margin_of = [&](const Contact& c)
     {
         const PairState* pair = known_pair(cache_, step_.world, detector.component, c);
-        const double base = standing_margin(c.a, c.b), radius = std::min(radius_of_body_[c.a.index], radius_of_body_[c.b.index]);
+        const double base = persistence_margin(c.a, c.b), radius = std::min(radius_of_body_[c.a.index], radius_of_body_[c.b.index]);
         if (!pair || !pressed(*pair) || !std::isfinite(radius)) return base;
         return sliding_margin(step_.world.host(), c.a, c.b, c.normal, base, radius, step_.frame.step);
     };
@@ -199,7 +199,7 @@ PairState* ContactBook::find_pair(const FoundContact& f)
 double ContactBook::gap_margin(const PairState& pair, double h) const
 {
     const double margin = closing_margin(step_.world.host().bodies, radius_of_body_, pair.a, pair.b, pair.normal, h);
-    return margin > standing_margin(pair) ? margin : 0.0;
+    return margin > persistence_margin(pair) ? margin : 0.0;
 }
 
 /// One look has one margin: drops what was seen beyond that of its own pair.
@@ -209,7 +209,7 @@ void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
     const auto far = [&](const FoundContact& f)
     {
         const PairState* pair = known_pair(cache_, step_.world, detectors_[f.detector].component, f.contact);
-        const double margin = pair ? standing_margin(*pair) : standing_margin(f.contact.a, f.contact.b);
+        const double margin = pair ? persistence_margin(*pair) : persistence_margin(f.contact.a, f.contact.b);
         return f.contact.depth <= -margin && !may_close(bodies, radius_of_body_, f.contact, 0, h);
     };
     out.erase(std::remove_if(out.begin(), out.end(), far), out.end());
@@ -224,15 +224,15 @@ void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::
     };
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
-        standing_.clear();
+        persistent_.clear();
         double margin = 0;
         for (const PairState& p : cache_.pairs())
         {
             if (!p.resting || p.detector != detectors_[d].component || !(member(p.a) || member(p.b))) continue;
-            standing_.push_back({p.a, p.b, {}});
-            margin = std::max({margin, standing_margin(p), gap_margin(p, h)});
+            persistent_.push_back({p.a, p.b, {}});
+            margin = std::max({margin, persistence_margin(p), gap_margin(p, h)});
         }
-        if (!standing_.empty()) detect(detectors_[d], d, standing_, true, out, margin);
+        if (!persistent_.empty()) detect(detectors_[d], d, persistent_, true, out, margin);
     }
     drop_far(out, h);
     sort_contacts(out, step_.world);
@@ -246,17 +246,17 @@ void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::
     }
 }
 
-double ContactBook::standing_margin(const PairState& pair) const
+double ContactBook::persistence_margin(const PairState& pair) const
 {
-    const double base = standing_margin(pair.a, pair.b), radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
+    const double base = persistence_margin(pair.a, pair.b), radius = std::min(radius_of_body_[pair.a.index], radius_of_body_[pair.b.index]);
     if (!pressed(pair) || !std::isfinite(radius)) return base;
     return sliding_margin(step_.world.host(), pair.a, pair.b, pair.normal, base, radius, step_.frame.step);
 }
 
-double ContactBook::standing_margin(Ref a, Ref b) const
+double ContactBook::persistence_margin(Ref a, Ref b) const
 {
     const double radius = std::min(radius_of_body_[a.index], radius_of_body_[b.index]);
-    return std::isfinite(radius) ? kStandingShare * radius : 0.0;
+    return std::isfinite(radius) ? kPersistenceShare * radius : 0.0;
 }
 
 double ContactBook::normal_velocity(const Contact& c) const

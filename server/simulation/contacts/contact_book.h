@@ -42,15 +42,15 @@ public:
     /// m: overlap that is left alone.
     double overlap_tolerance(Ref a, Ref b) const { return kOverlapShare * smaller_radius(a, b); }
     /// m: gaps up to this do not end a standing contact.
-    double standing_margin(Ref a, Ref b) const;
-    double standing_margin(const PairState& pair) const;
+    double persistence_margin(Ref a, Ref b) const;
+    double persistence_margin(const PairState& pair) const;
 
     // Looking for contacts -------------------------------------------------------------------------------------------------
-    /// Adds what one detector finds. `only_standing`: of these pairs alone. `margin`, m: gaps up to this count.
-    void detect(const Detector& detector, std::uint32_t index, std::span<const StandingPair> standing, bool only_standing,
+    /// Adds what one detector finds. `only_persistent`: of these pairs alone. `margin`, m: gaps up to this count.
+    void detect(const Detector& detector, std::uint32_t index, std::span<const PersistentPair> persistent, bool only_persistent,
                 std::vector<FoundContact>& out, double margin = 0);
     /// The same with a sink of the caller's. `active`, by body: whom it is about; empty: all.
-    void look(const Detector& detector, ContactSink& sink, std::span<const std::uint8_t> active = {});
+    void query(const Detector& detector, ContactSink& sink, std::span<const std::uint8_t> active = {});
     /// Of all detectors, sorted.
     void detect_all(std::vector<FoundContact>& out);
     /// Of standing pairs with a member in `groups` (ascending), with the gaps that may close within `h` (s).
@@ -81,10 +81,10 @@ public:
     /// What the points of a pair did in an advance, to see where it is released.
     struct Pressing
     {
-        double before = 0;          ///< N s, along each point's normal: what they took in the last step
-        double now = 0;             ///< N s: in this advance
-        double opens = HUGE_VAL;    ///< m/s: the least speed at which one of them opens, along its curve
-        double parting = HUGE_VAL;  ///< m/s: the least that a pull would have had to take away, beyond what closes the gap
+        double before = 0;                   ///< N s, along each point's normal: what they took in the last step
+        double now = 0;                      ///< N s: in this advance
+        double opens = HUGE_VAL;             ///< m/s: the least speed at which one of them opens, along its curve
+        double separation_speed = HUGE_VAL;  ///< m/s: the least that a pull would have had to take away, beyond what closes the gap
     };
     /// Adds a point that opens with `speed` (m/s) at the end of an advance of h (s). Before its impulse is kept.
     void add_point(Pressing& pressing, PairState& pair, const Contact& contact, double speed, double h);
@@ -112,7 +112,7 @@ private:
 
     // Working lists, kept warm.
     mutable std::vector<std::uint32_t> counted_;
-    std::vector<StandingPair> standing_;
+    std::vector<PersistentPair> persistent_;
     std::vector<Contact> impact_contacts_;
 };
 

@@ -30,20 +30,20 @@ struct ForceContact
     Vec3 stretch;           ///< m, W: of the stiction spring, where the present piece of the step began
     double rest_depth = 0;  ///< m, N: see Contact; other than 0 where the spring took over from a hard contact
     double preload = 0;
-    double open_depth = 0;   ///< m: the spring gives no force there; below it the contact ends
-    double approach = 0;     ///< m/s: closing speed at the touch
-    double begin = 0;        ///< s, time of the touch
-    double depth = 0;        ///< m, as seen last
-    double peak = 0;         ///< m: how deep it is expected to get
-    double half_period = 0;  ///< s: pi over the fastest rate of this contact by itself
-    ContactRates rates;      ///< at `peak`
-    double lively = 0;       ///< m/s: about the speed with which it swings
-    double liveliest = 0;    ///< m/s: the most that this has been
-    Vec3 impulse;            ///< N s on b, since it began
-    Vec3 force;              ///< N on b, as of the last finished piece
-    Tick asked = -1;         ///< step in which `peak` was estimated last
-    bool slack = false;      ///< overlaps, and the law gives no force: a damper that would have to pull
-    bool told = false;       ///< its impact is an event already
+    double open_depth = 0;        ///< m: the spring gives no force there; below it the contact ends
+    double approach = 0;          ///< m/s: closing speed at the touch
+    double begin = 0;             ///< s, time of the touch
+    double depth = 0;             ///< m, as seen last
+    double peak = 0;              ///< m: how deep it is expected to get
+    double half_period = 0;       ///< s: pi over the fastest rate of this contact by itself
+    ContactRates rates;           ///< at `peak`
+    double swing_speed = 0;       ///< m/s: about the speed with which it swings
+    double peak_swing_speed = 0;  ///< m/s: the most that this has been
+    Vec3 impulse;                 ///< N s on b, since it began
+    Vec3 force;                   ///< N on b, as of the last finished piece
+    Tick asked = -1;              ///< step in which `peak` was estimated last
+    bool slack = false;           ///< overlaps, and the law gives no force: a damper that would have to pull
+    bool reported = false;        ///< its impact is an event already
     /// Has let go where a swap had let an overlap be: no force until the bodies have parted, or close again.
     bool dormant = false;
 };

@@ -141,10 +141,10 @@ std::uint64_t hash_of_name(const std::string& id)
 
 std::uint64_t hash_of_contact(const ForceContact& c)
 {
-    std::uint64_t h = mix(mix(0, c.id), std::uint64_t{c.feature} << 2 | (c.told ? 1u : 0u) | (c.dormant ? 2u : 0u));
+    std::uint64_t h = mix(mix(0, c.id), std::uint64_t{c.feature} << 2 | (c.reported ? 1u : 0u) | (c.dormant ? 2u : 0u));
     for (const Vec3& v : {c.stretch, c.impulse, c.force}) h = mix(h, hash_of(v));
     for (const double x :
-         {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.lively, c.liveliest})
+         {c.rest_depth, c.preload, c.open_depth, c.approach, c.begin, c.depth, c.peak, c.half_period, c.swing_speed, c.peak_swing_speed})
         h = mix(h, x);
     return h;
 }

@@ -152,12 +152,12 @@ class ContactCollector final : public ContactSink
 {
 public:
     ContactCollector(const world::World& world, std::vector<FoundContact>& out) : world_(&world), out_(&out) {}
-    void look_for(std::uint32_t detector, std::span<const StandingPair> standing, bool only_standing, double margin = 0)
+    void begin_query(std::uint32_t detector, std::span<const PersistentPair> persistent, bool only_persistent, double margin = 0)
     {
-        detector_ = detector, standing_ = standing, only_standing_ = only_standing, margin_ = margin;
+        detector_ = detector, persistent_ = persistent, only_persistent_ = only_persistent, margin_ = margin;
     }
-    std::span<const StandingPair> standing() const override { return standing_; }
-    bool only_standing() const override { return only_standing_; }
+    std::span<const PersistentPair> persistent() const override { return persistent_; }
+    bool only_persistent() const override { return only_persistent_; }
     double margin() const override { return margin_; }
     void add(const Contact& contact) override { out_->push_back({contact, detector_}); }
     bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
@@ -169,8 +169,8 @@ private:
     std::vector<FoundContact>* out_;
     double further_pairs_ = 0;
     std::uint32_t detector_ = 0;
-    std::span<const StandingPair> standing_;
-    bool only_standing_ = false;
+    std::span<const PersistentPair> persistent_;
+    bool only_persistent_ = false;
     double margin_ = 0;
 };
 
@@ -182,19 +182,19 @@ public:
     {
         Ref a, b;
     };
-    NearCollector(const world::World& world, std::span<const double> reach, std::vector<Pair>& out)
-        : world_(&world), reach_(reach), out_(&out)
+    NearCollector(const world::World& world, std::span<const double> motion_margin, std::vector<Pair>& out)
+        : world_(&world), motion_margin_(motion_margin), out_(&out)
     {
     }
-    std::span<const StandingPair> standing() const override { return {}; }
-    std::span<const double> reach() const override { return reach_; }
+    std::span<const PersistentPair> persistent() const override { return {}; }
+    std::span<const double> motion_margin() const override { return motion_margin_; }
     void near(Ref a, Ref b) override { out_->push_back({a, b}); }
     void add(const Contact&) override {}
     bool precedes(Ref a, Ref b) const override { return world_->rank(a) < world_->rank(b); }
 
 private:
     const world::World* world_;
-    std::span<const double> reach_;
+    std::span<const double> motion_margin_;
     std::vector<Pair>* out_;
 };
 
@@ -223,6 +223,6 @@ inline constexpr double kParts = 0x1p-24;
 /// A standing pair is looked at as if it were this share of its smaller body's
 /// radius closer: corners that are about to touch are contacts too, with their
 /// gap, and a gap below this does not end the contact.
-inline constexpr double kStandingShare = 1e-4;
+inline constexpr double kPersistenceShare = 1e-4;
 
 }  // namespace plab::simulation

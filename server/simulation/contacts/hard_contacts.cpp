@@ -18,7 +18,7 @@ bool HardContacts::any_stands() const
     return held_.holds_joints() || std::any_of(pairs.begin(), pairs.end(), [](const PairState& p) { return p.resting; });
 }
 
-void HardContacts::advance(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+void HardContacts::advance(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
                            WorkBook book, bool trial)
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -28,7 +28,7 @@ void HardContacts::advance(std::span<const std::uint32_t> groups, std::span<cons
     if (motion_.extra()) motion_.extra()->join(islands_);
     groups_.assign(groups.begin(), groups.end());
     held_.take(groups_, islands_);
-    if (held_.holds_any()) held_.advance(shadows, islands_, from, to, book, trial);
+    if (held_.holds_any()) held_.advance(observed, islands_, from, to, book, trial);
     // Islands in the order of their first group; members keep their order.
     done_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t first : groups_)
@@ -38,7 +38,7 @@ void HardContacts::advance(std::span<const std::uint32_t> groups, std::span<cons
         for (const std::uint32_t g : groups_)
             if (!done_[g] && islands_.find(g) == islands_.find(first)) done_[g] = 1, island_.push_back(g);
         std::sort(island_.begin(), island_.end());
-        impulses_.advance(island_, shadows, from, to, book, trial);
+        impulses_.advance(island_, observed, from, to, book, trial);
     }
 }
 
@@ -79,7 +79,7 @@ void HardContacts::finish_step()
         const std::size_t begin = contacts_.first_of_pair(pair, at);
         bool touches = false;
         for (at = begin; at < found.size() && contacts_.is_of_pair(found[at], pair); ++at)
-            touches = touches || found[at].contact.depth > (pair.resting ? -contacts_.standing_margin(pair) : 0.0);
+            touches = touches || found[at].contact.depth > (pair.resting ? -contacts_.persistence_margin(pair) : 0.0);
         const std::span<FoundContact> own = std::span(found).subspan(begin, at - begin);
         const bool was_held = pressed(pair);
         const bool released = contacts_.tell_release(pair);

@@ -29,7 +29,7 @@ public:
     /// Whether a group has such a joint in this step.
     bool holds_joints_of(std::uint32_t group) const { return held_.holds_joints_of(group); }
     /// Groups with a standing contact, from where they are: each island by itself.
-    void advance(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to, WorkBook book,
+    void advance(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to, WorkBook book,
                  bool trial);
     /// With the contacts of the step's end in found(): which begin, persist and end; overlap is parted.
     void finish_step();

@@ -28,7 +28,7 @@ bool HeldIslands::is_current() const
 
 void HeldIslands::begin_step()
 {
-    look_for_yielding_rows();
+    find_yielding_rows();
     const bool stands = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(),
                                     [](const Detector& d) { return d.by_rows && d.persists(); });
     if (!stands || is_current()) return;
@@ -52,7 +52,7 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
             PairState& pair = fresh_.emplace_back();
             pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
             pair.resting = true, pair.normal = first.contact.normal;
-            pair.ahead = deepest <= -contacts_.standing_margin(pair);
+            pair.ahead = deepest <= -contacts_.persistence_margin(pair);
             if (pair.ahead && !d.speculates)
                 fresh_.pop_back();
             else
@@ -159,37 +159,38 @@ void HeldIslands::share_contacts(double h)
         std::uint32_t number = kNoIndex;
         for (const Ref r : {c.a, c.b})
             if (bodies.dynamic(r.index) && step_.groups.of(r) != kNoIndex && number == kNoIndex)
-                number = isle_of_group_[step_.groups.of(r)];
+                number = island_of_group_[step_.groups.of(r)];
         if (number == kNoIndex) continue;
-        Isle& isle = *isles_[number];
-        isle.turns = isle.turns || (!isle.has_rows && midway_.turns(c, h));
-        isle.contacts.push_back(c);
-        isle.places.push_back(i);
+        Island& island = *islands_[number];
+        island.turns = island.turns || (!island.has_rows && midway_.turns(c, h));
+        island.contacts.push_back(c);
+        island.places.push_back(i);
     }
 }
 
 /// Closing speed of what begins: a contact that held nothing in the last step
 /// and closes faster than half of what forces would give it in this one, or
 /// held something and is hit. Below that it trembles, or comes to rest.
-void HeldIslands::set_approach(Isle& isle, const GroupSystem& system, double h)
+void HeldIslands::set_approach(Island& island, const GroupSystem& system, double h)
 {
-    for (std::size_t k = 0; k < isle.members.size(); ++k) given_speed_[isle.bodies[k]] = length(system.acceleration(isle.members[k])) * h;
-    const double least = kNoApproach * least_gyration(step_.world.host().bodies, isle.bodies) / h;
-    for (Contact& c : isle.contacts)
+    for (std::size_t k = 0; k < island.members.size(); ++k)
+        given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * h;
+    const double least = kNoApproach * least_gyration(step_.world.host().bodies, island.bodies) / h;
+    for (Contact& c : island.contacts)
     {
         const double speed = contacts_.normal_velocity(c), given = std::max(given_speed_[c.a.index], given_speed_[c.b.index]);
         const double share = c.impulse == Vec3{} ? 0.5 : 2;
         c.approach = speed < -std::max(least, share * given) ? -speed : 0.0;
     }
-    for (const std::uint32_t b : isle.bodies) given_speed_[b] = 0;
+    for (const std::uint32_t b : island.bodies) given_speed_[b] = 0;
 }
 
-void HeldIslands::keep(const Isle& isle)
+void HeldIslands::keep(const Island& island)
 {
-    for (std::size_t i = 0; i < isle.contacts.size(); ++i)
+    for (std::size_t i = 0; i < island.contacts.size(); ++i)
     {
-        const Contact& c = isle.contacts[i];
-        PairState& pair = *pair_of_contact_[isle.places[i]];
+        const Contact& c = island.contacts[i];
+        PairState& pair = *pair_of_contact_[island.places[i]];
         // What an impact took does not tell how hard the contact will press.
         contacts_.cache().contact_of(pair, c.feature).impulse = c.approach > 0 ? Vec3{} : c.impulse;
         pair.normal = c.normal;
@@ -197,35 +198,35 @@ void HeldIslands::keep(const Isle& isle)
 }
 
 /// Looks for pairs that pressed in the last step, and whose points all part.
-void HeldIslands::note_releases(Isle& isle, double from, double h) const
+void HeldIslands::note_releases(Island& island, double from, double h) const
 {
-    for (std::size_t i = 0, end = 0; i < isle.contacts.size(); i = end)
+    for (std::size_t i = 0, end = 0; i < island.contacts.size(); i = end)
     {
-        PairState& pair = *pair_of_contact_[isle.places[i]];
+        PairState& pair = *pair_of_contact_[island.places[i]];
         ContactBook::Pressing pressing;
         bool is_hit = false;
-        for (end = i; end < isle.contacts.size() && pair_of_contact_[isle.places[end]] == &pair; ++end)
+        for (end = i; end < island.contacts.size() && pair_of_contact_[island.places[end]] == &pair; ++end)
         {
-            Contact c = isle.contacts[end];
-            c.depth = touching_[isle.places[end]].contact.depth;
-            contacts_.add_point(pressing, pair, c, isle.motion.parting(end), h);
+            Contact c = island.contacts[end];
+            c.depth = touching_[island.places[end]].contact.depth;
+            contacts_.add_point(pressing, pair, c, island.motion.separation_speed(end), h);
             is_hit = is_hit || c.approach > 0;
         }
         if (is_hit) pressing.now = HUGE_VAL;  // who is hit is held
-        if (!contacts_.note_release(pair, isle.contacts[i], pressing, from, h)) continue;
-        for (std::size_t k = i; k < end; ++k) isle.contacts[k].impulse = {};
+        if (!contacts_.note_release(pair, island.contacts[i], pressing, from, h)) continue;
+        for (std::size_t k = i; k < end; ++k) island.contacts[k].impulse = {};
     }
 }
 
-void HeldIslands::tell_impacts(const Isle& isle, double time)
+void HeldIslands::tell_impacts(const Island& island, double time)
 {
-    for (std::size_t i = 0; i < isle.contacts.size(); ++i)
+    for (std::size_t i = 0; i < island.contacts.size(); ++i)
     {
-        const Contact& c = isle.contacts[i];
+        const Contact& c = island.contacts[i];
         if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
-        const double depth = touching_[isle.places[i]].contact.depth;
-        PairState& pair = *pair_of_contact_[isle.places[i]];
-        if (pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, tell_begin(pair, touching_[isle.places[i]].contact, time);
+        const double depth = touching_[island.places[i]].contact.depth;
+        PairState& pair = *pair_of_contact_[island.places[i]];
+        if (pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, tell_begin(pair, touching_[island.places[i]].contact, time);
         Event e = contacts_.contact_event("contact.impact", pair, time);
         e.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.impulse.x, c.impulse.y, c.impulse.z, depth};
         step_.emit(std::move(e));

@@ -41,7 +41,7 @@ void HeldIslands::rebuild()
 }
 
 /// Limits that are near, motors at a loss: who has such rows now. Others advance by their solver.
-void HeldIslands::look_for_yielding_rows()
+void HeldIslands::find_yielding_rows()
 {
     holds_joints_ = false;
     for (const std::uint32_t g : yielding_groups_)
@@ -96,179 +96,179 @@ void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands
     std::sort(held_.begin(), held_.end());
 }
 
-void HeldIslands::make_isles(DisjointSets& islands)
+void HeldIslands::make_islands(DisjointSets& islands)
 {
-    isle_of_group_.assign(step_.groups.all.size(), kNoIndex);
-    isle_count_ = 0;
+    island_of_group_.assign(step_.groups.all.size(), kNoIndex);
+    island_count_ = 0;
     for (const std::uint32_t g : held_)
     {
         const std::uint32_t root = islands.find(g);
-        std::uint32_t& number = isle_of_group_[root];
+        std::uint32_t& number = island_of_group_[root];
         if (number == kNoIndex)
         {
-            number = static_cast<std::uint32_t>(isle_count_++);
-            if (isles_.size() < isle_count_) isles_.push_back(std::make_unique<Isle>());
-            Isle& fresh = *isles_[number];
+            number = static_cast<std::uint32_t>(island_count_++);
+            if (islands_.size() < island_count_) islands_.push_back(std::make_unique<Island>());
+            Island& fresh = *islands_[number];
             fresh.manager = manager_of_island_[root], fresh.has_rows = fresh.turns = false;
             fresh.groups.clear(), fresh.contacts.clear(), fresh.places.clear();
         }
-        isle_of_group_[g] = number;
-        Isle& isle = *isles_[number];
-        isle.groups.push_back(g);
-        isle.has_rows = isle.has_rows || !step_.groups.all[g].rows.empty();
+        island_of_group_[g] = number;
+        Island& island = *islands_[number];
+        island.groups.push_back(g);
+        island.has_rows = island.has_rows || !step_.groups.all[g].rows.empty();
     }
 }
 
 // The step ------------------------------------------------------------------------------------------------------------
 
-void HeldIslands::advance(std::span<const std::uint32_t> shadows, DisjointSets& islands, double from, double to, WorkBook book, bool trial)
+void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial)
 {
     // A look at where a piece begins: no time, no impulses.
     if (!(to > from)) return;
-    make_isles(islands);
+    make_islands(islands);
     collect_contacts(from, to - from);
     share_contacts(to - from);
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
-    for (std::size_t i = 0; i < isle_count_; ++i)
+    for (std::size_t i = 0; i < island_count_; ++i)
     {
-        Isle& isle = *isles_[i];
-        (isle.has_rows ? jointed_ : plain_).push_back(&isle);
-        if (!isle.has_rows) plain_groups_.insert(plain_groups_.end(), isle.groups.begin(), isle.groups.end());
+        Island& island = *islands_[i];
+        (island.has_rows ? jointed_ : plain_).push_back(&island);
+        if (!island.has_rows) plain_groups_.insert(plain_groups_.end(), island.groups.begin(), island.groups.end());
     }
     // Islands without joints share one system: who is in which of them changes with every contact, who is in all does not.
     std::sort(plain_groups_.begin(), plain_groups_.end());
-    if (!plain_.empty()) run(plain_, plain_groups_, shadows, from, to, book, trial);
-    for (Isle* isle : jointed_) run(std::span(&isle, 1), isle->groups, shadows, from, to, book, trial);
+    if (!plain_.empty()) run(plain_, plain_groups_, observed, from, to, book, trial);
+    for (Island* island : jointed_) run(std::span(&island, 1), island->groups, observed, from, to, book, trial);
 }
 
-void HeldIslands::run(std::span<Isle*> isles, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from,
-                      double to, WorkBook book, bool trial)
+void HeldIslands::run(std::span<Island*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed,
+                      double from, double to, WorkBook book, bool trial)
 {
-    GroupSystem& system = motion_.system_for(groups, shadows);
+    GroupSystem& system = motion_.system_for(groups, observed);
     system.hold_rows(true);
     system.begin(from, to, book, trial ? nullptr : &step_);
-    for (Isle* isle : isles) isle->members.clear(), isle->roots.clear(), isle->bodies.clear(), isle->shafts.clear();
+    for (Island* island : islands) island->members.clear(), island->roots.clear(), island->bodies.clear(), island->shafts.clear();
     for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
     {
-        const std::uint32_t b = system.bodies()[i], number = isle_of_group_[step_.groups.group_of_body[b]];
+        const std::uint32_t b = system.bodies()[i], number = island_of_group_[step_.groups.group_of_body[b]];
         if (number == kNoIndex) continue;  // a shadow
-        isles_[number]->members.push_back(i), isles_[number]->bodies.push_back(b);
+        islands_[number]->members.push_back(i), islands_[number]->bodies.push_back(b);
     }
     for (std::uint32_t i = 0; i < system.roots().size(); ++i)
     {
-        const std::uint32_t shaft = system.roots()[i], number = isle_of_group_[step_.groups.group_of_shaft[shaft]];
+        const std::uint32_t shaft = system.roots()[i], number = island_of_group_[step_.groups.group_of_shaft[shaft]];
         if (number == kNoIndex) continue;
-        isles_[number]->roots.push_back(i), isles_[number]->shafts.push_back(shaft);
+        islands_[number]->roots.push_back(i), islands_[number]->shafts.push_back(shaft);
     }
     system.evaluate(0, 0);
     given_speed_.resize(step_.world.host().bodies.size(), 0.0);
-    for (Isle* isle : isles) set_approach(*isle, system, to - from);
-    lead(isles, system, to - from);
-    for (Isle* isle : isles)
-        if (!step_.frame.give_up()) solve(*isle, system, from, to, book, trial);
+    for (Island* island : islands) set_approach(*island, system, to - from);
+    lead(islands, system, to - from);
+    for (Island* island : islands)
+        if (!step_.frame.give_up()) solve(*island, system, from, to, book, trial);
     const bool given_up = step_.frame.give_up();  // then isles may not have been solved, and nobody reads what is booked
-    if (book.work && !given_up) book_forces(system, isles, to - from);
+    if (book.work && !given_up) book_forces(system, islands, to - from);
     midway_.take_back();
     system.finish_held();
     if (!given_up)
-        for (const Isle* isle : isles) report_rows(*isle, system, to - from, book);
+        for (const Island* island : islands) report_rows(*island, system, to - from, book);
     system.hold_rows(false);
     motion_.finish_advance(system, system.all_finite(), to, trial);
 }
 
 /// Islands in which somebody goes along a curve are led half a step ahead, with their forces. Not where somebody meets, or moves as told:
 /// impacts are at the start of the step, and along the normals of then.
-void HeldIslands::lead(std::span<Isle*> isles, GroupSystem& system, double h)
+void HeldIslands::lead(std::span<Island*> islands, GroupSystem& system, double h)
 {
     const auto stays = [this](const Contact& c) { return c.approach > 0 || midway_.is_driven(c); };
     led_places_.clear();
-    for (Isle* isle : isles)
+    for (Island* island : islands)
     {
-        isle->turns = isle->turns && std::none_of(isle->contacts.begin(), isle->contacts.end(), stays);
-        if (!isle->turns) continue;
-        midway_.lead(system, isle->members, h);
-        led_places_.insert(led_places_.end(), isle->places.begin(), isle->places.end());
+        island->turns = island->turns && std::none_of(island->contacts.begin(), island->contacts.end(), stays);
+        if (!island->turns) continue;
+        midway_.lead(system, island->members, h);
+        led_places_.insert(led_places_.end(), island->places.begin(), island->places.end());
     }
     if (led_places_.empty()) return;
     system.evaluate(0, 0);
     std::sort(led_places_.begin(), led_places_.end());
     midway_.bend(led_places_, touching_, h);
-    for (Isle* isle : isles)
-        for (std::size_t i = 0; isle->turns && i < isle->places.size(); ++i) isle->contacts[i] = touching_[isle->places[i]].contact;
+    for (Island* island : islands)
+        for (std::size_t i = 0; island->turns && i < island->places.size(); ++i) island->contacts[i] = touching_[island->places[i]].contact;
 }
 
-void HeldIslands::solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial)
+void HeldIslands::solve(Island& island, GroupSystem& system, double from, double to, WorkBook book, bool trial)
 {
     world::World& world = step_.world;
     world::HostTables& host = world.host();
-    isle.rows.clear();
-    if (isle.has_rows && system.rows())
+    island.rows.clear();
+    if (island.has_rows && system.rows())
     {
         system.rows()->begin_hold(system.context());
-        isle.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
+        island.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
     }
     if (!trial)
-        for (std::size_t i = 0; i < isle.contacts.size(); ++i)
-            if (contacts_.is_paradox(isle.contacts[i]))
-                contacts_.tell_paradox(isle.contacts[i], *pair_of_contact_[isle.places[i]], step_.frame.start_time + from);
-    isle.motion.begin(system, host.bodies, host.shafts, isle.members, isle.roots, isle.contacts, isle.rows, book.work != nullptr);
+        for (std::size_t i = 0; i < island.contacts.size(); ++i)
+            if (contacts_.is_paradox(island.contacts[i]))
+                contacts_.tell_paradox(island.contacts[i], *pair_of_contact_[island.places[i]], step_.frame.start_time + from);
+    island.motion.begin(system, host.bodies, host.shafts, island.members, island.roots, island.contacts, island.rows, book.work != nullptr);
     Island island;
     island.interruption = step_.frame.interruption;
     island.h = to - from, island.time = step_.frame.start_time + from;
-    island.bodies = isle.bodies, island.shafts = isle.shafts;
-    island.size = least_gyration(host.bodies, isle.bodies);
+    island.bodies = island.bodies, island.shafts = island.shafts;
+    island.size = least_gyration(host.bodies, island.bodies);
     shaft_mobility_.resize(host.shafts.size());
-    for (const std::uint32_t root : isle.shafts) shaft_mobility_[root] = mobility_of(root);
+    for (const std::uint32_t root : island.shafts) shaft_mobility_[root] = mobility_of(root);
     island.shaft_mobility = shaft_mobility_;
-    island.rows = isle.rows, island.contacts = isle.contacts, island.motion = &isle.motion;
+    island.rows = island.rows, island.contacts = island.contacts, island.motion = &island.motion;
 
-    ComponentCall answer(step_, isle.manager);
+    ComponentCall answer(step_, island.manager);
     answer.context.time = island.time, answer.context.dt = island.h, answer.context.interruption = island.interruption;
     if (trial) answer.context.events = nullptr;
     answer.call.island = &island;
-    const double before = book.work ? isle.motion.kinetic_energy() : 0.0;
-    step_.meter.enter(step_.meter.of_component(isle.manager));
-    step_.meter.ran(world.component(isle.manager).table, Phase::Solve);
+    const double before = book.work ? island.motion.kinetic_energy() : 0.0;
+    step_.meter.enter(step_.meter.of_component(island.manager));
+    step_.meter.ran(world.component(island.manager).table, Phase::Solve);
     answer.run(Phase::Solve);
     step_.meter.leave();
-    if (book.work) book_contacts(isle, isle.motion.kinetic_energy() - before, book);
+    if (book.work) book_contacts(island, island.motion.kinetic_energy() - before, book);
     // A factorisation takes longer for each row the more there are: as long as a sweep over all where there are so many.
     constexpr std::size_t kFactored = 400;
-    const std::size_t rows = 3 * isle.contacts.size() + isle.rows.size();
+    const std::size_t rows = 3 * island.contacts.size() + island.rows.size();
     step_.report.swept_rows += rows * (static_cast<std::size_t>(1 + island.iterations) + rows / kFactored);
     if (trial) return;
     step_.report.worst_residual = std::max(step_.report.worst_residual, island.residual);
-    note_releases(isle, from, to - from);
-    keep(isle);
-    tell_impacts(isle, island.time);
+    note_releases(island, from, to - from);
+    keep(island);
+    tell_impacts(island, island.time);
 }
 
 /// Contacts give back no more than they took, so what they do to bodies that nothing else drives is no more than nothing, but for
 /// what parting their overlap lifts. What a method makes beyond that is nobody's work: it stays unexplained.
-void HeldIslands::book_contacts(Isle& isle, double gained, WorkBook book)
+void HeldIslands::book_contacts(Island& island, double gained, WorkBook book)
 {
     const Bodies& bodies = step_.world.host().bodies;
-    const double lifted = isle.motion.count_corrections();
-    const double work = gained - isle.motion.work_of_forces();
-    const bool driven = !isle.rows.empty() || std::any_of(isle.contacts.begin(), isle.contacts.end(),
-                                                          [&](const Contact& c) {
-                                                              return bodies.motion[c.a.index] == Motion::Kinematic ||
-                                                                     bodies.motion[c.b.index] == Motion::Kinematic;
-                                                          });
+    const double lifted = island.motion.count_corrections();
+    const double work = gained - island.motion.work_of_forces();
+    const bool driven = !island.rows.empty() || std::any_of(island.contacts.begin(), island.contacts.end(),
+                                                            [&](const Contact& c) {
+                                                                return bodies.motion[c.a.index] == Motion::Kinematic ||
+                                                                       bodies.motion[c.b.index] == Motion::Kinematic;
+                                                            });
     const double made = driven ? 0.0 : std::max(0.0, work - lifted);
-    (*book.work)[isle.manager] += book.sign * (work - made);
-    ContactEnergy& own = step_.contact_energy[isle.manager];
+    (*book.work)[island.manager] += book.sign * (work - made);
+    ContactEnergy& own = step_.contact_energy[island.manager];
     own.made += book.sign * made, own.lifted += book.sign * lifted;
 }
 
 /// What joints say of themselves, and their share in what the manager did.
-void HeldIslands::report_rows(const Isle& isle, GroupSystem& system, double h, WorkBook book)
+void HeldIslands::report_rows(const Island& island, GroupSystem& system, double h, WorkBook book)
 {
-    if (isle.rows.empty()) return;
+    if (island.rows.empty()) return;
     StepContext context = system.context();
     context.time += h;
-    const double work = system.rows()->take_impulses(context, isle.rows, h, system.row_book());
-    if (book.work) (*book.work)[isle.manager] -= book.sign * work;
+    const double work = system.rows()->take_impulses(context, island.rows, h, system.row_book());
+    if (book.work) (*book.work)[island.manager] -= book.sign * work;
 }
 
 /// 1/(kg m^2) of the train that a shaft carries.
@@ -281,7 +281,7 @@ double HeldIslands::mobility_of(std::uint32_t root) const
 }
 
 /// Each force component's part of what the kicks did: its power at the mean speeds of the kicks.
-void HeldIslands::book_forces(GroupSystem& system, std::span<Isle*> isles, double h)
+void HeldIslands::book_forces(GroupSystem& system, std::span<Island*> islands, double h)
 {
     world::HostTables& host = step_.world.host();
     Bodies& bodies = host.bodies;
@@ -296,16 +296,16 @@ void HeldIslands::book_forces(GroupSystem& system, std::span<Isle*> isles, doubl
     for (const std::uint32_t s : system.roots()) kept_speeds_.push_back(host.shafts.speed[s]), kept_angles_.push_back(host.shafts.angle[s]);
     const std::span<double> speeds = system.speeds();
     const auto put = [&](std::size_t at, const Vec3& v) { speeds[at] = v.x, speeds[at + 1] = v.y, speeds[at + 2] = v.z; };
-    for (const Isle* isle : isles)
+    for (const Island* island : islands)
     {
-        const auto& means = isle->motion.means();
-        for (std::size_t k = 0; k < isle->members.size(); ++k)
+        const auto& means = island->motion.means();
+        for (std::size_t k = 0; k < island->members.size(); ++k)
         {
-            put(6 * isle->members[k], means[k].velocity / h);
-            put(6 * isle->members[k] + 3, means[k].momentum / h);
+            put(6 * island->members[k], means[k].velocity / h);
+            put(6 * island->members[k] + 3, means[k].momentum / h);
         }
-        for (std::size_t k = 0; k < isle->roots.size(); ++k)
-            speeds[6 * system.body_count() + isle->roots[k]] = means[isle->members.size() + k].shaft / h;
+        for (std::size_t k = 0; k < island->roots.size(); ++k)
+            speeds[6 * system.body_count() + island->roots[k]] = means[island->members.size() + k].shaft / h;
     }
     system.evaluate(0, 1);
     for (std::size_t i = 0; i < system.bodies().size(); ++i)

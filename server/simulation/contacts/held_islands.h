@@ -34,7 +34,7 @@ public:
     void move(double h) override;
     void move_mean(double h) override;
     /// m/s: of separation, of a contact's two points where they have come to.
-    double parting(std::size_t contact) const;
+    double separation_speed(std::size_t contact) const;
     void refresh_rows() override;
     void refresh_depths() override;
 
@@ -114,10 +114,10 @@ public:
     /// ascending.
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
     bool holds_any() const { return !held_.empty(); }
-    void advance(std::span<const std::uint32_t> shadows, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
+    void advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
 
 private:
-    struct Isle
+    struct Island
     {
         std::uint32_t manager = kNoIndex;  ///< component
         bool has_rows = false;
@@ -136,22 +136,22 @@ private:
     void collect_contacts(double from, double h);
     void add_known_contacts();
     void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law);
-    void make_isles(DisjointSets& islands);
+    void make_islands(DisjointSets& islands);
     void share_contacts(double h);
-    void set_approach(Isle& isle, const GroupSystem& system, double h);
-    void run(std::span<Isle*> isles, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
-             WorkBook book, bool trial);
-    void solve(Isle& isle, GroupSystem& system, double from, double to, WorkBook book, bool trial);
-    void lead(std::span<Isle*> isles, GroupSystem& system, double h);
-    void book_contacts(Isle& isle, double gained, WorkBook book);
-    void keep(const Isle& isle);
+    void set_approach(Island& island, const GroupSystem& system, double h);
+    void run(std::span<Island*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from,
+             double to, WorkBook book, bool trial);
+    void solve(Island& island, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void lead(std::span<Island*> islands, GroupSystem& system, double h);
+    void book_contacts(Island& island, double gained, WorkBook book);
+    void keep(const Island& island);
     void tell_begin(const PairState& pair, const Contact& contact, double time) const;
-    void tell_impacts(const Isle& isle, double time);
-    void note_releases(Isle& isle, double from, double h) const;
-    void look_for_yielding_rows();
-    static void report_rows(const Isle& isle, GroupSystem& system, double h, WorkBook book);
+    void tell_impacts(const Island& island, double time);
+    void note_releases(Island& island, double from, double h) const;
+    void find_yielding_rows();
+    static void report_rows(const Island& island, GroupSystem& system, double h, WorkBook book);
     double mobility_of(std::uint32_t root) const;
-    void book_forces(GroupSystem& system, std::span<Isle*> isles, double h);
+    void book_forces(GroupSystem& system, std::span<Island*> islands, double h);
 
     StepState& step_;
     GroupMotion& motion_;
@@ -162,11 +162,11 @@ private:
     std::vector<std::uint8_t> yields_;              ///< by group: such a joint may let go in this step
     std::vector<std::uint32_t> manager_of_island_;  ///< by representative group
     std::vector<std::uint32_t> held_;
-    std::vector<std::uint32_t> isle_of_group_;
-    std::vector<std::unique_ptr<Isle>> isles_;
-    std::size_t isle_count_ = 0;
+    std::vector<std::uint32_t> island_of_group_;
+    std::vector<std::unique_ptr<Island>> islands_;
+    std::size_t island_count_ = 0;
     MidwayContacts midway_;
-    std::vector<Isle*> plain_, jointed_;
+    std::vector<Island*> plain_, jointed_;
     std::vector<std::uint32_t> led_places_;
     std::vector<std::uint32_t> plain_groups_;
     std::vector<FoundContact> touching_;

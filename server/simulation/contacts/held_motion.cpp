@@ -128,7 +128,7 @@ Vec3 HeldMotion::moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point)
     return bodies_->velocity_at(body, point) * since_start_;
 }
 
-double HeldMotion::parting(std::size_t contact) const
+double HeldMotion::separation_speed(std::size_t contact) const
 {
     const Contact& c = contacts_[contact];
     const auto speed = [&](std::uint32_t b, const Vec3& arm_B)
@@ -141,8 +141,8 @@ void HeldMotion::refresh_depths()
     for (std::size_t i = 0; i < contacts_.size(); ++i)
     {
         Contact& c = contacts_[i];
-        const Vec3 way = moved(c.b.index, arms_[i].b, arms_[i].point) - moved(c.a.index, arms_[i].a, arms_[i].point);
-        c.depth = arms_[i].depth - dot(way, c.normal);
+        const Vec3 displacement = moved(c.b.index, arms_[i].b, arms_[i].point) - moved(c.a.index, arms_[i].a, arms_[i].point);
+        c.depth = arms_[i].depth - dot(displacement, c.normal);
     }
 }
 

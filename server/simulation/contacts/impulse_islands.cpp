@@ -22,7 +22,7 @@ bool ImpulseIslands::meets_any(const GroupSystem& system, double h) const
 }
 
 /// Such corners meet it without bounce, ahead of the step: a mean of the speeds before and after would carry them through.
-void ImpulseIslands::arrest(double h, WorkBook book)
+void ImpulseIslands::stop_closing(double h, WorkBook book)
 {
     for (FoundContact& f : touching_) f.contact.impulse = {};
     contacts_.respond(touching_, ImpactMode::Rest, h, book);
@@ -30,13 +30,13 @@ void ImpulseIslands::arrest(double h, WorkBook book)
     for (FoundContact& f : touching_) f.contact.impulse = contacts_.known_contact(f).impulse;
 }
 
-void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to,
+void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> observed, double from, double to,
                              WorkBook book, bool trial)
 {
     const double h = to - from;
     Bodies& bodies = step_.world.host().bodies;
     Shafts& shafts = step_.world.host().shafts;
-    GroupSystem& system = motion_.system_for(island, shadows);
+    GroupSystem& system = motion_.system_for(island, observed);
     touching_.clear();
     contacts_.touching_pairs_of(island, touching_, h);
     system.begin(from, to, book, trial ? nullptr : &step_);
@@ -48,7 +48,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     if (!trial)
         for (const FoundContact& f : touching_)
             if (contacts_.is_paradox(f.contact)) contacts_.tell_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
-    if (!led && meets_any(system, h)) arrest(h, book), system.join();
+    if (!led && meets_any(system, h)) stop_closing(h, book), system.join();
 
     moved_.kick(system, bodies, members_, h);
     if (!trial) positions_.note_forces(system);

@@ -20,12 +20,12 @@ public:
     }
 
     /// `island`: groups, ascending, that standing contacts hold together.
-    void advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> shadows, double from, double to, WorkBook book,
+    void advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> observed, double from, double to, WorkBook book,
                  bool trial);
 
 private:
     bool meets_any(const GroupSystem& system, double h) const;
-    void arrest(double h, WorkBook book);
+    void stop_closing(double h, WorkBook book);
     bool lead_touching(GroupSystem& system, double h);
     void bend_touching(double h);
     void book_rest(double work, WorkBook book);

@@ -12,7 +12,7 @@ namespace
 {
 
 /// Of the smaller body's radius: who goes less than this along a curve in a step is off it by 2^-27 of the radius at most.
-constexpr double kNoWay = 0x1p-13;
+constexpr double kNoDisplacement = 0x1p-13;
 /// Normals that turn further than this (its cosine) in half a step are no longer of one curve.
 constexpr double kSameCurve = 0.9;
 
@@ -46,7 +46,7 @@ bool MidwayContacts::turns(const Contact& c, double h) const
     const Bodies& bodies = host.bodies;
     const Vec3 v = bodies.velocity[c.b.index] - bodies.velocity[c.a.index];
     const double along = length(v - c.normal * dot(v, c.normal));
-    if (!(along * h > kNoWay * contacts_.smaller_radius(c.a, c.b))) return false;
+    if (!(along * h > kNoDisplacement * contacts_.smaller_radius(c.a, c.b))) return false;
     return is_round(bodies, host.shapes, c.a.index) && is_round(bodies, host.shapes, c.b.index);
 }
 
@@ -54,36 +54,37 @@ void MidwayContacts::lead(GroupSystem& system, std::span<const std::uint32_t> me
 {
     const Bodies& bodies = step_.world.host().bodies;
     const std::span<double> x = system.coordinates();
-    ways_.resize(bodies.size());
+    displacements_.resize(bodies.size());
     for (const std::uint32_t i : members)
     {
         const std::uint32_t b = system.bodies()[i];
-        const Vec3 way = bodies.velocity[b] * (0.5 * h);
+        const Vec3 displacement = bodies.velocity[b] * (0.5 * h);
         const Vec3 turn = rotate_back(bodies.orientation[b], bodies.angular_velocity[b]) * (0.5 * h);
-        led_.push_back({b, way, bodies.orientation[b]});
-        ways_[b] = way;
-        std::copy_n(&way.x, 3, &x[6 * i]), std::copy_n(&turn.x, 3, &x[6 * i + 3]);
+        led_.push_back({b, displacement, bodies.orientation[b]});
+        displacements_[b] = displacement;
+        std::copy_n(&displacement.x, 3, &x[6 * i]), std::copy_n(&turn.x, 3, &x[6 * i + 3]);
     }
 }
 
 /// The same pairs half way, with what the curves open by: less than way^2 / 2r.
-void MidwayContacts::look(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all)
+void MidwayContacts::query(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all)
 {
     midway_.clear();
     for (std::size_t i = 0; i < places.size();)
     {
         const std::uint32_t detector = all[places[i]].detector;
         double margin = 0;
-        standing_.clear();
+        persistent_.clear();
         for (; i < places.size() && all[places[i]].detector == detector; ++i)
         {
             const Contact& c = all[places[i]].contact;
-            if (standing_.empty() || standing_.back().a != c.a || standing_.back().b != c.b) standing_.push_back({c.a, c.b, {}});
-            const Vec3 way = way_of(c.b) - way_of(c.a);
-            const double radius = contacts_.smaller_radius(c.a, c.b), opens = radius > 0 ? dot(way, way) / (2 * radius) : 0.0;
+            if (persistent_.empty() || persistent_.back().a != c.a || persistent_.back().b != c.b) persistent_.push_back({c.a, c.b, {}});
+            const Vec3 displacement = displacement_of(c.b) - displacement_of(c.a);
+            const double radius = contacts_.smaller_radius(c.a, c.b),
+                         opens = radius > 0 ? dot(displacement, displacement) / (2 * radius) : 0.0;
             margin = std::max(margin, std::max(0.0, -c.depth) + opens + contacts_.overlap_tolerance(c.a, c.b));
         }
-        contacts_.detect(contacts_.detectors()[detector], detector, standing_, true, midway_, margin);
+        contacts_.detect(contacts_.detectors()[detector], detector, persistent_, true, midway_, margin);
     }
     sort_contacts(midway_, step_.world);
     for (FoundContact& f : midway_)
@@ -103,7 +104,7 @@ void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<Fou
         bodies.orientation[led.body] = led.start;
         bodies.refresh_spin(led.body);
     }
-    look(places, all);
+    query(places, all);
     const auto key = [&](const FoundContact& f)
     { return std::tuple(f.detector, step_.world.rank(f.contact.a), step_.world.rank(f.contact.b), f.contact.feature); };
     for (const std::uint32_t place : places)
@@ -115,11 +116,11 @@ void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<Fou
         if (!same)
         {
             // It goes along with who is led.
-            const Vec3 a = way_of(c.a), b = way_of(c.b);
+            const Vec3 a = displacement_of(c.a), b = displacement_of(c.b);
             c.point += bodies.dynamic(c.a.index) && bodies.dynamic(c.b.index) ? (a + b) * 0.5 : a + b;
             continue;
         }
-        const double opened = c.depth - found->contact.depth - dot(way_of(c.b) - way_of(c.a), c.normal);
+        const double opened = c.depth - found->contact.depth - dot(displacement_of(c.b) - displacement_of(c.a), c.normal);
         c.turning = -4 * opened / h;
         c.normal = found->contact.normal, c.point = found->contact.point;
     }
@@ -128,7 +129,7 @@ void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<Fou
 void MidwayContacts::take_back()
 {
     Bodies& bodies = step_.world.host().bodies;
-    for (const Led& led : led_) bodies.position[led.body] -= led.way, ways_[led.body] = {};
+    for (const Led& led : led_) bodies.position[led.body] -= led.displacement, displacements_[led.body] = {};
     led_.clear();
 }
 

@@ -46,18 +46,18 @@ private:
     struct Led
     {
         std::uint32_t body = 0;  ///< host row
-        Vec3 way;                ///< m
+        Vec3 displacement;       ///< m
         Quat start;
     };
-    Vec3 way_of(Ref body) const { return ways_[body.index]; }
-    void look(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all);
+    Vec3 displacement_of(Ref body) const { return displacements_[body.index]; }
+    void query(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all);
 
     StepState& step_;
     ContactBook& contacts_;
     std::vector<Led> led_;
-    std::vector<Vec3> ways_;  ///< m, by host row; zero between steps
+    std::vector<Vec3> displacements_;  ///< m, by host row; zero between steps
     std::vector<FoundContact> midway_;
-    std::vector<StandingPair> standing_;
+    std::vector<PersistentPair> persistent_;
 };
 
 }  // namespace plab::simulation

@@ -10,7 +10,7 @@ namespace plab::simulation
 namespace
 {
 
-constexpr int kPartingSweeps = 8, kEasingSweeps = 100;
+constexpr int kCorrectionSweeps = 8, kEasingSweeps = 100;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void PositionCorrection::part(std::span<const FoundContact> contacts)
     Bodies& bodies = step_.world.host().bodies;
     const Ref first = contacts.front().contact.a, second = contacts.front().contact.b;
     Nudge a(bodies, first.index), b(bodies, second.index);
-    for (int sweep = 0; sweep < kPartingSweeps; ++sweep)
+    for (int sweep = 0; sweep < kCorrectionSweeps; ++sweep)
         for (const FoundContact& f : contacts)
         {
             const Contact& c = f.contact;

@@ -46,7 +46,7 @@ Vec3 half_extents_of(std::span<const Vec3> vertices)
 
 }  // namespace
 
-double half_way_through(const Geometry& g, const Vec3& d)
+double half_width_along(const Geometry& g, const Vec3& d)
 {
     const double across = std::hypot(d.x, d.y);
     switch (g.kind)

@@ -10,6 +10,6 @@ namespace plab::simulation
 double least_half_width(const Geometry& shape);
 /// Half of the longest way through a shape along a direction (unit, in the shape's frame), m: of a hull that through the box around it;
 /// infinite for a plane.
-double half_way_through(const Geometry& shape, const Vec3& direction);
+double half_width_along(const Geometry& shape, const Vec3& direction);
 
 }  // namespace plab::simulation

@@ -17,7 +17,7 @@ struct Spread
     std::uint32_t samples = 0;
 
     /// Whether there are enough of them for a median to mean something.
-    bool is_told() const { return samples >= 3; }
+    bool is_known() const { return samples >= 3; }
 };
 
 inline Spread spread_of(std::span<const double> values)

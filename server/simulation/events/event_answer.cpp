@@ -35,7 +35,7 @@ void EventLocator::advance_group(std::uint32_t g, double time, WorkBook book, bo
 {
     motion_.rewind(g);
     const std::span one(&g, 1);
-    if (rests_[g] == 0 && step_.groups.all[g].upstream.empty() && !touches_by_force_)
+    if (rests_[g] == 0 && step_.groups.all[g].upstream.empty() && !meets_force_contact_)
         motion_.advance_smooth(one, {}, motion_.segment_begin(g), time, book, trial);
     else
         advance_.advance(one, motion_.segment_begin(g), time, book, trial);
@@ -43,11 +43,11 @@ void EventLocator::advance_group(std::uint32_t g, double time, WorkBook book, bo
 
 void EventLocator::advance_scope(double time, WorkBook book, bool trial)
 {
-    const double before = sweeps_and_looks();
+    const double before = sweeps_and_queries();
     move_scope(time, book, trial);
     const bool stands = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
     if (stands) budget_.spend(WorkBudget::kGoneThrough * static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()));
-    budget_.spend(static_cast<double>(scope_.size()) + sweeps_and_looks() - before);
+    budget_.spend(static_cast<double>(scope_.size()) + sweeps_and_queries() - before);
 }
 
 void EventLocator::move_scope(double time, WorkBook book, bool trial)
@@ -90,9 +90,9 @@ void EventLocator::go_on(double time)
 {
     if (!any_certifies_)
     {
-        const double before = sweeps_and_looks();
+        const double before = sweeps_and_queries();
         advance_.advance(scope_, time, step_.frame.step, step_.book(), false);
-        budget_.spend(static_cast<double>(scope_.size()) + sweeps_and_looks() - before);
+        budget_.spend(static_cast<double>(scope_.size()) + sweeps_and_queries() - before);
         return;
     }
     advance_scope(step_.frame.step, step_.book(), false);
@@ -105,14 +105,14 @@ double EventLocator::rounding_of(Ref a, Ref b) const
     return kRounding * (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]));
 }
 
-void EventLocator::look_from_the_clear_side(Candidate& candidate)
+void EventLocator::contacts_from_clear_side(Candidate& candidate)
 {
     // The contacts were seen a rounding error later: see them where the answer will act, pushed together by no more
     // than the way from there, so that arms and normals fit the state.
     double closing = 0;
     for (const FoundContact& f : candidate.contacts) closing = std::max(closing, std::fabs(contacts_.normal_velocity(f.contact)));
     const double margin = 4 * closing * candidate.bracket + rounding_of(candidate.a, candidate.b);
-    const StandingPair pair{candidate.a, candidate.b, candidate.contacts.front().contact.normal * -margin};
+    const PersistentPair pair{candidate.a, candidate.b, candidate.contacts.front().contact.normal * -margin};
     seen_.clear();
     contacts_.detect(contacts_.detectors()[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
     if (seen_.empty()) return;
@@ -234,7 +234,7 @@ void EventLocator::note_paradoxes()
     }
 }
 
-void EventLocator::calm(std::vector<FoundContact>& contacts) const
+void EventLocator::suppress_resting_bounce(std::vector<FoundContact>& contacts) const
 {
     // Answered late, a resting body seems to arrive with the speed that it gathered in up to two steps: that is no bounce.
     for (FoundContact& f : contacts)
@@ -247,8 +247,8 @@ void EventLocator::keep_if_it_cannot_leave(Contact& c) const
 {
     // It overlapped from the start: a rebound that does not clear the overlap would be answered again and again.
     const double speed = contacts_.normal_velocity(c);
-    const double way = std::max(c.depth, overlap_tolerance(c.a, c.b));
-    if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * way)) c.resting = true;
+    const double height = std::max(c.depth, overlap_tolerance(c.a, c.b));
+    if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * height)) c.resting = true;
 }
 
 /// Whether the pair's bounces come to their end within the step, or have become too many: then it does not bounce now.
@@ -300,7 +300,7 @@ void EventLocator::answer()
     {
         Candidate& c = candidates_[slot];
         complete(c);
-        if (!c.certified && !c.stuck && !c.at_end) look_from_the_clear_side(c);
+        if (!c.certified && !c.stuck && !c.at_end) contacts_from_clear_side(c);
         impact_.insert(impact_.end(), c.contacts.begin(), c.contacts.end());
     }
     const std::size_t own = impact_.size();
@@ -316,7 +316,7 @@ void EventLocator::answer()
         if (!is_chosen(f)) f.contact.impulse = {}, impact_.push_back(f);
     for (std::size_t i = 0; i < own; ++i) contacts_.fill_material(impact_[i]), impact_[i].contact.impulse = {};
     rate_of_approach(impact_, first.time);
-    if (at_end) calm(impact_);
+    if (at_end) suppress_resting_bounce(impact_);
     stopped_.clear();
     for (const std::uint32_t slot : chosen_)
     {

@@ -182,22 +182,22 @@ void EventLocator::take(std::uint32_t slot, double until)
     if (stands(a) == stands(b)) return;
     const Ref stopped = stands(a) ? b : a;
     met_[stopped.index].relief = stopped == b ? candidates_[slot].relief : -candidates_[slot].relief;
-    recall_touching(stopped, until);
+    recall_unpressed(stopped, until);
 }
 
 /// The pair of a body that touched without being pressed, up to a time, goes back into the queue. Several stay where they are: in a wall
 /// one event would grow to all of it, and an answer to very many pairs at once takes longer than answers to a few at a time.
-void EventLocator::recall_touching(Ref stopped, double until)
+void EventLocator::recall_unpressed(Ref stopped, double until)
 {
-    std::erase_if(touching_, [&](const Touching& t) { return t.version != version_of(t.a, t.b); });
-    const auto meets = [&](const Touching& t) { return (t.a == stopped || t.b == stopped) && t.time <= until; };
-    const auto found = std::find_if(touching_.begin(), touching_.end(), meets);
-    if (found == touching_.end() || std::any_of(found + 1, touching_.end(), meets)) return;
+    std::erase_if(unpressed_, [&](const UnpressedPair& t) { return t.version != version_of(t.a, t.b); });
+    const auto meets = [&](const UnpressedPair& t) { return (t.a == stopped || t.b == stopped) && t.time <= until; };
+    const auto found = std::find_if(unpressed_.begin(), unpressed_.end(), meets);
+    if (found == unpressed_.end() || std::any_of(found + 1, unpressed_.end(), meets)) return;
     const std::uint32_t again = new_slot();
     Candidate& c = candidates_[again];
     c.detector = found->detector, c.a = found->a, c.b = found->b, c.time = found->time, c.version = found->version, c.certified = true;
     push(again);
-    touching_.erase(found);
+    unpressed_.erase(found);
 }
 
 /// Takes the first event, and with it whatever happens at the same time to the same bodies.
@@ -263,7 +263,7 @@ void EventLocator::process()
     }
     in_scope_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t slot : chosen_) scope_of(candidates_[slot], true);
-    touched_ = in_scope_;
+    rewound_ = in_scope_;
     if (!detector.local && !first.at_end) scope_of(first, false);
     scope_.clear();
     for (std::uint32_t g = 0; g < in_scope_.size(); ++g)
@@ -281,29 +281,29 @@ void EventLocator::process()
     advance_scope(time, step_.book(), true);
     for (const std::uint32_t g : scope_) motion_.begin_segment(g, time);
     step_.report.rewinds += static_cast<int>(scope_.size());
-    const double before = sweeps_and_looks();
+    const double before = sweeps_and_queries();
     answer();
-    budget_.spend(static_cast<double>(impact_.size()) + sweeps_and_looks() - before);
+    budget_.spend(static_cast<double>(impact_.size()) + sweeps_and_queries() - before);
     for (const std::uint32_t g : scope_) motion_.save_segment(g);
     if (any_certifies_) start_pieces(time);
     if (time < step_.frame.step) go_on(time);
-    for (const std::uint32_t g : scope_) motion_.save_end(g), versions_[g] += touched_[g];
+    for (const std::uint32_t g : scope_) motion_.save_end(g), versions_[g] += rewound_[g];
     if (any_certifies_) end_pieces();
 }
 
-void EventLocator::look_again(std::vector<FoundContact>& found)
+void EventLocator::detect_again(std::vector<FoundContact>& found)
 {
     // Only pairs with a member that went back can have changed; the rest of what was known stands.
     if (any_certifies_) find_near(true);
     if (all_certify_) return;
-    const double before = sweeps_and_looks();
+    const double before = sweeps_and_queries();
     contacts_.detect_all(found);
-    budget_.spend(WorkBudget::kListedPair * static_cast<double>(step_.groups.all.size() + found.size()) + sweeps_and_looks() - before);
+    budget_.spend(WorkBudget::kListedPair * static_cast<double>(step_.groups.all.size() + found.size()) + sweeps_and_queries() - before);
     collect(found);
 }
 
 /// What responses, managers and looks took in this step so far, in units of the budget.
-double EventLocator::sweeps_and_looks() const
+double EventLocator::sweeps_and_queries() const
 {
     return WorkBudget::kSweptRow * static_cast<double>(step_.report.swept_rows) + WorkBudget::kFurtherPair * step_.report.further_pairs;
 }
@@ -311,7 +311,7 @@ double EventLocator::sweeps_and_looks() const
 /// What the step takes without locating: groups, pairs that are known, and what rows and looks took so far.
 void EventLocator::begin_budget()
 {
-    const double plain = static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()) + sweeps_and_looks();
+    const double plain = static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()) + sweeps_and_queries();
     double multiple = 0;
     for (const Detector& d : contacts_.detectors())
         if (d.locates) multiple = std::max(multiple, contacts_.number_of(d.resolution, "max_work"));
@@ -377,14 +377,14 @@ void EventLocator::run(std::vector<FoundContact>& found)
     const auto& detectors = contacts_.detectors();
     any_certifies_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
     all_certify_ = std::all_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.certifies; });
-    touches_by_force_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_force; });
+    meets_force_contact_ = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.by_force; });
     begin_budget();
-    queue_.clear(), free_.clear(), touching_.clear();
+    queue_.clear(), free_.clear(), unpressed_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
     versions_.assign(step_.groups.all.size(), 0);
     met_.assign(step_.world.host().bodies.size(), {});
     note_resting_groups();
-    if (any_certifies_) begin_courses(), find_near(false);
+    if (any_certifies_) begin_motion_bounds(), find_near(false);
     if (!all_certify_) contacts_.detect_all(found), collect(found);
     std::uint32_t slot = 0;
     while (!step_.frame.give_up() && pop(slot))
@@ -409,9 +409,9 @@ void EventLocator::run(std::vector<FoundContact>& found)
         gather(slot);
         process();
         for (const std::uint32_t done : chosen_) free_.push_back(done);
-        if (rewound_) look_again(found);
+        if (rewound_) detect_again(found);
     }
-    if (all_certify_) look_at_known_pairs(found);
+    if (all_certify_) query_known_pairs(found);
 }
 
 }  // namespace plab::simulation

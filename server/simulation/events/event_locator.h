@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "simulation/advance/advance.h"
-#include "simulation/events/course.h"
+#include "simulation/events/motion_bound.h"
 #include "simulation/events/work_budget.h"
 
 namespace plab::simulation
@@ -54,14 +54,14 @@ private:
         bool operator<(const Entry& other) const;
     };
     /// One look at a pair at one time.
-    struct Look
+    struct DistanceSample
     {
         double time = 0;
         GapQuery query;
-        double rate = 0;   ///< m/s, of the gap
-        double speed = 0;  ///< m/s, size of the speeds that the rate is a difference of
-        double touch = 0;  ///< m: gaps up to this are none
-        double slack = 0;  ///< m: what touches and sinks no deeper than this in the rest of the step is no event
+        double rate = 0;         ///< m/s, of the gap
+        double speed = 0;        ///< m/s, size of the speeds that the rate is a difference of
+        double contact_gap = 0;  ///< m: gaps up to this are none
+        double slack = 0;        ///< m: what touches and sinks no deeper than this in the rest of the step is no event
     };
     /// A shape of one body and one of the other.
     struct ShapeGap
@@ -73,7 +73,7 @@ private:
         bool exact = false;  ///< the gap is that of the shapes, and the points are the nearest ones
     };
     /// A pair that touched at `time`, and that nothing pressed together then.
-    struct Touching
+    struct UnpressedPair
     {
         std::uint32_t detector;
         Ref a, b;
@@ -109,23 +109,23 @@ private:
     void gather(std::uint32_t first);
     void gather_until(double until);
     void take(std::uint32_t slot, double until);
-    void recall_touching(Ref stopped, double until);
+    void recall_unpressed(Ref stopped, double until);
     void process();
-    void look_again(std::vector<FoundContact>& found);
+    void detect_again(std::vector<FoundContact>& found);
     void note_resting_groups();
     void begin_budget();
-    double sweeps_and_looks() const;
+    double sweeps_and_queries() const;
     void answer_the_rest(std::size_t left, std::vector<FoundContact>& found);
     void tell_too_many(std::size_t left);
     double overlap_tolerance(Ref a, Ref b) const;
 
     // event_courses.cpp: pairs that may meet anywhere in the piece.
-    void begin_courses();
-    void find_near(bool only_touched);
+    void begin_motion_bounds();
+    void find_near(bool only_rewound);
     void consider_near(std::uint32_t detector, Ref a, Ref b);
     void detect_pair(const Candidate& candidate, const Vec3& shift, std::vector<FoundContact>& found);
-    void look_at_known_pairs(std::vector<FoundContact>& found);
-    Mover mover(std::uint32_t body, const BodyState& now) const { return {body, &courses_[body], &extents_[body], now}; }
+    void query_known_pairs(std::vector<FoundContact>& found);
+    Mover mover(std::uint32_t body, const BodyState& now) const { return {body, &motions_[body], &extents_[body], now}; }
     void start_pieces(double time);
     void end_pieces();
 
@@ -140,8 +140,8 @@ private:
     ShapeGap gap_of_shapes(const Candidate& candidate, const ShapeExtent& shape_a, const ShapeExtent& shape_b, const Vec3& hint) const;
     void list_shape_gaps(const Candidate& candidate, const GapQuery& nearest);
     GapQuery measure(const Candidate& candidate, double time);
-    double clear_for(const Candidate& candidate, const Look& look, const Vec3& turn, double slack, double& closing) const;
-    bool was_clear(const Candidate& candidate, const Look& clear, const Look& last) const;
+    double clear_for(const Candidate& candidate, const DistanceSample& sample, const Vec3& turn, double slack, double& closing) const;
+    bool was_clear(const Candidate& candidate, const DistanceSample& clear, const DistanceSample& last) const;
 
     // event_search.cpp
     void locate(Candidate& candidate);
@@ -152,13 +152,13 @@ private:
     void search(Candidate& candidate);
     bool meets(Candidate& candidate);
     bool answered_at(const Candidate& candidate, double time) const;
-    Look look_at(const Candidate& candidate, double time);
-    bool presses(Candidate& candidate, const Look& look);
+    DistanceSample sample_at(const Candidate& candidate, double time);
+    bool presses(Candidate& candidate, const DistanceSample& sample);
     void scope_of_pair(const Candidate& candidate);
-    static Vec3 turn_between(const Look& first, const Look& then);
-    bool settle_in_bracket(Candidate& candidate, const Look& clear, const Look& over, bool certify);
-    bool settle_at_begin(Candidate& candidate, const Look& look);
-    bool found_when_given_up(Candidate& candidate, const Look& look);
+    static Vec3 turn_between(const DistanceSample& first, const DistanceSample& then);
+    bool settle_in_bracket(Candidate& candidate, const DistanceSample& clear, const DistanceSample& over, bool certify);
+    bool settle_at_begin(Candidate& candidate, const DistanceSample& sample);
+    bool found_when_given_up(Candidate& candidate, const DistanceSample& sample);
 
     // event_answer.cpp
     void advance_group(std::uint32_t group, double time, WorkBook book, bool trial);
@@ -167,11 +167,11 @@ private:
     double rounding_of(Ref a, Ref b) const;
     void advance_groups_to(double time);
     void go_on(double time);
-    void calm(std::vector<FoundContact>& contacts) const;
+    void suppress_resting_bounce(std::vector<FoundContact>& contacts) const;
     void keep_if_it_cannot_leave(Contact& c) const;
     void answer();
     void complete(Candidate& candidate);
-    void look_from_the_clear_side(Candidate& candidate);
+    void contacts_from_clear_side(Candidate& candidate);
     void rate_of_approach(std::vector<FoundContact>& contacts, double at);
     bool stop_bouncing(const Candidate& candidate, double time, double& ends);
     void record_answered(Candidate& candidate, double time);
@@ -202,7 +202,7 @@ private:
     std::vector<std::uint32_t> chosen_;             ///< slots answered together
     std::vector<std::uint32_t> set_aside_;          ///< slots
     std::vector<std::uint32_t> scope_;              ///< groups that go back, ascending
-    std::vector<std::uint8_t> in_scope_, touched_;  ///< by group; touched: reached by the last answer's impulses
+    std::vector<std::uint8_t> in_scope_, rewound_;  ///< by group; touched: reached by the last answer's impulses
     std::vector<std::uint8_t> rests_;               ///< by group: something stands on it or it on something that moves
     bool stands_ = false;                           ///< somebody in the scope of the present answer rests on something
     bool rewound_ = false;                          ///< the last answer moved somebody
@@ -211,7 +211,7 @@ private:
     std::vector<PairKey> live_;          ///< pairs in the queue, sorted
     std::vector<ShapeGap> shape_gaps_;   ///< of the last look, where a body has several shapes
     std::vector<FoundContact> pressed_;  ///< one contact
-    std::vector<Touching> touching_;
+    std::vector<UnpressedPair> unpressed_;
     std::vector<Met> met_;                   ///< by body; nobody is outside gather()
     std::vector<std::uint32_t> met_bodies_;  ///< those that are
     DisjointSets left_islands_;
@@ -227,10 +227,10 @@ private:
         std::vector<Vec3> impulse, last;  ///< N s: so far; by the last answer
     };
     Jointed jointed_;
-    std::vector<Course> courses_;       ///< by body
-    std::vector<BodyExtent> extents_;   ///< by body
-    std::vector<double> reach_;         ///< m, by body
-    std::vector<std::uint8_t> active_;  ///< by body
+    std::vector<MotionBound> motions_;   ///< by body
+    std::vector<BodyExtent> extents_;    ///< by body
+    std::vector<double> motion_margin_;  ///< m, by body
+    std::vector<std::uint8_t> active_;   ///< by body
     std::vector<NearCollector::Pair> near_;
     struct Accelerated
     {
@@ -247,8 +247,8 @@ private:
     std::vector<Stopped> stopped_;       ///< of the chosen ones: those that have bounced for the last time
     double rest_time_ = 0;               ///< s, when the pair being recorded comes to rest
     std::vector<std::uint8_t> paradox_;  ///< beside impact_: no impact, but the answer to Painleve's paradox
-    bool touches_by_force_ = false;
-    std::vector<StandingPair> standing_;
+    bool meets_force_contact_ = false;
+    std::vector<PersistentPair> persistent_;
     std::vector<FoundContact> seen_, impact_, at_end_;
 };
 

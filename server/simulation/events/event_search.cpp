@@ -35,11 +35,11 @@ bool EventLocator::overlaps_at(Candidate& candidate, double time)
 {
     advance_scope(time, {}, true);
     ++step_.report.trials;
-    const StandingPair pair{candidate.a, candidate.b, {}};
+    const PersistentPair pair{candidate.a, candidate.b, {}};
     seen_.clear();
-    const double before = sweeps_and_looks();
+    const double before = sweeps_and_queries();
     contacts_.detect(contacts_.detectors()[candidate.detector], candidate.detector, std::span(&pair, 1), true, seen_);
-    budget_.spend(1 + sweeps_and_looks() - before);
+    budget_.spend(1 + sweeps_and_queries() - before);
     std::erase_if(seen_, [&](const FoundContact& f) { return f.contact.depth <= candidate.ignored; });
     if (seen_.empty()) return false;
     sort_contacts(seen_, step_.world);
@@ -127,49 +127,49 @@ void EventLocator::scope_of_pair(const Candidate& candidate)
         if (in_scope_[g]) scope_.push_back(g);
 }
 
-EventLocator::Look EventLocator::look_at(const Candidate& candidate, double time)
+EventLocator::DistanceSample EventLocator::sample_at(const Candidate& candidate, double time)
 {
     advance_groups_to(time);
     ++step_.report.trials;
-    Look look;
-    look.time = time;
-    look.query = measure(candidate, time);
+    DistanceSample sample;
+    sample.time = time;
+    sample.query = measure(candidate, time);
     const Bodies& bodies = step_.world.host().bodies;
-    const GapQuery& q = look.query;
+    const GapQuery& q = sample.query;
     const Vec3 va = bodies.velocity_at(q.a.index, q.point_a), vb = bodies.velocity_at(q.b.index, q.point_b);
-    look.rate = dot(vb - va, q.normal);
-    look.speed = length(va) + length(vb);
+    sample.rate = dot(vb - va, q.normal);
+    sample.speed = length(va) + length(vb);
     // Rounding of positions, and the way in the least time that can be told apart.
     const double size = length(bodies.position[q.a.index]) + length(bodies.position[q.b.index]) + length(q.point_a - q.point_b);
-    look.touch = 4e-16 * size + 2e-16 * length(bodies.position[q.b.index] - bodies.position[q.a.index]) +
-                 0x1p-50 * step_.frame.step * std::fabs(look.rate);
-    look.slack = slack_of(q.a, q.b, look.speed);
-    return look;
+    sample.contact_gap = 4e-16 * size + 2e-16 * length(bodies.position[q.b.index] - bodies.position[q.a.index]) +
+                         0x1p-50 * step_.frame.step * std::fabs(sample.rate);
+    sample.slack = slack_of(q.a, q.b, sample.speed);
+    return sample;
 }
 
 /// rad/s: how the normal turned from one look to a later one.
-Vec3 EventLocator::turn_between(const Look& first, const Look& then)
+Vec3 EventLocator::turn_between(const DistanceSample& first, const DistanceSample& then)
 {
     return cross(first.query.normal, then.query.normal) / (then.time - first.time);
 }
 
 /// Overlap, or touching without parting, where the search begins. True if that settles it.
-bool EventLocator::settle_at_begin(Candidate& candidate, const Look& look)
+bool EventLocator::settle_at_begin(Candidate& candidate, const DistanceSample& sample)
 {
-    if (look.query.gap >= -look.touch - overlap_tolerance(candidate.a, candidate.b)) return false;
+    if (sample.query.gap >= -sample.contact_gap - overlap_tolerance(candidate.a, candidate.b)) return false;
     // Nothing to find: a pair that closes is answered here; one that parts is left alone until the end of the step.
-    candidate.time = look.time;
-    candidate.stuck = look.rate <= 0 || !contacts_.detectors()[candidate.detector].responds;
+    candidate.time = sample.time;
+    candidate.stuck = sample.rate <= 0 || !contacts_.detectors()[candidate.detector].responds;
     candidate.at_end = !candidate.stuck;
     if (candidate.stuck) return true;
     candidate.time = step_.frame.step;
-    const Look last = look_at(candidate, step_.frame.step);
+    const DistanceSample last = sample_at(candidate, step_.frame.step);
     candidate.nothing = !(last.query.gap < 0 && last.rate < 0);
     return true;
 }
 
 /// Time of a zero between a clear and an overlapping look, by the resolution. With `certify`: only if nothing met before.
-bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, const Look& over, bool certify)
+bool EventLocator::settle_in_bracket(Candidate& candidate, const DistanceSample& clear, const DistanceSample& over, bool certify)
 {
     Trial trial;
     trial.begin = clear.time, trial.end = over.time, trial.step = step_.frame.step;
@@ -177,31 +177,31 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const Look& clear, co
     trial.gap_end = std::min(over.query.gap, -kNothing), trial.rate_end = over.rate;
     trial.depth = -over.query.gap, trial.closing = -over.rate;
     trial.last = clear.time, trial.last_gap = clear.query.gap, trial.last_rate = clear.rate;
-    Look low = clear;
+    DistanceSample low = clear;
     for (;; ++trial.iteration)
     {
         ask(candidate, trial);
         if (trial.decision != Trial::Decision::Try || budget_.is_spent() || step_.frame.give_up()) break;
-        const Look look = look_at(candidate, trial.next);
-        trial.last = look.time, trial.last_gap = look.query.gap, trial.last_rate = look.rate;
-        if (look.query.gap > 0)
-            low = look, trial.begin = look.time, trial.gap_begin = look.query.gap, trial.rate_begin = look.rate;
+        const DistanceSample sample = sample_at(candidate, trial.next);
+        trial.last = sample.time, trial.last_gap = sample.query.gap, trial.last_rate = sample.rate;
+        if (sample.query.gap > 0)
+            low = sample, trial.begin = sample.time, trial.gap_begin = sample.query.gap, trial.rate_begin = sample.rate;
         else
-            trial.end = look.time, trial.gap_end = std::min(look.query.gap, -kNothing), trial.rate_end = look.rate;
+            trial.end = sample.time, trial.gap_end = std::min(sample.query.gap, -kNothing), trial.rate_end = sample.rate;
     }
     candidate.time = trial.begin;
     candidate.bracket = trial.end - trial.begin;
     if (!certify || trial.begin == clear.time) return true;
-    return was_clear(candidate, clear, look_at(candidate, trial.begin));
+    return was_clear(candidate, clear, sample_at(candidate, trial.begin));
 }
 
 /// The resolution gave up: what shows at the end of the step is all that is known.
-bool EventLocator::found_when_given_up(Candidate& candidate, const Look& look)
+bool EventLocator::found_when_given_up(Candidate& candidate, const DistanceSample& sample)
 {
-    const Look last = look_at(candidate, step_.frame.step);
-    if (!(last.query.gap < -last.touch)) return false;
-    candidate.time = look.time, candidate.bracket = last.time - look.time;
-    return settle_in_bracket(candidate, look, last, false);
+    const DistanceSample last = sample_at(candidate, step_.frame.step);
+    if (!(last.query.gap < -last.contact_gap)) return false;
+    candidate.time = sample.time, candidate.bracket = last.time - sample.time;
+    return settle_in_bracket(candidate, sample, last, false);
 }
 
 void EventLocator::search(Candidate& candidate)
@@ -221,13 +221,13 @@ bool EventLocator::answered_at(const Candidate& candidate, double time) const
 }
 
 /// Whether forces press together what touches and moves along: so that it would sink in by more than rounding. Once: what presses rests.
-bool EventLocator::presses(Candidate& candidate, const Look& look)
+bool EventLocator::presses(Candidate& candidate, const DistanceSample& sample)
 {
-    if (answered_at(candidate, look.time)) return false;
-    const double left = step_.frame.step - look.time;
+    if (answered_at(candidate, sample.time)) return false;
+    const double left = step_.frame.step - sample.time;
     pressed_.assign(1, {});
     Contact& c = pressed_.front().contact;
-    c.a = candidate.a, c.b = candidate.b, c.normal = look.query.normal, c.point = (look.query.point_a + look.query.point_b) * 0.5;
+    c.a = candidate.a, c.b = candidate.b, c.normal = sample.query.normal, c.point = (sample.query.point_a + sample.query.point_b) * 0.5;
     const auto held = [&](Ref r) { return step_.groups.of(r) != kNoIndex && rests_[step_.groups.of(r)] != 0; };
     if (held(c.a) || held(c.b))
     {
@@ -244,13 +244,13 @@ bool EventLocator::presses(Candidate& candidate, const Look& look)
         const double before = rate();
         advance_groups_to(step_.frame.step);
         c.normal_acceleration = (rate() - before) / left;
-        advance_groups_to(look.time);
+        advance_groups_to(sample.time);
     }
     else
-        rate_of_approach(pressed_, look.time);
+        rate_of_approach(pressed_, sample.time);
     c.normal_acceleration += dot(met_[c.b.index].relief - met_[c.a.index].relief, c.normal);
     candidate.relief = c.normal * -c.normal_acceleration;
-    return candidate.pressed = -0.5 * c.normal_acceleration * left * left > look.slack;
+    return candidate.pressed = -0.5 * c.normal_acceleration * left * left > sample.slack;
 }
 
 bool EventLocator::meets(Candidate& candidate)
@@ -260,62 +260,62 @@ bool EventLocator::meets(Candidate& candidate)
     Trial trial;
     trial.end = trial.step = step;
     Vec3 turn;
-    Look look = look_at(candidate, candidate.time), over;
-    if (settle_at_begin(candidate, look)) return !candidate.nothing;
+    DistanceSample sample = sample_at(candidate, candidate.time), over;
+    if (settle_at_begin(candidate, sample)) return !candidate.nothing;
     double let_go = kLetGo;
     for (; !budget_.is_spent(); ++trial.iteration)
     {
         if (step_.frame.give_up()) return false;
-        candidate.time = look.time;
-        const double left = step - look.time;
-        const bool touches = look.query.gap <= look.touch, closes = look.rate < -kStill * look.speed;
-        if (touches && (!responds || (closes && !(left > 0 && -look.rate * left <= look.slack)))) return true;
+        candidate.time = sample.time;
+        const double left = step - sample.time;
+        const bool touches = sample.query.gap <= sample.contact_gap, closes = sample.rate < -kStill * sample.speed;
+        if (touches && (!responds || (closes && !(left > 0 && -sample.rate * left <= sample.slack)))) return true;
         if (!(left > 0)) return false;
         // What touches one that is stopped now may be stopped with it.
-        if (touches && !met_bodies_.empty() && !(look.rate > kStill * look.speed) && presses(candidate, look)) return true;
+        if (touches && !met_bodies_.empty() && !(sample.rate > kStill * sample.speed) && presses(candidate, sample)) return true;
         // Sliding along one another, for the rest of the step, is no event.
-        double clear = clear_for(candidate, look, turn, touches ? look.slack : 0.0, trial.closing);
-        if (look.time + clear >= step)
+        double clear = clear_for(candidate, sample, turn, touches ? sample.slack : 0.0, trial.closing);
+        if (sample.time + clear >= step)
         {
-            if (touches && responds) touching_.push_back({candidate.detector, candidate.a, candidate.b, look.time, candidate.version});
+            if (touches && responds) unpressed_.push_back({candidate.detector, candidate.a, candidate.b, sample.time, candidate.version});
             return false;
         }
         // What parts comes back at a gap of 0, not a rounding error later: there it is bracketed.
-        if (touches) clear = clear_for(candidate, look, turn, 0.0, trial.closing);
+        if (touches) clear = clear_for(candidate, sample, turn, 0.0, trial.closing);
         // Closing, and nearer than times can be told apart.
-        if (!touches && clear < shortest && look.rate < 0) return true;
+        if (!touches && clear < shortest && sample.rate < 0) return true;
         // What parts is let go; so is what nothing presses, though no bound says that it does not sink in.
-        if (touches && !(look.rate > kStill * look.speed) && presses(candidate, look)) return true;
+        if (touches && !(sample.rate > kStill * sample.speed) && presses(candidate, sample)) return true;
         if (touches) clear = std::max(clear, std::min(let_go, 1.0) * left), let_go *= 2;
-        if (trial.iteration == kFirstSteps) over = look_at(candidate, step);
-        const bool bracketed = trial.iteration >= kFirstSteps && over.query.gap < -over.touch;
-        trial.begin = look.time, trial.gap_begin = std::max(look.query.gap, 0x1p-60 * look.touch);
+        if (trial.iteration == kFirstSteps) over = sample_at(candidate, step);
+        const bool bracketed = trial.iteration >= kFirstSteps && over.query.gap < -over.contact_gap;
+        trial.begin = sample.time, trial.gap_begin = std::max(sample.query.gap, 0x1p-60 * sample.contact_gap);
         trial.rate_begin = -trial.gap_begin / std::max(clear, 0x1p-60 * step);
         trial.gap_end = bracketed ? over.query.gap : kUnknown, trial.rate_end = bracketed ? over.rate : kUnknown;
-        trial.last = look.time, trial.last_gap = look.query.gap, trial.last_rate = look.rate;
+        trial.last = sample.time, trial.last_gap = sample.query.gap, trial.last_rate = sample.rate;
         if (touches)
-            trial.next = look.time + clear;
+            trial.next = sample.time + clear;
         else
         {
             ask(candidate, trial);
             // What parts, however narrow the gap is still, is no impact: it goes on.
-            if (trial.decision == Trial::Decision::Accept && (!responds || look.rate < 0)) return true;
+            if (trial.decision == Trial::Decision::Accept && (!responds || sample.rate < 0)) return true;
             if (trial.decision == Trial::Decision::Accept)
-                trial.next = look.time + (clear = std::max(clear, std::min(let_go, 1.0) * left)), let_go *= 2;
-            if (trial.decision == Trial::Decision::GiveUp) return found_when_given_up(candidate, look);
+                trial.next = sample.time + (clear = std::max(clear, std::min(let_go, 1.0) * left)), let_go *= 2;
+            if (trial.decision == Trial::Decision::GiveUp) return found_when_given_up(candidate, sample);
             // A resolution that knows of an overlap may jump to where it thinks the zero is.
-            if (bracketed && trial.next > look.time + clear && (trial.iteration & 7) == kFirstSteps &&
-                settle_in_bracket(candidate, look, over, true))
+            if (bracketed && trial.next > sample.time + clear && (trial.iteration & 7) == kFirstSteps &&
+                settle_in_bracket(candidate, sample, over, true))
                 return true;
         }
-        const double next = std::min(trial.next, look.time + clear);
+        const double next = std::min(trial.next, sample.time + clear);
         // Closer than times can be told apart; what parts there goes into the next step.
-        if (!(next > look.time)) return !(look.rate > kStill * look.speed);
-        const Look ahead = look_at(candidate, std::min(next, step));
+        if (!(next > sample.time)) return !(sample.rate > kStill * sample.speed);
+        const DistanceSample ahead = sample_at(candidate, std::min(next, step));
         // The bound is as good as what is known of the forces.
-        if (ahead.query.gap < -ahead.touch) return settle_in_bracket(candidate, look, ahead, false);
-        turn = turn_between(look, ahead);
-        look = ahead;
+        if (ahead.query.gap < -ahead.contact_gap) return settle_in_bracket(candidate, sample, ahead, false);
+        turn = turn_between(sample, ahead);
+        sample = ahead;
     }
     return false;
 }

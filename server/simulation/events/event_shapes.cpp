@@ -164,21 +164,22 @@ GapQuery EventLocator::measure(const Candidate& candidate, double time)
 }
 
 /// s from the last look until which they cannot come nearer than `slack` (m) deep; `closing`: the first-order bound on their speed, m/s.
-double EventLocator::clear_for(const Candidate& candidate, const Look& look, const Vec3& turn, double slack, double& closing) const
+double EventLocator::clear_for(const Candidate& candidate, const DistanceSample& sample, const Vec3& turn, double slack,
+                               double& closing) const
 {
-    const double left = step_.frame.step - look.time;
+    const double left = step_.frame.step - sample.time;
     const Clearance whole = clearance_of(candidate, left);
-    closing = whole.fastest_closing(look.query.normal);
+    closing = whole.fastest_closing(sample.query.normal);
     const double balls = whole.of_balls();
-    if (shape_gaps_.empty()) return std::max(balls, whole.along(look.query.normal, std::max(0.0, look.query.gap) + slack, turn));
+    if (shape_gaps_.empty()) return std::max(balls, whole.along(sample.query.normal, std::max(0.0, sample.query.gap) + slack, turn));
     double clear = left;
     for (const ShapeGap& g : shape_gaps_)
     {
         const Clearance clearance = clearance_of(candidate, g, left);
         // None is nearer than the nearest.
         double of_shapes = std::max(clearance.in_any_direction(std::max(g.gap, shape_gaps_.front().gap)), clearance.of_balls());
-        const bool is_nearest = g.normal == look.query.normal && g.gap == look.query.gap;
-        const double allowed = is_nearest ? slack : std::fabs(g.gap) <= look.slack ? look.slack : 0.0;
+        const bool is_nearest = g.normal == sample.query.normal && g.gap == sample.query.gap;
+        const double allowed = is_nearest ? slack : std::fabs(g.gap) <= sample.slack ? sample.slack : 0.0;
         const double open = std::max(0.0, g.gap) + allowed;
         if (of_shapes < left && open > 0) of_shapes = std::max(of_shapes, clearance.along(g.normal, open, is_nearest ? turn : Vec3{}));
         clear = std::min(clear, of_shapes);
@@ -187,7 +188,7 @@ double EventLocator::clear_for(const Candidate& candidate, const Look& look, con
 }
 
 /// Whether nothing of the pair met between two looks, `last` the last one.
-bool EventLocator::was_clear(const Candidate& candidate, const Look& clear, const Look& last) const
+bool EventLocator::was_clear(const Candidate& candidate, const DistanceSample& clear, const DistanceSample& last) const
 {
     const double left = step_.frame.step - last.time, ago = last.time - clear.time;
     const Vec3 turn = turn_between(clear, last);

@@ -41,9 +41,9 @@ void GroupMotion::take_reports(const GroupSystem& system)
     system.add_reports(row_reports_);
 }
 
-GroupSystem& GroupMotion::system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
+GroupSystem& GroupMotion::system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed)
 {
-    GroupSystem& system = pool_.of(step_.frame, groups, shadows);
+    GroupSystem& system = pool_.of(step_.frame, groups, observed);
     system.set_extra_forces(extra_);
     return system;
 }
@@ -112,7 +112,7 @@ void GroupMotion::collect_units(std::span<const std::uint32_t> groups)
     std::sort(units_.begin(), units_.end());
 }
 
-void GroupMotion::advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+void GroupMotion::advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
                                  WorkBook book, bool trial)
 {
     collect_units(groups);
@@ -122,7 +122,7 @@ void GroupMotion::advance_smooth(std::span<const std::uint32_t> groups, std::spa
         same_unit_.clear();
         for (; i < units_.size() && units_[i].solver_rank == units_[first].solver_rank && units_[i].cluster == units_[first].cluster; ++i)
             same_unit_.push_back(units_[i].group);
-        GroupSystem& system = system_for(same_unit_, shadows);
+        GroupSystem& system = system_for(same_unit_, observed);
         const std::uint32_t solver = step_.groups.all[same_unit_.front()].solver;
         finish_advance(system, run_solver(system, solver, from, to, book, trial ? nullptr : &step_), to, trial);
     }

@@ -51,9 +51,9 @@ public:
 
     // Moving --------------------------------------------------------------------------------------------------------
     /// The system of these groups, ready for the present frame. `shadows`: whom they read.
-    GroupSystem& system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows);
+    GroupSystem& system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed);
     /// Each by its solver, from where it is. A trial emits no events and freezes nobody.
-    void advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows, double from, double to,
+    void advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
                         WorkBook book, bool trial);
     /// False: something is not finite any more.
     bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events);

@@ -32,7 +32,7 @@ struct ContactEnergy
 };
 
 /// What events told of already and would tell again only when it ends and comes back.
-struct Told
+struct Reported
 {
     bool stiff = false;                       ///< contact.stiff
     std::vector<std::uint8_t> contradictory;  ///< constraint.contradiction and coupling.*, by component
@@ -81,7 +81,7 @@ struct StepState final : EventSink
     CostMeter meter;
     std::vector<double> work;                   ///< J by component, since the run began
     std::vector<ContactEnergy> contact_energy;  ///< by component
-    Told told;
+    Reported reported;
 };
 
 }  // namespace plab::simulation

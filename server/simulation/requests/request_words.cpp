@@ -30,9 +30,9 @@ bool costs_differ(const Spread& with_old, const Spread& with_new)
 std::string text_of_costs(const TrialReport& trial)
 {
     const Spread &now = trial.with_new, &before = trial.with_old;
-    if (!now.is_told()) return {};
+    if (!now.is_known()) return {};
     std::string out = "a step costs " + in_words(now);
-    if (!before.is_told()) return out;
+    if (!before.is_known()) return out;
     out += ", " + in_words(before) + " before: ";
     if (!costs_differ(before, now)) return out + "no difference that can be told";
     return out + in_us(std::abs(now.median - before.median)) + (now.median > before.median ? " us more" : " us less");
@@ -43,15 +43,15 @@ std::string text_of(const TrialReport& trial)
     char text[128];
     const double ms = 1e-6 * trial.ns;
     const char* const what = trial.everything ? "everything" : trial.objects == 1 ? "object" : "objects";
-    switch (trial.fate)
+    switch (trial.outcome)
     {
-        case TrialReport::Fate::None:
+        case TrialReport::Outcome::None:
             return "none";
-        case TrialReport::Fate::GivenUp:
+        case TrialReport::Outcome::GivenUp:
             std::snprintf(text, sizeof text, "given up after %.1f ms (budget %.3g ms)", ms, 1e-6 * trial.budget_ns);
             return text;
-        case TrialReport::Fate::Made:
-        case TrialReport::Fate::WithoutOld:
+        case TrialReport::Outcome::Made:
+        case TrialReport::Outcome::WithoutOld:
             break;
     }
     if (trial.everything)
@@ -59,7 +59,7 @@ std::string text_of(const TrialReport& trial)
     else
         std::snprintf(text, sizeof text, "made: %zu %s, %.3g ms", trial.objects, what, ms);
     const std::string costs = text_of_costs(trial);
-    return std::string(text) + (trial.fate == TrialReport::Fate::WithoutOld ? ", the old one's step was given up" : "") +
+    return std::string(text) + (trial.outcome == TrialReport::Outcome::WithoutOld ? ", the old one's step was given up" : "") +
            (costs.empty() ? "" : "; " + costs);
 }
 

@@ -6,19 +6,19 @@
 namespace plab::simulation
 {
 
-constexpr const char* name_of(Fate fate)
+constexpr const char* name_of(FieldTransfer transfer)
 {
-    switch (fate)
+    switch (transfer)
     {
-        case Fate::Kept:
+        case FieldTransfer::Kept:
             return "kept";
-        case Fate::Converted:
+        case FieldTransfer::Converted:
             return "converted";
-        case Fate::Given:
+        case FieldTransfer::Given:
             return "given";
-        case Fate::Fresh:
+        case FieldTransfer::Fresh:
             return "fresh";
-        case Fate::Lost:
+        case FieldTransfer::Lost:
             return "lost";
     }
     return "";

@@ -20,14 +20,14 @@ bool begins_a_run(const Operation& operation)
     return is_any_of<ResetOperation, LoadOperation, RestoreOperation, RewindOperation>(operation);
 }
 
-bool concerns_the_course(const Operation& operation)
+bool affects_the_run(const Operation& operation)
 {
     return !is_any_of<PauseOperation, ResumeOperation, StepOperation, RateOperation, SnapshotOperation, ForgetOperation>(operation);
 }
 
-bool concerns_the_course(const Request& request)
+bool affects_the_run(const Request& request)
 {
-    return std::any_of(request.operations.begin(), request.operations.end(), [](const Operation& op) { return concerns_the_course(op); });
+    return std::any_of(request.operations.begin(), request.operations.end(), [](const Operation& op) { return affects_the_run(op); });
 }
 
 }  // namespace plab::simulation

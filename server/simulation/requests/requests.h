@@ -119,7 +119,7 @@ using Operation = std::variant<AddOperation, AddBlueprintOperation, RemoveOperat
                                StepLengthOperation, SnapshotOperation, RestoreOperation, ForgetOperation, RewindOperation>;
 
 /// False for what only concerns the clock, or what is kept: pause, rate, snapshot, ...
-bool concerns_the_course(const Operation& operation);
+bool affects_the_run(const Operation& operation);
 /// reset, load, restore, rewind.
 bool begins_a_run(const Operation& operation);
 
@@ -150,9 +150,9 @@ struct Request
     TrialChoice trial;
 };
 
-bool concerns_the_course(const Request& request);
+bool affects_the_run(const Request& request);
 
-enum class Fate : std::uint8_t
+enum class FieldTransfer : std::uint8_t
 {
     Kept,       ///< carried over, same bits
     Converted,  ///< carried over in another type
@@ -161,10 +161,10 @@ enum class Fate : std::uint8_t
     Lost,       ///< the new type has no such field
 };
 
-struct FieldFate
+struct TransferredField
 {
     std::string field;
-    Fate fate = Fate::Kept;
+    FieldTransfer transfer = FieldTransfer::Kept;
 };
 
 /// Energy, momentum and error over the first step after a swap, beside what the old component would have given; of those whom the swap can
@@ -182,7 +182,7 @@ struct StepOutcome
 struct SwapReport
 {
     std::string id, from, to;
-    std::vector<FieldFate> fields;
+    std::vector<TransferredField> fields;
     double energy_before = 0;  ///< J, at the boundary
     StepOutcome with_old, with_new;
 };
@@ -190,14 +190,14 @@ struct SwapReport
 /// What became of a request's trial.
 struct TrialReport
 {
-    enum class Fate : std::uint8_t
+    enum class Outcome : std::uint8_t
     {
         None,  ///< not wanted, or the request changes nothing that could be tried
         Made,
         WithoutOld,  ///< the old component's step took too long: only the new one was tried
         GivenUp,     ///< it took longer than its budget
     };
-    Fate fate = Fate::None;
+    Outcome outcome = Outcome::None;
     double ns = 0, budget_ns = 0;  ///< the budget is infinite where there is none
     std::size_t objects = 0;       ///< bodies, shafts and quantities that it stepped
     bool everything = false;       ///< and they are all that there are

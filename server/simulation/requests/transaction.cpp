@@ -30,8 +30,8 @@ Transaction::Transaction(Simulation& simulation, const Request& request) : s_(&s
 Transaction::State Transaction::capture() const
 {
     Stepper& stepper = *s_->stepper_;
-    return {s_->world_->backup(),    stepper.contacts(),      stepper.work(), stepper.contact_energy(),
-            stepper.departed_work(), stepper.requests_work(), stepper.told()};
+    return {s_->world_->backup(),    stepper.contacts(),      stepper.work(),    stepper.contact_energy(),
+            stepper.departed_work(), stepper.requests_work(), stepper.reported()};
 }
 
 void Transaction::restore(const State& state, bool structure_changed)
@@ -47,8 +47,8 @@ void Transaction::restore(const State& state, bool structure_changed)
     s_->world_->host() = state.world.host;
     s_->stepper_->contacts() = state.contacts;
     s_->stepper_->work() = state.work, s_->stepper_->contact_energy() = state.contact_energy;
-    s_->stepper_->told() = state.told;
-    s_->stepper_->told().contradictory.resize(s_->world_->components().size(), 0);
+    s_->stepper_->reported() = state.reported;
+    s_->stepper_->reported().contradictory.resize(s_->world_->components().size(), 0);
     s_->stepper_->departed_work() = state.departed_work, s_->stepper_->requests_work() = state.requests_work;
 }
 

@@ -28,7 +28,7 @@ private:
         std::vector<double> work;
         std::vector<ContactEnergy> contact_energy;
         double departed_work, requests_work;
-        Told told;
+        Reported reported;
     };
     State capture() const;
     void restore(const State& state, bool structure_changed);

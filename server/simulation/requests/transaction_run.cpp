@@ -40,9 +40,9 @@ std::size_t Transaction::held_points(std::uint32_t component) const
 
 void Transaction::tell_contacts()
 {
-    const auto tell = [](SwapReport& report, std::size_t n, Fate fate)
+    const auto tell = [](SwapReport& report, std::size_t n, FieldTransfer transfer)
     {
-        if (n > 0) report.fields.push_back({"contacts (" + std::to_string(n) + " points)", fate});
+        if (n > 0) report.fields.push_back({"contacts (" + std::to_string(n) + " points)", transfer});
     };
     for (std::size_t k = 0; k < reply_.swaps.size(); ++k)
     {
@@ -50,10 +50,10 @@ void Transaction::tell_contacts()
         const std::uint32_t i = s_->world_->find(report.id);
         if (i == kNoIndex) continue;
         const std::size_t converted = s_->stepper_->forces().converted(i), held = held_points(i);
-        tell(report, converted, Fate::Converted);
+        tell(report, converted, FieldTransfer::Converted);
         if (converted > 0) continue;
-        tell(report, held, Fate::Kept);
-        if (k < held_before_.size() && held_before_[k] > held) tell(report, held_before_[k] - held, Fate::Lost);
+        tell(report, held, FieldTransfer::Kept);
+        if (k < held_before_.size() && held_before_[k] > held) tell(report, held_before_[k] - held, FieldTransfer::Lost);
     }
 }
 

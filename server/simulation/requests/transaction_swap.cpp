@@ -16,7 +16,7 @@ bool carries_over(FieldKind kind) { return kind == FieldKind::Param || kind == F
 struct Carried
 {
     Value value;  ///< none: the new type's default
-    Fate fate = Fate::Fresh;
+    FieldTransfer transfer = FieldTransfer::Fresh;
 };
 
 /// The value of one field of the new type: given by the request, else the old component's live one, else the default.
@@ -24,16 +24,16 @@ Result<Carried> carry_over(const world::World& world, std::uint32_t component, c
 {
     Carried out;
     const Field* before = world.type_of(component)->schema.find_field(field.name);
-    if (before && carries_over(before->kind)) out = {world.get(component, field.name), Fate::Kept};
+    if (before && carries_over(before->kind)) out = {world.get(component, field.name), FieldTransfer::Kept};
     if (const auto* integer = std::get_if<std::int64_t>(&out.value); integer && field.type == FieldType::Real)
-        out = {static_cast<double>(*integer), Fate::Converted};
+        out = {static_cast<double>(*integer), FieldTransfer::Converted};
     const auto given = std::find_if(op.values.begin(), op.values.end(), [&](const NamedValue& v) { return v.name == field.name; });
     if (given != op.values.end())
     {
         const auto* text = std::get_if<std::string>(&given->value);
         auto parsed = text ? model::parse_value(*text, field) : Result<Value>(std::get<Value>(given->value));
         if (!parsed) return reason(field.name + ": " + parsed.error().reason);
-        out = {*parsed, Fate::Given};
+        out = {*parsed, FieldTransfer::Given};
     }
     if (type_of(out.value) != field.type)
     {
@@ -44,7 +44,7 @@ Result<Carried> carry_over(const world::World& world, std::uint32_t component, c
     // A value that is kept keeps its bits; it is checked all the same, the new type's rules may be stricter.
     Value checked = out.value;
     if (auto fits = model::check_value(checked, field); !fits) return reason(field.name + ": " + fits.error().reason);
-    if (out.fate != Fate::Kept) out.value = checked;
+    if (out.transfer != FieldTransfer::Kept) out.value = checked;
     return out;
 }
 
@@ -53,7 +53,7 @@ Result<Carried> carry_over(const world::World& world, std::uint32_t component, c
 void Transaction::fit_roles(model::ComponentSpec& spec, const Schema& schema, SwapReport& report) const
 {
     for (const model::RoleSpec& role : spec.roles)
-        if (!schema.find_role(role.name)) report.fields.push_back({role.name, Fate::Lost});
+        if (!schema.find_role(role.name)) report.fields.push_back({role.name, FieldTransfer::Lost});
     std::erase_if(spec.roles, [&](const model::RoleSpec& r) { return !schema.find_role(r.name); });
     for (const Role& role : schema.roles())
     {
@@ -84,7 +84,7 @@ Result<void> Transaction::make_missing(model::ComponentSpec& spec, const Schema&
             touched_.push_back(part.id);
         }
         spec.roles.push_back({role.name, {part.id}, false, {}});
-        report.fields.push_back({role.name, Fate::Fresh});
+        report.fields.push_back({role.name, FieldTransfer::Fresh});
     }
     return {};
 }
@@ -115,11 +115,11 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
             errors.push_back({{}, element, carried.error().reason});
             continue;
         }
-        if (carried->fate != Fate::Fresh) spec.fields.push_back({field.name, carried->value, {}});
-        report.fields.push_back({field.name, carried->fate});
+        if (carried->transfer != FieldTransfer::Fresh) spec.fields.push_back({field.name, carried->value, {}});
+        report.fields.push_back({field.name, carried->transfer});
     }
     for (const Field& field : old.schema.fields())
-        if (carries_over(field.kind) && !type.schema.find_field(field.name)) report.fields.push_back({field.name, Fate::Lost});
+        if (carries_over(field.kind) && !type.schema.find_field(field.name)) report.fields.push_back({field.name, FieldTransfer::Lost});
     for (const NamedValue& v : op.values)
         if (std::find(names.begin(), names.end(), v.name) == names.end())
             errors.push_back({{}, element, op.type + " has no parameter '" + v.name + "'" + model::did_you_mean(v.name, names)});
@@ -138,10 +138,10 @@ Result<void> Transaction::exchange(std::uint32_t component, const model::Compone
     if (auto done = world.exchange(component, spec); !done) return done;
     keep_motion(world, component, before);
     // The host keeps the motion of objects; what the request gives of it is set there.
-    for (const FieldFate& f : report.fields)
+    for (const TransferredField& f : report.fields)
     {
         const Field* field = world.type_of(component)->schema.find_field(f.field);
-        if (f.fate != Fate::Given || !field || !field->hosted) continue;
+        if (f.transfer != FieldTransfer::Given || !field || !field->hosted) continue;
         const auto given =
             std::find_if(spec.fields.begin(), spec.fields.end(), [&](const model::FieldSpec& v) { return v.name == f.field; });
         if (auto done = world.set(component, f.field, given->value); !done) return done;

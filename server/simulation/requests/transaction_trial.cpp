@@ -111,7 +111,7 @@ void Transaction::mark_touched(TrialScope& scope) const
             mark(set->id);
         else if (const auto* push = std::get_if<PushOperation>(&operation))
             mark(push->id);
-        else if (concerns_the_course(operation))
+        else if (affects_the_run(operation))
             scope.add_everything();
     }
 }
@@ -171,11 +171,11 @@ void Transaction::try_old(TrialScope& scope)
 
 Result<void> Transaction::try_new(TrialScope& scope)
 {
-    TrialReport& told = reply_.trial;
-    told.budget_ns = budget_ns();
+    TrialReport& reported = reply_.trial;
+    reported.budget_ns = budget_ns();
     Interruption deadline(s_->interruption_);
     const double spent = static_cast<double>(now_ns() - trial_begin_);
-    if (std::isfinite(told.budget_ns)) deadline.ask(as_duration(told.budget_ns - spent));
+    if (std::isfinite(reported.budget_ns)) deadline.ask(as_duration(reported.budget_ns - spent));
     s_->progress_.begin(Activity::TrialOfNew, s_->tick_, now_ns());
     std::vector<std::uint32_t> components;
     for (const SwapReport& report : reply_.swaps) components.push_back(s_->world_->find(report.id));
@@ -183,16 +183,17 @@ Result<void> Transaction::try_new(TrialScope& scope)
         Trial(*s_->world_, *s_->stepper_, next_step())
             .run(scope, components, deadline, s_->progress_, reply_.swaps.empty() ? 0 : measure_until(kMeasureNew));
     s_->progress_.end();
-    told.ns = static_cast<double>(now_ns() - trial_begin_), told.objects = scope.objects(), told.everything = scope.has_everything();
-    told.fate = with_new.given_up                      ? TrialReport::Fate::GivenUp
-                : !reply_.swaps.empty() && !old_tried_ ? TrialReport::Fate::WithoutOld
-                                                       : TrialReport::Fate::Made;
+    reported.ns = static_cast<double>(now_ns() - trial_begin_), reported.objects = scope.objects(),
+    reported.everything = scope.has_everything();
+    reported.outcome = with_new.given_up                      ? TrialReport::Outcome::GivenUp
+                       : !reply_.swaps.empty() && !old_tried_ ? TrialReport::Outcome::WithoutOld
+                                                              : TrialReport::Outcome::Made;
     write_reports(with_new);
     if (s_->interruption_ && s_->interruption_->due()) return reason("the server is to end: the trial was given up");
     if (with_new.given_up)
     {
         if (!request_->trial.must) return {};
-        return reason("its trial took longer than its budget of " + model::format_real(1e-6 * told.budget_ns) +
+        return reason("its trial took longer than its budget of " + model::format_real(1e-6 * reported.budget_ns) +
                       " ms and was given up, and without a trial it was not to be carried out");
     }
     if (!with_new.failure.empty() && (!old_tried_ || old_.failure.empty())) return reason("the first step failed: " + with_new.failure);
@@ -202,17 +203,17 @@ Result<void> Transaction::try_new(TrialScope& scope)
 
 void Transaction::write_reports(const TrialResult& with_new)
 {
-    const bool is_new = reply_.trial.fate != TrialReport::Fate::None && reply_.trial.fate != TrialReport::Fate::GivenUp;
-    TrialReport& told = reply_.trial;
-    told.with_old = old_.cost, told.with_new = is_new ? with_new.cost : Spread{};
+    const bool is_new = reply_.trial.outcome != TrialReport::Outcome::None && reply_.trial.outcome != TrialReport::Outcome::GivenUp;
+    TrialReport& reported = reply_.trial;
+    reported.with_old = old_.cost, reported.with_new = is_new ? with_new.cost : Spread{};
     for (std::size_t k = 0; k < reply_.swaps.size(); ++k)
     {
         SwapReport& report = reply_.swaps[k];
         report.energy_before = old_tried_ ? old_.before : is_new ? with_new.before : energy_before_;
         report.with_old = old_tried_ ? old_.outcome : kNotTried;
         report.with_new = is_new ? with_new.outcome : kNotTried;
-        report.with_new.cost_ns = told.with_new.is_told() ? told.with_new.median : kNaN;
-        report.with_old.cost_ns = costs_differ(told.with_old, told.with_new) ? told.with_old.median : kNaN;
+        report.with_new.cost_ns = reported.with_new.is_known() ? reported.with_new.median : kNaN;
+        report.with_old.cost_ns = costs_differ(reported.with_old, reported.with_new) ? reported.with_old.median : kNaN;
         if (old_tried_ && k < old_.errors.size()) report.with_old.error = old_.errors[k];
         if (is_new && k < with_new.errors.size()) report.with_new.error = with_new.errors[k];
     }

@@ -83,7 +83,7 @@ void Trial::set_up(Stepper& part, const TrialScope& scope) const
         std::erase_if(part.contacts().pairs(), [&](const PairState& p) { return !concerns(p); });
         std::erase_if(part.contacts().force_pairs(), [&](const ForcePair& p) { return !concerns(p); });
     }
-    part.told() = stepper_.told();
+    part.reported() = stepper_.reported();
     part.continue_after(stepper_.frame().tick, stepper_.frame().start_time, stepper_.frame().step);
 }
 

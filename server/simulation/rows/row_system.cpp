@@ -201,7 +201,7 @@ bool RowSystem::react(const StepContext& context, Wrenches& wrenches)
     for (std::size_t s = 0; s < slots.size(); ++s) equations_.wanted(s) = rows_[slots[s].row].bias;
     bool finite = equations_.solve_refined();
     if (finite && equations_.compliant()) equations_.sharpen();
-    finite = finite && (!equations_.compliant() || calm(context.dt));
+    finite = finite && (!equations_.compliant() || regularize_near_singular(context.dt));
     if (finite)
     {
         for (std::size_t s = 0; s < slots.size(); ++s) lambda_[slots[s].row] = equations_.multiplier(s);
@@ -212,7 +212,7 @@ bool RowSystem::react(const StepContext& context, Wrenches& wrenches)
 
 /// Close to a singular configuration, speeds that do not fit it ask for accelerations like v^2 / angle: a linkage that is
 /// stretched out cannot go on. Where a step cannot follow that, rows give way until it can.
-bool RowSystem::calm(double dt)
+bool RowSystem::regularize_near_singular(double dt)
 {
     const double speed = speed_norm();
     RowEquations::Norms norms = equations_.norms();

@@ -132,7 +132,7 @@ private:
     void keep_reactions();
     void load_forces(const Wrenches& wrenches);
     void add_reactions(Wrenches& wrenches) const;
-    bool calm(double dt);
+    bool regularize_near_singular(double dt);
     double speed_norm() const;
     void relax_positions(const StepContext& context, ProjectionReport& report);
     bool correct_positions(const StepContext& context, double compliance);

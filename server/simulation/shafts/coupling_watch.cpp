@@ -121,24 +121,24 @@ void CouplingWatch::emit(const char* kind, std::uint32_t component, std::string 
 }
 
 void CouplingWatch::tell(const world::World& world, const ShaftSystem& system, const CouplingReport& done, double time, EventSink& events,
-                         std::vector<std::uint8_t>& told)
+                         std::vector<std::uint8_t>& reported)
 {
     time_ = time, events_ = &events;
-    tell_conflict(world, done, told);
-    for (const Fault& fault : faults_) tell_fault(fault, world.host().shafts, done, told);
+    tell_conflict(world, done, reported);
+    for (const Fault& fault : faults_) tell_fault(fault, world.host().shafts, done, reported);
     misses_.clear();
-    for (std::size_t i = 0; i < pairs_.size(); ++i) look_at(i, world, system, told);
-    if (!misses_.empty()) tell_unsettled(world.host().shafts, done.sweeps, told);
+    for (std::size_t i = 0; i < pairs_.size(); ++i) look_at(i, world, system, reported);
+    if (!misses_.empty()) tell_unsettled(world.host().shafts, done.sweeps, reported);
 }
 
-void CouplingWatch::tell_conflict(const world::World& world, const CouplingReport& done, std::vector<std::uint8_t>& told)
+void CouplingWatch::tell_conflict(const world::World& world, const CouplingReport& done, std::vector<std::uint8_t>& reported)
 {
     const std::uint32_t second = done.conflict ? done.conflict->second : kNoIndex;
-    if (done.conflict && told[second] == 0)
+    if (done.conflict && reported[second] == 0)
         emit("coupling.conflict", second,
              "drives " + shaft_id(world, done.conflict->shaft) + " against " + world.id_of(done.conflict->first) + ", which is obeyed", {});
     for (const CouplingPair& p : pairs_)
-        if (p.one_way) told[p.component] = p.component == second ? 1 : 0;
+        if (p.one_way) reported[p.component] = p.component == second ? 1 : 0;
 }
 
 bool CouplingWatch::is_faulty(std::uint32_t part, const ShaftSystem& system) const
@@ -146,10 +146,10 @@ bool CouplingWatch::is_faulty(std::uint32_t part, const ShaftSystem& system) con
     return std::any_of(faults_.begin(), faults_.end(), [&](const Fault& f) { return system.part_of(pairs_[f.pair].driven) == part; });
 }
 
-void CouplingWatch::tell_fault(const Fault& fault, const Shafts& shafts, const CouplingReport& done, std::vector<std::uint8_t>& told)
+void CouplingWatch::tell_fault(const Fault& fault, const Shafts& shafts, const CouplingReport& done, std::vector<std::uint8_t>& reported)
 {
     const CouplingPair& p = pairs_[fault.pair];
-    if (std::exchange(told[p.component], 1)) return;
+    if (std::exchange(reported[p.component], 1)) return;
     const double left = std::fabs(shafts.speed[p.driven] - p.factor * shafts.speed[p.driver]);
     emit("constraint.contradiction", p.component,
          fault.why + "; nothing but rest is an answer: sweeps brake the loop, and " + rounded_text(left) + " rad/s of error are left now",
@@ -157,7 +157,7 @@ void CouplingWatch::tell_fault(const Fault& fault, const Shafts& shafts, const C
 }
 
 /// One pair's speeds: fine, or told of at once where nothing can be done, or noted.
-void CouplingWatch::look_at(std::size_t index, const world::World& world, const ShaftSystem& system, std::vector<std::uint8_t>& told)
+void CouplingWatch::look_at(std::size_t index, const world::World& world, const ShaftSystem& system, std::vector<std::uint8_t>& reported)
 {
     const CouplingPair& p = pairs_[index];
     if (p.one_way) return;  // conflicts are told by themselves
@@ -170,7 +170,7 @@ void CouplingWatch::look_at(std::size_t index, const world::World& world, const 
     const double miss = std::fabs(shafts.speed[p.driven] - p.factor * shafts.speed[p.driver]);
     if (!(miss > kMiss * size))
     {
-        told[p.component] = 0;
+        reported[p.component] = 0;
         return;
     }
     if (system.yields(p.driven) || system.yields(p.driver))
@@ -179,7 +179,7 @@ void CouplingWatch::look_at(std::size_t index, const world::World& world, const 
         if (!is_faulty(part, system)) misses_.push_back({part, miss / size, index});
         return;
     }
-    if (std::exchange(told[p.component], 1)) return;
+    if (std::exchange(reported[p.component], 1)) return;
     emit("constraint.contradiction", p.component,
          "cannot hold: nothing that it does moves " + shaft_id(world, p.driver) + " or " + shaft_id(world, p.driven) + ", and " +
              rounded_text(miss) + " rad/s are left; change the factor or a speed that is prescribed, or remove it",
@@ -187,7 +187,7 @@ void CouplingWatch::look_at(std::size_t index, const world::World& world, const 
 }
 
 /// One event for each train: sweeps spread what is left over many of its couplings.
-void CouplingWatch::tell_unsettled(const Shafts& shafts, int sweeps, std::vector<std::uint8_t>& told)
+void CouplingWatch::tell_unsettled(const Shafts& shafts, int sweeps, std::vector<std::uint8_t>& reported)
 {
     std::stable_sort(misses_.begin(), misses_.end(), [](const Miss& x, const Miss& y) { return x.part < y.part; });
     for (std::size_t first = 0, end = 0; first < misses_.size(); first = end)
@@ -196,7 +196,7 @@ void CouplingWatch::tell_unsettled(const Shafts& shafts, int sweeps, std::vector
         std::size_t worst = first;
         for (; end < misses_.size() && misses_[end].part == misses_[first].part; ++end)
         {
-            known = std::exchange(told[pairs_[misses_[end].pair].component], 1) != 0 || known;
+            known = std::exchange(reported[pairs_[misses_[end].pair].component], 1) != 0 || known;
             if (misses_[end].share > misses_[worst].share) worst = end;
         }
         if (known) continue;

@@ -46,7 +46,7 @@ Snapshot Simulation::capture() const
     out->contacts = image_of(stepper_->contacts());
     out->clock = {tick_, dt_, base_tick_, base_time_, paused_, steps_left_, rate_, last.tick, last.start_time, last.step};
     out->ledger = {stepper_->work(), stepper_->contact_energy(), stepper_->departed_work(), stepper_->requests_work(), kinetic_at_start_};
-    out->told = stepper_->told(), out->split = stepper_->split();
+    out->reported = stepper_->reported(), out->split = stepper_->split();
     out->watch = watch_->memory();
     out->run = run_, out->revision = revision_;
     out->state_hash = state_hash();

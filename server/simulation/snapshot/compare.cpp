@@ -148,15 +148,15 @@ void add_point(const ForceContact& c, const std::string& at, Facts& out)
                                       {"depth", c.depth},
                                       {"peak", c.peak},
                                       {"half_period", c.half_period},
-                                      {"lively", c.lively},
-                                      {"liveliest", c.liveliest},
+                                      {"lively", c.swing_speed},
+                                      {"liveliest", c.peak_swing_speed},
                                       {"normal_rate", c.rates.normal},
                                       {"tangential_rate", c.rates.tangential},
                                       {"damping_rate", c.rates.damping},
                                       {"mobility", c.rates.mobility},
                                       {"share_a", c.rates.share_a}})
         out.push_back({at + name, Weight::State, value});
-    for (const auto& [name, value] : {std::pair{"slack", c.slack}, {"told", c.told}, {"dormant", c.dormant}})
+    for (const auto& [name, value] : {std::pair{"slack", c.slack}, {"told", c.reported}, {"dormant", c.dormant}})
         out.push_back({at + name, Weight::State, value});
     out.push_back({at + "asked", Weight::State, Value(std::int64_t{c.asked})});
 }
@@ -217,9 +217,9 @@ Portrait rest_of(const SnapshotContent& s)
     ledger.push_back({"work of requests", Weight::Ledger, s.ledger.requests});
     ledger.push_back({"kinetic energy at the start", Weight::Ledger, s.ledger.kinetic_at_start});
     Facts& memory = out["memory of events"];
-    memory.push_back({"stiff contacts are told", Weight::Ledger, s.told.stiff});
+    memory.push_back({"stiff contacts are told", Weight::Ledger, s.reported.stiff});
     memory.push_back({"energy is counted", Weight::Ledger, s.watch.counting});
-    memory.push_back({"energy is told", Weight::Ledger, s.watch.told});
+    memory.push_back({"energy is told", Weight::Ledger, s.watch.reported});
     memory.push_back({"energy at the start", Weight::Ledger, s.watch.start_energy});
     memory.push_back({"largest kinetic energy", Weight::Ledger, s.watch.last_kinetic});
     memory.push_back({"steps that gained energy", Weight::Ledger, Value(s.watch.gaining_steps)});
@@ -233,8 +233,8 @@ Portrait rest_of(const SnapshotContent& s)
                     facts.push_back({"lifted", Weight::Ledger, s.ledger.contact_energy[i].lifted});
             if (i < s.watch.start_work.size()) facts.push_back({"work when counting began", Weight::Ledger, s.watch.start_work[i]});
             if (i < s.watch.start_made.size()) facts.push_back({"energy made when counting began", Weight::Ledger, s.watch.start_made[i]});
-            if (c.facet == Facet::Body && c.host_index < s.watch.way.size())
-                facts.push_back({"speed that growth is told from", Weight::Ledger, s.watch.way[c.host_index].reference});
+            if (c.facet == Facet::Body && c.host_index < s.watch.linear.size())
+                facts.push_back({"speed that growth is told from", Weight::Ledger, s.watch.linear[c.host_index].reference});
         });
     return out;
 }

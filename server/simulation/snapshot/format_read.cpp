@@ -101,10 +101,10 @@ private:
             return reason("the snapshot's clock cannot run");
         s.run = run->run, s.revision = run->revision, s.state_hash = run->state_hash, s.contacts.next_id = run->next_contact;
         s.ledger.departed = run->departed_work, s.ledger.requests = run->requests_work, s.ledger.kinetic_at_start = run->kinetic_at_start;
-        s.told.stiff = run->told_stiff;
+        s.reported.stiff = run->reported_stiff;
         for (const Number& n : *split) s.split.push_back(n.value);
         DivergenceMemory& w = s.watch;
-        w.counting = watch->counting, w.told = watch->told, w.sealed = watch->sealed, w.start_energy = watch->start_energy;
+        w.counting = watch->counting, w.reported = watch->reported, w.sealed = watch->sealed, w.start_energy = watch->start_energy;
         w.last_kinetic = watch->last_kinetic, w.start_other_work = watch->start_other_work;
         w.gaining_since = watch->gaining_since, w.gaining_steps = watch->gaining_steps;
         file_.build = run->build;
@@ -149,7 +149,7 @@ private:
         {
             const Life& life = (*lives)[i];
             directory_->components[i].quarantined = life.quarantined;
-            s.told.contradictory.push_back(life.contradictory ? 1 : 0), s.ledger.work.push_back(life.work);
+            s.reported.contradictory.push_back(life.contradictory ? 1 : 0), s.ledger.work.push_back(life.work);
             s.ledger.contact_energy.push_back({life.made, life.lifted});
             if (!watch_.knows_work) continue;
             s.watch.start_work.push_back(life.start_work), s.watch.start_made.push_back(life.start_made),
@@ -189,8 +189,9 @@ private:
             b.angular_momentum.push_back(r.angular_momentum), b.mass.push_back(r.mass), b.inverse_mass.push_back(r.inverse_mass);
             b.needle.push_back(r.needle ? 1 : 0), b.inertia_B.push_back(r.inertia), b.inverse_inertia_B.push_back(r.inverse_inertia);
             b.center_B.push_back(r.center);
-            if (watch_.knows_bodies) w.way.push_back(r.way), w.spin.push_back(r.spin), w.bodies_told.push_back(r.told ? 1 : 0);
-            if (watch_.knows_missed) w.tunnels.told.push_back(r.told_missed ? 1 : 0);
+            if (watch_.knows_bodies)
+                w.linear.push_back(r.linear), w.spin.push_back(r.spin), w.bodies_reported.push_back(r.reported ? 1 : 0);
+            if (watch_.knows_missed) w.tunnels.reported.push_back(r.reported_missed ? 1 : 0);
             w.tunnels.sinking.push_back(r.sinking);
         }
         return nobody_missing("bodies", Facet::Body);
@@ -208,7 +209,7 @@ private:
             s.motion.push_back(r.motion), s.angle.push_back(r.angle), s.speed.push_back(r.speed);
             s.inertia.push_back(r.inertia), s.inverse_inertia.push_back(r.inverse_inertia);
             s.ratio.push_back(r.ratio), s.anchor.push_back(r.anchor), s.root_anchor.push_back(r.root_anchor);
-            if (watch_.knows_shafts) w.turn.push_back(r.turn), w.shafts_told.push_back(r.told ? 1 : 0);
+            if (watch_.knows_shafts) w.turn.push_back(r.turn), w.shafts_reported.push_back(r.reported ? 1 : 0);
         }
         for (const records::Shaft& r : *shafts)
         {

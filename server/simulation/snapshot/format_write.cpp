@@ -56,8 +56,8 @@ records::Body body_record(const SnapshotContent& s, std::uint32_t component, std
     out.velocity = b.velocity[i], out.angular_velocity = b.angular_velocity[i], out.angular_momentum = b.angular_momentum[i];
     out.mass = b.mass[i], out.inverse_mass = b.inverse_mass[i], out.needle = b.needle[i] != 0;
     out.inertia = b.inertia_B[i], out.inverse_inertia = b.inverse_inertia_B[i], out.center = b.center_B[i];
-    out.way = at_or_default(s.watch.way, i), out.spin = at_or_default(s.watch.spin, i);
-    out.told = at_or_default(s.watch.bodies_told, i) != 0, out.told_missed = at_or_default(s.watch.tunnels.told, i) != 0;
+    out.linear = at_or_default(s.watch.linear, i), out.spin = at_or_default(s.watch.spin, i);
+    out.reported = at_or_default(s.watch.bodies_reported, i) != 0, out.reported_missed = at_or_default(s.watch.tunnels.reported, i) != 0;
     out.sinking = at_or_default(s.watch.tunnels.sinking, i);
     return out;
 }
@@ -69,7 +69,7 @@ records::Shaft shaft_record(const SnapshotContent& s, std::uint32_t component, s
     out.component = component, out.motion = h.motion[i], out.angle = h.angle[i], out.speed = h.speed[i];
     out.inertia = h.inertia[i], out.inverse_inertia = h.inverse_inertia[i], out.root = rows.shaft(h.root[i]);
     out.ratio = h.ratio[i], out.anchor = h.anchor[i], out.root_anchor = h.root_anchor[i];
-    out.turn = at_or_default(s.watch.turn, i), out.told = at_or_default(s.watch.shafts_told, i) != 0;
+    out.turn = at_or_default(s.watch.turn, i), out.reported = at_or_default(s.watch.shafts_reported, i) != 0;
     return out;
 }
 
@@ -83,7 +83,7 @@ void write_components(const SnapshotContent& s, const FileRows& rows, std::vecto
     {
         const std::uint32_t row = rows.component(i);
         if (row == kNoIndex) continue;
-        lives[row] = {s.world.component(i).quarantined,       at_or_default(s.told.contradictory, i) != 0,
+        lives[row] = {s.world.component(i).quarantined,       at_or_default(s.reported.contradictory, i) != 0,
                       at_or_default(s.watch.passive, i) != 0, at_or_default(s.ledger.work, i),
                       at_or_default(s.watch.start_work, i),   at_or_default(s.ledger.contact_energy, i).made,
                       at_or_default(s.watch.start_made, i),   at_or_default(s.ledger.contact_energy, i).lifted};
@@ -110,13 +110,13 @@ void write_pairs(const std::string& name, List list, const FileRows& rows, std::
 void write_run(const SnapshotContent& s, bool loaded_is_scene, std::vector<Section>& out)
 {
     std::vector<Run> run{{build_name(), s.run, s.revision, s.state_hash, s.contacts.next_id, s.ledger.departed, s.ledger.requests,
-                          s.ledger.kinetic_at_start, s.told.stiff, loaded_is_scene}};
+                          s.ledger.kinetic_at_start, s.reported.stiff, loaded_is_scene}};
     std::vector<ClockImage> clock{s.clock};
     std::vector<Number> split;
     for (const std::uint32_t n : s.split) split.push_back({n});
     const DivergenceMemory& w = s.watch;
-    std::vector<Watch> watch{{w.counting, w.told, w.sealed, w.start_energy, w.last_kinetic, w.start_other_work, w.gaining_since,
-                              w.gaining_steps, !w.way.empty(), !w.turn.empty(), !w.start_work.empty(), !w.tunnels.told.empty()}};
+    std::vector<Watch> watch{{w.counting, w.reported, w.sealed, w.start_energy, w.last_kinetic, w.start_other_work, w.gaining_since,
+                              w.gaining_steps, !w.linear.empty(), !w.turn.empty(), !w.start_work.empty(), !w.tunnels.reported.empty()}};
     out.push_back(section_of("run", run)), out.push_back(section_of("clock", clock));
     out.push_back(section_of("watch", watch)), out.push_back(section_of("split", split));
 }

@@ -121,7 +121,7 @@ Result<void> History::forget(const std::string& name)
 void History::begin(const Simulation& simulation)
 {
     if (is_rewinding_) return;
-    course_.clear(), asked_.clear();
+    checkpoints_.clear(), asked_.clear();
     bytes_ = asked_bytes_ = 0, interval_ = options_.interval;
     if (options_.interval > 0) add_point(simulation);
 }
@@ -136,7 +136,7 @@ void History::note(const Simulation& simulation, const Request& request)
 {
     if (options_.interval <= 0 || is_rewinding_) return;
     // Pause and rate are the present's: they are not asked again.
-    if (!concerns_the_course(request)) return;
+    if (!affects_the_run(request)) return;
     if (begins_a_run(request.operations.front())) return;  // begin() was told of it
     Asked asked{request, simulation.tick(), bytes_of(request)};
     asked.request.at.reset(), asked.request.revision.reset();
@@ -153,8 +153,8 @@ void History::add_point(const Simulation& simulation)
     Point point{simulation.capture(), simulation.tick(), simulation.time(), 0};
     point.bytes = bytes_of(point.snapshot);
     bytes_ += point.bytes, next_ = point.time + interval_;
-    course_.push_back(std::move(point));
-    while (bytes_ > options_.most_bytes && course_.size() > 2) thin();
+    checkpoints_.push_back(std::move(point));
+    while (bytes_ > options_.most_bytes && checkpoints_.size() > 2) thin();
     give_up_earliest();
 }
 
@@ -163,12 +163,13 @@ void History::add_point(const Simulation& simulation)
 void History::give_up_earliest()
 {
     std::size_t points = 0, requests = 0;
-    while (asked_bytes_ > options_.most_asked_bytes && points + 1 < course_.size())
+    while (asked_bytes_ > options_.most_asked_bytes && points + 1 < checkpoints_.size())
     {
-        bytes_ -= course_[points++].bytes;
-        for (; requests < asked_.size() && asked_[requests].step < course_[points].step; ++requests) asked_bytes_ -= asked_[requests].bytes;
+        bytes_ -= checkpoints_[points++].bytes;
+        for (; requests < asked_.size() && asked_[requests].step < checkpoints_[points].step; ++requests)
+            asked_bytes_ -= asked_[requests].bytes;
     }
-    course_.erase(course_.begin(), course_.begin() + static_cast<std::ptrdiff_t>(points));
+    checkpoints_.erase(checkpoints_.begin(), checkpoints_.begin() + static_cast<std::ptrdiff_t>(points));
     asked_.erase(asked_.begin(), asked_.begin() + static_cast<std::ptrdiff_t>(requests));
 }
 
@@ -177,14 +178,14 @@ void History::thin()
 {
     std::vector<Point> kept;
     bytes_ = 0;
-    for (std::size_t i = 0; i < course_.size(); i += 2)
+    for (std::size_t i = 0; i < checkpoints_.size(); i += 2)
     {
-        bytes_ += course_[i].bytes;
-        kept.push_back(std::move(course_[i]));
+        bytes_ += checkpoints_[i].bytes;
+        kept.push_back(std::move(checkpoints_[i]));
     }
-    course_ = std::move(kept);
+    checkpoints_ = std::move(kept);
     interval_ *= 2;
-    next_ = course_.back().time + interval_;
+    next_ = checkpoints_.back().time + interval_;
 }
 
 Result<void> History::rewind(Simulation& simulation, double time)
@@ -196,7 +197,7 @@ Result<void> History::rewind(Simulation& simulation, double time)
     if (!(time >= earliest() - half))
         return reason("t = " + model::format_real(time) + " s is before what is kept of this run, which begins at " +
                       model::format_real(earliest()) + " s");
-    const auto after = std::find_if(course_.begin(), course_.end(), [&](const Point& p) { return p.time > time + half; });
+    const auto after = std::find_if(checkpoints_.begin(), checkpoints_.end(), [&](const Point& p) { return p.time > time + half; });
     const Point from = *(after - 1);
     std::vector<Asked> again;
     for (const Asked& a : asked_)
@@ -209,12 +210,12 @@ Result<void> History::rewind(Simulation& simulation, double time)
     is_rewinding_ = false;
     if (!done) return done;
     const Tick step = simulation.tick();
-    std::erase_if(course_, [&](const Point& p) { return p.step > step; });
+    std::erase_if(checkpoints_, [&](const Point& p) { return p.step > step; });
     std::erase_if(asked_, [&](const Asked& a) { return a.step >= step; });
     bytes_ = asked_bytes_ = 0;
-    for (const Point& p : course_) bytes_ += p.bytes;
+    for (const Point& p : checkpoints_) bytes_ += p.bytes;
     for (const Asked& a : asked_) asked_bytes_ += a.bytes;
-    next_ = course_.back().time + interval_;
+    next_ = checkpoints_.back().time + interval_;
     return {};
 }
 

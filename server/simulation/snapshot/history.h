@@ -38,11 +38,11 @@ public:
     };
 
     void configure(const HistoryOptions& options);
-    bool can_rewind() const { return options_.interval > 0 && !course_.empty(); }
+    bool can_rewind() const { return options_.interval > 0 && !checkpoints_.empty(); }
     std::size_t bytes() const { return bytes_; }              ///< of the course, about
     std::size_t asked_bytes() const { return asked_bytes_; }  ///< of what was asked since its first point, about
     /// s: the earliest time of the present run that rewind() reaches.
-    double earliest() const { return course_.empty() ? std::numeric_limits<double>::infinity() : course_.front().time; }
+    double earliest() const { return checkpoints_.empty() ? std::numeric_limits<double>::infinity() : checkpoints_.front().time; }
 
     // Snapshots with names: they outlive runs ---------------------------------------------------------------------------
     Result<void> keep(const std::string& name, const Snapshot& snapshot);
@@ -84,7 +84,7 @@ private:
 
     HistoryOptions options_;
     double interval_ = 0;  ///< s: the present one
-    std::vector<Point> course_;
+    std::vector<Point> checkpoints_;
     std::deque<Asked> asked_;  ///< in the order of steps
     std::size_t bytes_ = 0, asked_bytes_ = 0;
     double next_ = 0;  ///< s

@@ -28,14 +28,14 @@ struct Run
     std::string build;
     std::uint64_t run = 0, revision = 0, state_hash = 0, next_contact = 1;
     double departed_work = 0, requests_work = 0, kinetic_at_start = 0;
-    bool told_stiff = false, loaded_is_scene = false;
+    bool reported_stiff = false, loaded_is_scene = false;
 };
 template <class V>
 void columns(Run& r, V visit)
 {
     visit("build", r.build), visit("run", r.run), visit("revision", r.revision), visit("state_hash", r.state_hash);
     visit("next_contact", r.next_contact), visit("departed_work", r.departed_work), visit("requests_work", r.requests_work);
-    visit("kinetic_at_start", r.kinetic_at_start), visit("told_stiff", r.told_stiff), visit("loaded_is_scene", r.loaded_is_scene);
+    visit("kinetic_at_start", r.kinetic_at_start), visit("told_stiff", r.reported_stiff), visit("loaded_is_scene", r.loaded_is_scene);
 }
 
 struct Settings
@@ -128,8 +128,8 @@ struct Body
     bool needle = false;
     Mat3 inertia, inverse_inertia;
     Vec3 center;
-    DivergenceMemory::Growth way, spin;
-    bool told = false, told_missed = false;
+    DivergenceMemory::Growth linear, spin;
+    bool reported = false, reported_missed = false;
     TunnelMemory::Sinking sinking;
 };
 template <class V>
@@ -139,9 +139,9 @@ void columns(Body& b, V visit)
     visit("velocity", b.velocity), visit("angular_velocity", b.angular_velocity), visit("angular_momentum", b.angular_momentum);
     visit("mass", b.mass), visit("inverse_mass", b.inverse_mass), visit("needle", b.needle);
     visit("inertia", b.inertia), visit("inverse_inertia", b.inverse_inertia), visit("center", b.center);
-    visit("way_reference", b.way.reference), visit("way_doublings", b.way.doublings), visit("way_age", b.way.age);
+    visit("way_reference", b.linear.reference), visit("way_doublings", b.linear.doublings), visit("way_age", b.linear.age);
     visit("spin_reference", b.spin.reference), visit("spin_doublings", b.spin.doublings), visit("spin_age", b.spin.age);
-    visit("told_diverged", b.told), visit("told_missed", b.told_missed);
+    visit("told_diverged", b.reported), visit("told_missed", b.reported_missed);
     visit("sunk_last", b.sinking.last), visit("sunk_steps", b.sinking.steps);
 }
 
@@ -153,7 +153,7 @@ struct Shaft
     std::uint32_t root = 0;  ///< component
     double ratio = 1, anchor = 0, root_anchor = 0;
     DivergenceMemory::Growth turn;
-    bool told = false;
+    bool reported = false;
 };
 template <class V>
 void columns(Shaft& s, V visit)
@@ -162,7 +162,7 @@ void columns(Shaft& s, V visit)
     visit("inertia", s.inertia), visit("inverse_inertia", s.inverse_inertia), visit("root", s.root), visit("ratio", s.ratio);
     visit("anchor", s.anchor), visit("root_anchor", s.root_anchor);
     visit("turn_reference", s.turn.reference), visit("turn_doublings", s.turn.doublings), visit("turn_age", s.turn.age);
-    visit("told_diverged", s.told);
+    visit("told_diverged", s.reported);
 }
 
 struct Quantity
@@ -208,14 +208,14 @@ void columns(ForceContact& c, V visit)
     visit("depth", c.depth), visit("peak", c.peak), visit("half_period", c.half_period);
     visit("normal_rate", c.rates.normal), visit("tangential_rate", c.rates.tangential), visit("damping_rate", c.rates.damping);
     visit("mobility", c.rates.mobility), visit("share_a", c.rates.share_a);
-    visit("lively", c.lively), visit("liveliest", c.liveliest), visit("impulse", c.impulse), visit("force", c.force);
-    visit("asked", c.asked), visit("slack", c.slack), visit("told", c.told), visit("dormant", c.dormant);
+    visit("lively", c.swing_speed), visit("liveliest", c.peak_swing_speed), visit("impulse", c.impulse), visit("force", c.force);
+    visit("asked", c.asked), visit("slack", c.slack), visit("told", c.reported), visit("dormant", c.dormant);
 }
 
 /// The watch for energy that comes from nowhere, but what it keeps by component, body and shaft.
 struct Watch
 {
-    bool counting = false, told = false, sealed = false;
+    bool counting = false, reported = false, sealed = false;
     double start_energy = 0, last_kinetic = 0, start_other_work = 0;
     Tick gaining_since = -1;
     std::int64_t gaining_steps = 0;
@@ -224,7 +224,7 @@ struct Watch
 template <class V>
 void columns(Watch& w, V visit)
 {
-    visit("counting", w.counting), visit("told", w.told), visit("sealed", w.sealed), visit("start_energy", w.start_energy);
+    visit("counting", w.counting), visit("told", w.reported), visit("sealed", w.sealed), visit("start_energy", w.start_energy);
     visit("last_kinetic", w.last_kinetic), visit("start_other_work", w.start_other_work), visit("gaining_since", w.gaining_since);
     visit("gaining_steps", w.gaining_steps), visit("knows_bodies", w.knows_bodies), visit("knows_shafts", w.knows_shafts);
     visit("knows_work", w.knows_work), visit("knows_missed", w.knows_missed);

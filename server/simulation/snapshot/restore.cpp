@@ -49,10 +49,10 @@ DivergenceMemory rearranged(const DivergenceMemory& old, const world::Renumberin
     DivergenceMemory out = old;
     out.start_work = rearranged(old.start_work, components, component), out.start_made = rearranged(old.start_made, components, component);
     out.passive = rearranged(old.passive, components, component);
-    out.way = rearranged(old.way, bodies, body), out.spin = rearranged(old.spin, bodies, body);
-    out.bodies_told = rearranged(old.bodies_told, bodies, body);
-    out.turn = rearranged(old.turn, shafts, shaft), out.shafts_told = rearranged(old.shafts_told, shafts, shaft);
-    out.tunnels.told = rearranged(old.tunnels.told, bodies, body);
+    out.linear = rearranged(old.linear, bodies, body), out.spin = rearranged(old.spin, bodies, body);
+    out.bodies_reported = rearranged(old.bodies_reported, bodies, body);
+    out.turn = rearranged(old.turn, shafts, shaft), out.shafts_reported = rearranged(old.shafts_reported, shafts, shaft);
+    out.tunnels.reported = rearranged(old.tunnels.reported, bodies, body);
     out.tunnels.sinking = rearranged(old.tunnels.sinking, bodies, body);
     return out;
 }
@@ -112,8 +112,8 @@ Result<Simulation::Live> Simulation::revive(const SnapshotContent& from) const
     stepper.contact_energy() = rearranged(from.ledger.contact_energy, components, component);
     stepper.contact_energy().resize(components);
     stepper.departed_work() = from.ledger.departed, stepper.requests_work() = from.ledger.requests;
-    stepper.told() = {from.told.stiff, rearranged(from.told.contradictory, components, component)};
-    stepper.told().contradictory.resize(components, 0);
+    stepper.reported() = {from.reported.stiff, rearranged(from.reported.contradictory, components, component)};
+    stepper.reported().contradictory.resize(components, 0);
     stepper.continue_split(from.split);
     stepper.continue_after(from.clock.last_tick, from.clock.last_start, from.clock.last_step);
     if (stepper.state_hash() == from.state_hash || !knows_all_states(from.world, *live.world)) return live;

@@ -66,7 +66,7 @@ struct SnapshotContent
     ContactsImage contacts;
     ClockImage clock;
     LedgerImage ledger;
-    Told told;
+    Reported reported;
     std::vector<std::uint32_t> split;  ///< Stepper::split(); clusters stand in the order of ids
     DivergenceMemory watch;
     std::uint64_t run = 0, revision = 0;  ///< at the time; a restored run counts on from its own

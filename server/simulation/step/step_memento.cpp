@@ -17,7 +17,7 @@ void StepMemento::save(const world::World& world, const Stepper& stepper)
     contacts_.copy(stepper.contacts());
     work_ = stepper.work(), contact_energy_ = stepper.contact_energy();
     departed_work_ = stepper.departed_work(), requests_work_ = stepper.requests_work();
-    told_ = stepper.told();
+    reported_ = stepper.reported();
     split_ = stepper.split();
     frame_ = stepper.frame();
 }
@@ -32,7 +32,7 @@ void StepMemento::restore(world::World& world, Stepper& stepper) const
     stepper.contacts() = contacts_;
     stepper.work() = work_, stepper.contact_energy() = contact_energy_;
     stepper.departed_work() = departed_work_, stepper.requests_work() = requests_work_;
-    stepper.told() = told_;
+    stepper.reported() = reported_;
     stepper.continue_split(split_);
     stepper.continue_after(frame_.tick, frame_.start_time, frame_.step);
 }

@@ -24,7 +24,7 @@ private:
     std::vector<double> work_;
     std::vector<ContactEnergy> contact_energy_;
     double departed_work_ = 0, requests_work_ = 0;
-    Told told_;
+    Reported reported_;
     std::vector<std::uint32_t> split_;
     StepFrame frame_;
 };

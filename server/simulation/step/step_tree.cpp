@@ -23,7 +23,7 @@ void Stepper::step(Tick tick, double start_time, double dt)
                    step_.world.scene().settings.seed,
                    interruption_,
                    progress_,
-                   &step_.told.contradictory};
+                   &step_.reported.contradictory};
     if (interruption_) interruption_->forget_heeded();
     for (std::size_t i = 0; i < std::size(kStepTree) && !step_.frame.give_up(); ++i)
     {

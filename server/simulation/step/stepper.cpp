@@ -47,7 +47,7 @@ void Stepper::retire(std::uint32_t component)
     departed_work_ += std::exchange(step_.work[component], 0.0);
     cost_.forget(component);
     step_.contact_energy[component] = {};
-    step_.told.contradictory[component] = 0;
+    step_.reported.contradictory[component] = 0;
 }
 
 std::uint64_t Stepper::state_hash() const { return book_.cache().state_hash(step_.world, step_.world.state_hash(0xcbf29ce484222325ull)); }
@@ -74,7 +74,7 @@ void Stepper::couple_speeds()
     StepContext context = step_.context();
     context.seed = step_.frame.seed;
     const CouplingReport done = speed_system_.solve_speeds(context, shafts, step_.work);
-    coupling_watch_.tell(step_.world, speed_system_, done, step_.frame.start_time, step_, step_.told.contradictory);
+    coupling_watch_.tell(step_.world, speed_system_, done, step_.frame.start_time, step_, step_.reported.contradictory);
 }
 
 void Stepper::advance_all() { advance_.advance_all(); }

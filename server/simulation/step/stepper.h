@@ -82,8 +82,8 @@ public:
     /// Who shares systems with whom shows in the last digits of the ledger.
     const std::vector<std::uint32_t>& split() const { return advance_.batches().split(); }
     void continue_split(const std::vector<std::uint32_t>& split) { advance_.batches().continue_split(split); }
-    Told& told() { return step_.told; }
-    const Told& told() const { return step_.told; }
+    Reported& reported() { return step_.reported; }
+    const Reported& reported() const { return step_.reported; }
 
     /// Where parameter changes of scripts go at the end of the drive phase.
     using ApplyChanges = void (*)(void* owner, std::vector<ParameterChange>& changes);

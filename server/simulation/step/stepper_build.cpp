@@ -98,7 +98,7 @@ Result<void> Stepper::rebuild()
     std::iota(step_.all_groups.begin(), step_.all_groups.end(), 0u);
     if (Errors refused = book_.rebuild(); !refused.empty()) return refused;
     const std::size_t components = step_.world.components().size();
-    step_.work.resize(components, 0.0), step_.contact_energy.resize(components), step_.told.contradictory.resize(components, 0);
+    step_.work.resize(components, 0.0), step_.contact_energy.resize(components), step_.reported.contradictory.resize(components, 0);
     const auto& detectors = book_.detectors();
     motion_.rebuild(std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.locates; }));
     hard_.rebuild();

@@ -18,7 +18,7 @@ Vec3 without_traces(const Vec3& v) { return {without_traces(v.x), without_traces
 
 }  // namespace
 
-void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
+void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed)
 {
     frame_ = frame;
     ++configuration_;
@@ -29,17 +29,17 @@ void GroupSystem::configure(const StepFrame& frame, std::span<const std::uint32_
         list->clear();
     collect_members(groups);
     own_bodies_ = active_bodies_.size(), own_shafts_ = active_shafts_.size();
-    collect_members(shadows);
+    collect_members(observed);
     std::sort(shafts_.begin(), shafts_.end(),
               [&](std::uint32_t a, std::uint32_t b) {
                   return world.rank(Ref{Facet::Shaft, a}) < world.rank(Ref{Facet::Shaft, b});
               });
     for (const std::uint32_t s : shafts_)
         if (host.shafts.root[s] == s) roots_.push_back(s);
-    has_shadows_ = !shadows.empty();
+    has_observed_ = !observed.empty();
 
     groups_.assign(groups.begin(), groups.end());
-    groups_.insert(groups_.end(), shadows.begin(), shadows.end());
+    groups_.insert(groups_.end(), observed.begin(), observed.end());
     filter_forces();
     shaft_system_.configure(world, *frame.schedule, *frame.groups, groups_, *frame.graph);
     quantity_values_ = 0;
@@ -311,7 +311,7 @@ void GroupSystem::rates_of_shafts(double weight)
     world::HostTables& host = frame_.world->host();
     shaft_system_.solve_accelerations(context_, scratch_->wrenches.shaft_torque);
     // Shadows' couplings were booked with their own group's advance.
-    if (book_.work && weight != 0 && !has_shadows_) shaft_system_.account(*book_.work, book_.sign * weight * context_.dt);
+    if (book_.work && weight != 0 && !has_observed_) shaft_system_.account(*book_.work, book_.sign * weight * context_.dt);
     const std::size_t base = 6 * bodies_.size();
     for (std::size_t i = 0; i < roots_.size(); ++i)
     {

@@ -30,9 +30,10 @@ struct StepFrame
     double step = 0;                              ///< s
     Tick tick = 0;
     std::uint64_t seed = 0;
-    const Interruption* interruption = nullptr;               ///< null: nobody can give the step up
-    Progress* progress = nullptr;                             ///< for whoever watches a long step; null: nobody does
-    std::vector<std::uint8_t>* told_contradictory = nullptr;  ///< by component: joints that an event told of; each system writes its own
+    const Interruption* interruption = nullptr;  ///< null: nobody can give the step up
+    Progress* progress = nullptr;                ///< for whoever watches a long step; null: nobody does
+    std::vector<std::uint8_t>* reported_contradictory =
+        nullptr;  ///< by component: joints that an event told of; each system writes its own
 
     /// A safe point, and a piece of work that is counted: an event looked at, a part of a contact's forces, an evaluation. True: the
     /// step is given up, leave off.
@@ -79,7 +80,7 @@ public:
 
     /// Takes the groups as members, and `shadows`: groups whose state the members' forces read, and that are advanced
     /// along for that reason only; their work is not booked. Keeps its memory from use to use.
-    void configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows = {});
+    void configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed = {});
     /// The present step's frame, after configure(): the world's structure must be the same.
     void set_frame(const StepFrame& frame) { frame_ = frame; }
     /// Null: none. Who sets some takes them away when the advance is over.
@@ -181,7 +182,7 @@ private:
     std::size_t selected_count_ = 0;
     std::vector<BlockRow> merged_;
     std::vector<std::uint32_t> groups_;
-    bool has_shadows_ = false;
+    bool has_observed_ = false;
     bool uniform_ = false;  ///< no force depends on time or state
 
     StepContext context_;

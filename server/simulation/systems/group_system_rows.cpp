@@ -75,10 +75,10 @@ std::string left_over(const ProjectionReport& report)
 void GroupSystem::announce_contradictions(const ProjectionReport& report)
 {
     if (!context_.events) return;
-    std::vector<std::uint8_t>& told = *frame_.told_contradictory;
+    std::vector<std::uint8_t>& reported = *frame_.reported_contradictory;
     for (const std::uint32_t component : report.contradictory)
     {
-        if (told[component] != 0) continue;
+        if (reported[component] != 0) continue;
         Event e;
         e.time = context_.time, e.kind = "constraint.contradiction", e.severity = Severity::Warning, e.component = component;
         std::string others;
@@ -89,8 +89,8 @@ void GroupSystem::announce_contradictions(const ProjectionReport& report)
         e.values = {report.position_error, report.speed_error};
         context_.events->emit(std::move(e));
     }
-    for (const std::uint32_t component : joints_) told[component] = 0;
-    for (const std::uint32_t component : report.contradictory) told[component] = 1;
+    for (const std::uint32_t component : joints_) reported[component] = 0;
+    for (const std::uint32_t component : report.contradictory) reported[component] = 1;
 }
 
 void GroupSystem::add_reports(RowReportTable& reports) const

@@ -7,10 +7,10 @@ namespace plab::simulation
 namespace
 {
 
-std::uint64_t hash_of(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
+std::uint64_t hash_of(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed)
 {
     std::uint64_t h = 0xcbf29ce484222325ull;
-    for (const auto list : {groups, shadows})
+    for (const auto list : {groups, observed})
     {
         for (const std::uint32_t g : list) h = (h ^ g) * 0x100000001b3ull;
         h = (h ^ 0xffffffffull) * 0x100000001b3ull;
@@ -26,20 +26,20 @@ void SystemPool::clear(const world::World& world)
     scratch_.fit(world);
 }
 
-GroupSystem& SystemPool::of(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows)
+GroupSystem& SystemPool::of(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed)
 {
-    const std::uint64_t key = hash_of(groups, shadows);
+    const std::uint64_t key = hash_of(groups, observed);
     const auto [begin, end] = entries_.equal_range(key);
     for (auto it = begin; it != end; ++it)
-        if (std::ranges::equal(it->second.groups, groups) && std::ranges::equal(it->second.shadows, shadows))
+        if (std::ranges::equal(it->second.groups, groups) && std::ranges::equal(it->second.observed, observed))
         {
             it->second.system->set_frame(frame);
             return *it->second.system;
         }
     // The caller holds at most one system at a time, and asks for it again before each advance.
     if (entries_.size() >= kMost) entries_.clear();
-    Entry fresh{{groups.begin(), groups.end()}, {shadows.begin(), shadows.end()}, std::make_unique<GroupSystem>(scratch_)};
-    fresh.system->configure(frame, groups, shadows);
+    Entry fresh{{groups.begin(), groups.end()}, {observed.begin(), observed.end()}, std::make_unique<GroupSystem>(scratch_)};
+    fresh.system->configure(frame, groups, observed);
     return *entries_.emplace(key, std::move(fresh))->second.system;
 }
 

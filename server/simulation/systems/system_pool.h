@@ -17,7 +17,7 @@ public:
     /// After any structural change: nothing that was set up holds any more.
     void clear(const world::World& world);
     /// The system of these groups and shadows (see GroupSystem::configure), ready for the present frame.
-    GroupSystem& of(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> shadows);
+    GroupSystem& of(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed);
     StageScratch& scratch() { return scratch_; }
 
 private:
@@ -26,7 +26,7 @@ private:
 
     struct Entry
     {
-        std::vector<std::uint32_t> groups, shadows;
+        std::vector<std::uint32_t> groups, observed;
         std::unique_ptr<GroupSystem> system;
     };
     std::unordered_multimap<std::uint64_t, Entry> entries_;

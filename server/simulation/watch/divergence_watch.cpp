@@ -106,16 +106,16 @@ void DivergenceWatch::recall(DivergenceMemory memory)
 void DivergenceWatch::size_for(const RunView& s)
 {
     const world::HostTables& host = s.world.host();
-    if (m_.way.size() != host.bodies.size()) m_.way.assign(host.bodies.size(), {}), m_.spin.assign(host.bodies.size(), {});
+    if (m_.linear.size() != host.bodies.size()) m_.linear.assign(host.bodies.size(), {}), m_.spin.assign(host.bodies.size(), {});
     if (m_.turn.size() != host.shafts.size()) m_.turn.assign(host.shafts.size(), {});
-    m_.bodies_told.resize(host.bodies.size()), m_.shafts_told.resize(host.shafts.size());
+    m_.bodies_reported.resize(host.bodies.size()), m_.shafts_reported.resize(host.shafts.size());
 }
 
 /// Whether this is the first word about `who`.
 bool DivergenceWatch::tell(Ref who)
 {
-    std::uint8_t& told = who.facet == Facet::Body ? m_.bodies_told[who.index] : m_.shafts_told[who.index];
-    return std::exchange(told, std::uint8_t{1}) == 0;
+    std::uint8_t& reported = who.facet == Facet::Body ? m_.bodies_reported[who.index] : m_.shafts_reported[who.index];
+    return std::exchange(reported, std::uint8_t{1}) == 0;
 }
 
 void DivergenceWatch::before_step(const RunView& s)
@@ -124,7 +124,7 @@ void DivergenceWatch::before_step(const RunView& s)
     if (m_.counting) return;
     const Stepper& stepper = s.stepper;
     const world::HostTables& host = s.world.host();
-    m_.counting = true, m_.told = false, m_.sealed = sealed(host), m_.gaining_since = -1, m_.gaining_steps = 0;
+    m_.counting = true, m_.reported = false, m_.sealed = sealed(host), m_.gaining_since = -1, m_.gaining_steps = 0;
     size_for(s);
     m_.start_work = stepper.work();
     m_.start_made.clear();
@@ -162,14 +162,14 @@ DivergenceWatch::Sources DivergenceWatch::sources(const RunView& s) const
 
 void DivergenceWatch::after_step(const RunView& s, std::vector<Event>& events)
 {
-    if (m_.way.empty() && m_.turn.empty()) return;
+    if (m_.linear.empty() && m_.turn.empty()) return;
     tunnels_.after_step(s, events);
-    look_at_growth(s, events);
-    look_at_contacts(s, events);
-    if (!m_.told) look_at_energy(s, events);
+    watch_growth(s, events);
+    watch_contacts(s, events);
+    if (!m_.reported) watch_energy(s, events);
 }
 
-void DivergenceWatch::look_at_contacts(const RunView& s, std::vector<Event>& events)
+void DivergenceWatch::watch_contacts(const RunView& s, std::vector<Event>& events)
 {
     const auto& energy = s.stepper.contact_energy();
     double scale = -1;
@@ -191,7 +191,7 @@ void DivergenceWatch::look_at_contacts(const RunView& s, std::vector<Event>& eve
     }
 }
 
-void DivergenceWatch::look_at_growth(const RunView& s, std::vector<Event>& events)
+void DivergenceWatch::watch_growth(const RunView& s, std::vector<Event>& events)
 {
     const world::HostTables& host = s.world.host();
     const double turn = kSmallTurn / s.dt;
@@ -208,7 +208,7 @@ void DivergenceWatch::look_at_growth(const RunView& s, std::vector<Event>& event
         if (c.facet == Facet::Body && host.bodies.dynamic(k))
         {
             const double gyration = trace(host.bodies.inertia_B[k]) / 2 * host.bodies.inverse_mass[k];
-            look(m_.way[k], length_squared(host.bodies.velocity[k]), gyration * turn * turn, c.ref(i));
+            look(m_.linear[k], length_squared(host.bodies.velocity[k]), gyration * turn * turn, c.ref(i));
             look(m_.spin[k], length_squared(host.bodies.angular_velocity[k]), turn * turn, c.ref(i));
         }
         if (c.facet == Facet::Shaft && host.shafts.dynamic(k))
@@ -216,14 +216,14 @@ void DivergenceWatch::look_at_growth(const RunView& s, std::vector<Event>& event
     }
 }
 
-void DivergenceWatch::look_at_energy(const RunView& s, std::vector<Event>& events)
+void DivergenceWatch::watch_energy(const RunView& s, std::vector<Event>& events)
 {
     const world::HostTables& host = s.world.host();
     const double now = kinetic(host);
     if (now <= kLook * m_.last_kinetic && m_.gaining_steps == 0) return;
     if (!std::isfinite(now))
     {
-        m_.told = true;
+        m_.reported = true;
         if (const Ref who = fastest(host); tell(who))
             events.push_back(warning(s, who, "moves faster than energies can be computed with", {now}));
         return;
@@ -238,7 +238,7 @@ void DivergenceWatch::look_at_energy(const RunView& s, std::vector<Event>& event
     }
     if (m_.gaining_steps == 0) m_.gaining_since = s.tick;
     if (++m_.gaining_steps < kPatience) return;
-    m_.told = true;
+    m_.reported = true;
     char text[160];
     std::snprintf(text, sizeof text,
                   "is the fastest where energy comes from nowhere: %.3g J since step %lld, while %.3g J were there or put in", gain,

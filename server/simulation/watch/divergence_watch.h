@@ -36,16 +36,16 @@ struct DivergenceMemory
         /// Whether the speed grows without hold; `least`: what counts as moving.
         bool runs_away(double speed_squared, double least);
     };
-    bool counting = false, told = false, sealed = false;
+    bool counting = false, reported = false, sealed = false;
     double start_energy = 0, last_kinetic = 0;  ///< J
     double start_other_work = 0;                ///< J, of requests and of components that are gone
     Tick gaining_since = -1;
     std::int64_t gaining_steps = 0;
-    std::vector<double> start_work;       ///< J, by component
-    std::vector<double> start_made;       ///< J, by component; infinite once it was told of
-    std::vector<std::uint8_t> passive;    ///< by component: gives no energy of its own
-    std::vector<Growth> way, spin, turn;  ///< by body, body, shaft
-    std::vector<std::uint8_t> bodies_told, shafts_told;
+    std::vector<double> start_work;          ///< J, by component
+    std::vector<double> start_made;          ///< J, by component; infinite once it was told of
+    std::vector<std::uint8_t> passive;       ///< by component: gives no energy of its own
+    std::vector<Growth> linear, spin, turn;  ///< by body, body, shaft
+    std::vector<std::uint8_t> bodies_reported, shafts_reported;
     TunnelMemory tunnels;
 };
 
@@ -69,9 +69,9 @@ private:
 
     bool tell(Ref who);
     void size_for(const RunView& s);
-    void look_at_growth(const RunView& s, std::vector<Event>& events);
-    void look_at_energy(const RunView& s, std::vector<Event>& events);
-    void look_at_contacts(const RunView& s, std::vector<Event>& events);
+    void watch_growth(const RunView& s, std::vector<Event>& events);
+    void watch_energy(const RunView& s, std::vector<Event>& events);
+    void watch_contacts(const RunView& s, std::vector<Event>& events);
     Sources sources(const RunView& s) const;
     double energy(const RunView& s, double kinetic) const;
 

@@ -38,9 +38,9 @@ bool crosses_ball(const Vec3& a, const Vec3& b, double radius)
 {
     const double r2 = radius * radius;
     if (length_squared(a) <= r2 || length_squared(b) <= r2) return false;
-    const Vec3 way = b - a;
-    const double t = -dot(a, way) / length_squared(way);
-    return t > 0 && t < 1 && length_squared(a + way * t) < r2;
+    const Vec3 linear = b - a;
+    const double t = -dot(a, linear) / length_squared(linear);
+    return t > 0 && t < 1 && length_squared(a + linear * t) < r2;
 }
 
 /// Slabs: the part of the way inside all three.
@@ -53,10 +53,10 @@ bool crosses_box(const Vec3& a, const Vec3& b, const Vec3& half)
     {
         a_inside = a_inside && std::fabs(from[k]) <= h[k];
         b_inside = b_inside && std::fabs(to[k]) <= h[k];
-        const double way = to[k] - from[k];
-        if (way == 0 && std::fabs(from[k]) >= h[k]) return false;
-        if (way == 0) continue;
-        const double one = (-h[k] - from[k]) / way, two = (h[k] - from[k]) / way;
+        const double linear = to[k] - from[k];
+        if (linear == 0 && std::fabs(from[k]) >= h[k]) return false;
+        if (linear == 0) continue;
+        const double one = (-h[k] - from[k]) / linear, two = (h[k] - from[k]) / linear;
         enter = std::max(enter, std::min(one, two)), leave = std::min(leave, std::max(one, two));
     }
     return !a_inside && !b_inside && enter < leave;
@@ -86,7 +86,7 @@ void TunnelWatch::look_up(const RunView& s)
                 if (r.facet == Facet::Body) crowd.bodies.push_back(r.index);
         if (crowd.bodies.size() > 1) crowds_.push_back(std::move(crowd));
     }
-    memory_.told.resize(host.bodies.size(), 0);
+    memory_.reported.resize(host.bodies.size(), 0);
     start_.resize(host.bodies.size());
     least_width_.assign(host.bodies.size(), std::numeric_limits<double>::infinity());
     for (std::size_t b = 0; b < least_width_.size(); ++b)
@@ -112,8 +112,8 @@ bool TunnelWatch::passed(const RunView& s, std::uint32_t body, std::uint32_t oth
     const Bodies& bodies = host.bodies;
     const auto straight = [&](std::uint32_t b)
     {
-        const Vec3 way = bodies.position[b] - start_[b].position;
-        return length_squared(way - bodies.velocity[b] * s.dt) <= kStraight * kStraight * length_squared(way);
+        const Vec3 linear = bodies.position[b] - start_[b].position;
+        return length_squared(linear - bodies.velocity[b] * s.dt) <= kStraight * kStraight * length_squared(linear);
     };
     if (!straight(body) || !straight(other)) return false;
     // In the other's axes about its centre of mass, at the start and at the end.
@@ -135,7 +135,7 @@ bool TunnelWatch::sweep(const RunView& s, const Crowd& crowd)
     const std::span<const double> radius = s.stepper.radius_of_body();
     const auto is_fast = [&](std::uint32_t b)
     {
-        return bodies.dynamic(b) && memory_.told[b] == 0 &&
+        return bodies.dynamic(b) && memory_.reported[b] == 0 &&
                length_squared(bodies.position[b] - start_[b].position) > least_width_[b] * least_width_[b];
     };
     if (std::none_of(crowd.bodies.begin(), crowd.bodies.end(), is_fast)) return false;
@@ -184,8 +184,8 @@ void TunnelWatch::tell(const RunView& s, const Crowd& crowd, std::vector<Event>&
     for (const Passage& p : passages_)
     {
         const std::uint32_t body = crowd.bodies[p.body];
-        if (memory_.told[body] != 0) continue;
-        memory_.told[body] = 1;
+        if (memory_.reported[body] != 0) continue;
+        memory_.reported[body] = 1;
         const Ref a{Facet::Body, body}, b{Facet::Body, crowd.bodies[p.other]};
         Event e;
         e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.missed", e.severity = Severity::Warning;
@@ -205,10 +205,10 @@ void TunnelWatch::after_step(const RunView& s, std::vector<Event>& events)
         find_passages(s, crowd);
         tell(s, crowd, events);
     }
-    if (!crowds_.empty() && s.stepper.report().deepest > shallow_) look_for_overlaps(s, events);
+    if (!crowds_.empty() && s.stepper.report().deepest > shallow_) find_overlaps(s, events);
 }
 
-void TunnelWatch::look_for_overlaps(const RunView& s, std::vector<Event>& events)
+void TunnelWatch::find_overlaps(const RunView& s, std::vector<Event>& events)
 {
     const world::World& world = s.world;
     const Bodies& bodies = world.host().bodies;

@@ -33,15 +33,15 @@ struct TunnelMemory
         Tick last = -2;  ///< step at whose end it was deep
         int steps = 0;   ///< in a row
     };
-    std::vector<std::uint8_t> told;  ///< by body; empty: nothing was told since the structure changed
-    std::vector<Sinking> sinking;    ///< by body
+    std::vector<std::uint8_t> reported;  ///< by body; empty: nothing was told since the structure changed
+    std::vector<Sinking> sinking;        ///< by body
 };
 
 class TunnelWatch
 {
 public:
     /// The structure has changed: who collides with whom is looked up anew.
-    void begin_anew() { ready_ = false, memory_.told.clear(); }
+    void begin_anew() { ready_ = false, memory_.reported.clear(); }
     const TunnelMemory& memory() const { return memory_; }
     /// Goes on as the watch that remembered this did.
     void recall(TunnelMemory memory) { ready_ = false, memory_ = std::move(memory); }
@@ -50,7 +50,7 @@ public:
     void after_step(const RunView& s, std::vector<Event>& events);
 
 private:
-    struct Place
+    struct StartPosition
     {
         Vec3 position;
         Quat orientation;
@@ -80,13 +80,13 @@ private:
     bool sweep(const RunView& s, const Crowd& crowd);
     void find_passages(const RunView& s, const Crowd& crowd);
     void tell(const RunView& s, const Crowd& crowd, std::vector<Event>& events);
-    void look_for_overlaps(const RunView& s, std::vector<Event>& events);
+    void find_overlaps(const RunView& s, std::vector<Event>& events);
     bool passed(const RunView& s, std::uint32_t body, std::uint32_t other) const;
 
     bool ready_ = false;
     std::vector<Crowd> crowds_;
-    std::vector<Place> start_;         ///< by body
-    std::vector<double> least_width_;  ///< half of it, by body, m
+    std::vector<StartPosition> start_;  ///< by body
+    std::vector<double> least_width_;   ///< half of it, by body, m
     TunnelMemory memory_;
     double shallow_ = 0;  ///< m: no overlap up to here is deep for anybody
     // Of the crowd that is looked at.

@@ -40,7 +40,7 @@ public:
     virtual double precision(double until) const { return (void)until, kExactPrecision; }
     /// Whether the moments of contact are part of it; those up to `until`.
     virtual bool knows_contacts() const { return false; }
-    virtual std::vector<Touch> contacts(double until) const { return (void)until, std::vector<Touch>(); }
+    virtual std::vector<RecordedContact> contacts(double until) const { return (void)until, std::vector<RecordedContact>(); }
 };
 
 /// What a closed form may look at: the scene before its first step.

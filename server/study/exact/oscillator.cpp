@@ -60,19 +60,19 @@ Result<Line> line_of(const SceneFacts& facts, std::uint32_t spring, std::uint32_
         if (facts.bodies().motion[world.component(other).host_index] != Motion::Static) return reason("the spring's other end moves");
     if (!participants(facts, spring, "a").empty()) return reason("the spring is held by a body; this form is about one held by the world");
     const Vec3 arm = rotate(start.orientation, vector_of(facts, spring, "point_b") - facts.bodies().center_B[row]);
-    const Vec3 way = start.position + arm - vector_of(facts, spring, "point_a");
+    const Vec3 offset = start.position + arm - vector_of(facts, spring, "point_a");
     if (world.type_of(spring)->info.name == "Constraint/SpringDamper")
     {
-        const double now = length(way), given = real_of(facts, spring, "length");
+        const double now = length(offset), given = real_of(facts, spring, "length");
         const double rest = std::isfinite(given) ? given : real_of(facts, spring, "placed_length");
         if (!(now > 0)) return reason("the spring has no length and so no direction");
-        if (length(cross(arm, way)) > 1e-12 * now * now) return reason("the spring does not pull at the body's centre of mass");
-        return Line{way / now, now - rest};
+        if (length(cross(arm, offset)) > 1e-12 * now * now) return reason("the spring does not pull at the body's centre of mass");
+        return Line{offset / now, now - rest};
     }
     const Value along = world.get(spring, "along");
     if (std::get<std::string>(along) != "slide") return reason("the spring turns a body; this form is about one that slides, or a shaft");
     const Vec3 u = vector_of(facts, spring, "travel_axis");
-    return Line{u, dot(u, way) - real_of(facts, spring, "rest")};
+    return Line{u, dot(u, offset) - real_of(facts, spring, "rest")};
 }
 
 /// A declared spring: what lies across it must not move the body, or a slider holds it.

@@ -51,9 +51,9 @@ public:
     }
     double precision(double until) const override { return precision_after(std::sqrt(law_.w2) * until); }
     bool knows_contacts() const override { return true; }
-    std::vector<Touch> contacts(double until) const override
+    std::vector<RecordedContact> contacts(double until) const override
     {
-        std::vector<Touch> out;
+        std::vector<RecordedContact> out;
         const auto& [a, b] = std::minmax(ball_, plane_);
         for (const Piece& p : pieces_)
             if (p.touches && p.begin <= until) out.push_back({"contact.impact", a, b, p.begin});

@@ -15,15 +15,16 @@ namespace
 
 constexpr std::size_t kMostLines = 12;
 
-/// Each rung with its longest step that gave a result; more lines than that nobody can read.
+/// Each algorithm with its longest step that gave a result; more lines than that nobody can read.
 std::vector<const Point*> lines_of(const StudyResult& r)
 {
     std::vector<const Point*> out;
-    for (const std::string& rung : rungs_of(r))
+    for (const std::string& algorithm : algorithms_of(r))
     {
         const Point* best = nullptr;
         for (const Point& p : r.points)
-            if (p.combination.rung == rung && p.record.ok() && p.record.energy.time.size() > 1 && (!best || p.record.dt > best->record.dt))
+            if (p.combination.algorithm == algorithm && p.record.ok() && p.record.energy.time.size() > 1 &&
+                (!best || p.record.dt > best->record.dt))
                 best = &p;
         if (best && out.size() < kMostLines) out.push_back(best);
     }
@@ -58,19 +59,19 @@ std::vector<Picture> pictures_of(const StudyResult& r)
     {
         out.push_back(
             {"work-precision",
-             "Lower left is better. A line is a rung of the ladder, its markers are step lengths; the broad grey line is the Pareto "
+             "Lower left is better. A line is a algorithm of the ladder, its markers are step lengths; the broad grey line is the Pareto "
              "front. Hollow markers lie within the reference's own uncertainty, crosses at the upper edge are runs without a result.",
              work_precision(r)});
         if (auto d = convergence(r))
             out.push_back({"convergence",
-                           "Dashed triangles show the observed order of each rung, between its two shortest steps above round-off.",
+                           "Dashed triangles show the observed order of each algorithm, between its two shortest steps above round-off.",
                            std::move(*d)});
     }
     if (auto d = energy(r))
         out.push_back(
             {"energy",
              "Kinetic and stored energy, less the start's and less the work of whatever stores none: what the methods made up (above 0) "
-             "or lost (below). Each rung at its longest step that gave a result; of lines that lie upon one another the first is the "
+             "or lost (below). Each algorithm at its longest step that gave a result; of lines that lie upon one another the first is the "
              "broadest.",
              std::move(*d)});
     if (r.reference.kind != "none")

@@ -16,17 +16,17 @@ namespace
 const Ink kMuted{Ink::Role::Muted, 0, 0, 0, 0};
 constexpr double kWidth = 860, kHeight = 520;
 
-Ink ink_of(std::size_t rung) { return Ink::series(static_cast<int>(rung)); }
-int shape_of(std::size_t rung) { return static_cast<int>(rung % Drawing::kMarkers); }
+Ink ink_of(std::size_t algorithm) { return Ink::series(static_cast<int>(algorithm)); }
+int shape_of(std::size_t algorithm) { return static_cast<int>(algorithm % Drawing::kMarkers); }
 
 /// Of a run that went wrong, the error until then is none to compare.
 double error_of(const Point& p) { return p.record.ok() ? p.error() : std::nan(""); }
 double shown(double error) { return std::isnan(error) ? error : std::max(error, kLeastError); }
 double milliseconds(const Point& p) { return 1e3 * p.cpu_per_second(); }
 
-std::size_t rung_index(const std::vector<std::string>& rungs, const Point& p)
+std::size_t algorithm_index(const std::vector<std::string>& algorithms, const Point& p)
 {
-    return static_cast<std::size_t>(std::find(rungs.begin(), rungs.end(), p.combination.rung) - rungs.begin());
+    return static_cast<std::size_t>(std::find(algorithms.begin(), algorithms.end(), p.combination.algorithm) - algorithms.begin());
 }
 
 /// The panel beside a legend of these names.
@@ -45,14 +45,14 @@ double widest(const std::vector<std::string>& names)
     return out;
 }
 
-void draw_legend(Drawing& d, const Panel& p, const std::vector<std::string>& rungs)
+void draw_legend(Drawing& d, const Panel& p, const std::vector<std::string>& algorithms)
 {
     double y = p.top + 8;
-    for (std::size_t i = 0; i < rungs.size() && y < p.bottom(); ++i, y += 20)
+    for (std::size_t i = 0; i < algorithms.size() && y < p.bottom(); ++i, y += 20)
     {
         d.line({{p.right() + 16, y}, {p.right() + 36, y}}, {ink_of(i), 1.5, i >= Ink::kSeries});
         d.marker({p.right() + 26, y}, shape_of(i), 4.5, ink_of(i), true);
-        d.words({p.right() + 42, y + 4}, rungs[i], {12, {}, Anchor::Start, false, false});
+        d.words({p.right() + 42, y + 4}, algorithms[i], {12, {}, Anchor::Start, false, false});
     }
 }
 
@@ -104,16 +104,17 @@ void draw_front(Drawing& d, const Panel& p, const StudyResult& r)
     if (steps.size() > 1) d.line(std::move(steps), {{Ink::Role::Front, 0, 0, 0, 0}, 5, false}, "Pareto front: nobody is better in both");
 }
 
-/// Points of each rung, joined in the order of their step lengths; those are named where `labels` has room.
-void draw_series(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& rungs, double (*x_of)(const Point&),
+/// Points of each algorithm, joined in the order of their step lengths; those are named where `labels` has room.
+void draw_series(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& algorithms, double (*x_of)(const Point&),
                  Labels* labels)
 {
     std::vector<std::pair<Spot, std::string>> named;
-    for (std::size_t k = 0; k < rungs.size(); ++k)
+    for (std::size_t k = 0; k < algorithms.size(); ++k)
     {
         std::vector<const Point*> points;
         for (const Point& q : r.points)
-            if (q.combination.rung == rungs[k] && std::isfinite(error_of(q)) && std::isfinite(x_of(q)) && x_of(q) > 0) points.push_back(&q);
+            if (q.combination.algorithm == algorithms[k] && std::isfinite(error_of(q)) && std::isfinite(x_of(q)) && x_of(q) > 0)
+                points.push_back(&q);
         std::stable_sort(points.begin(), points.end(), [&](const Point* a, const Point* b) { return a->record.dt > b->record.dt; });
         std::vector<Spot> line;
         for (const Point* q : points) line.push_back(p.at(x_of(*q), shown(error_of(*q))));
@@ -131,13 +132,14 @@ void draw_series(Drawing& d, const Panel& p, const StudyResult& r, const std::ve
 }
 
 /// Runs that have a cost but no error stand at the upper edge.
-void draw_failures(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& rungs, double (*x_of)(const Point&))
+void draw_failures(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& algorithms,
+                   double (*x_of)(const Point&))
 {
     for (const Point& q : r.points)
     {
         if (std::isfinite(error_of(q)) || !(x_of(q) > 0) || !std::isfinite(x_of(q))) continue;
         const Spot at{p.at(x_of(q), p.y.low).x, p.top + 8};
-        const Ink ink = ink_of(rung_index(rungs, q));
+        const Ink ink = ink_of(algorithm_index(algorithms, q));
         const std::string hint = q.combination.label() + ": " + std::string(name_of(q.record.outcome)) + "\n" + q.record.why;
         d.line({{at.x - 5, at.y - 5}, {at.x + 5, at.y + 5}}, {ink, 2, false}, hint);
         d.line({{at.x - 5, at.y + 5}, {at.x + 5, at.y - 5}}, {ink, 2, false}, hint);
@@ -146,13 +148,14 @@ void draw_failures(Drawing& d, const Panel& p, const StudyResult& r, const std::
 
 double step_of(const Point& p) { return p.record.dt; }
 
-/// Errors of a rung by step length, shortest first.
-std::vector<std::pair<double, double>> errors_by_step(const StudyResult& r, const std::string& rung)
+/// Errors of a algorithm by step length, shortest first.
+std::vector<std::pair<double, double>> errors_by_step(const StudyResult& r, const std::string& algorithm)
 {
     const double floor = 10 * std::max(kRoundOff, uncertainty_of(r));
     std::vector<std::pair<double, double>> out;
     for (const Point& q : r.points)
-        if (q.combination.rung == rung && q.error() > floor && std::isfinite(error_of(q))) out.emplace_back(q.record.dt, q.error());
+        if (q.combination.algorithm == algorithm && q.error() > floor && std::isfinite(error_of(q)))
+            out.emplace_back(q.record.dt, q.error());
     std::sort(out.begin(), out.end());
     return out;
 }
@@ -177,7 +180,7 @@ std::vector<Mark> step_marks(const StudyResult& r, const Scale& x)
     return out.size() <= kMost ? out : std::vector<Mark>();
 }
 
-/// A right triangle under the two shortest steps of a rung that are above round-off, with the slope that was seen.
+/// A right triangle under the two shortest steps of a algorithm that are above round-off, with the slope that was seen.
 void draw_slope(Drawing& d, const Panel& p, const std::vector<std::pair<double, double>>& e, Ink ink, Labels& labels)
 {
     const double slope = std::log(e[1].second / e[0].second) / std::log(e[1].first / e[0].first);
@@ -195,11 +198,11 @@ void draw_slope(Drawing& d, const Panel& p, const std::vector<std::pair<double, 
 
 }  // namespace
 
-std::vector<std::string> rungs_of(const StudyResult& r)
+std::vector<std::string> algorithms_of(const StudyResult& r)
 {
     std::vector<std::string> out;
     for (const Point& p : r.points)
-        if (std::find(out.begin(), out.end(), p.combination.rung) == out.end()) out.push_back(p.combination.rung);
+        if (std::find(out.begin(), out.end(), p.combination.algorithm) == out.end()) out.push_back(p.combination.algorithm);
     return out;
 }
 
@@ -207,7 +210,7 @@ std::vector<std::size_t> pareto_front(const StudyResult& r)
 {
     // Below round-off, or what the reference can tell, nobody is better than another.
     const double floor = std::max(kRoundOff, uncertainty_of(r));
-    const auto told = [&](const Point& p) { return std::max(p.error(), floor); };
+    const auto shown_error = [&](const Point& p) { return std::max(p.error(), floor); };
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < r.points.size(); ++i)
         if (r.points[i].record.ok() && std::isfinite(r.points[i].error()) && r.points[i].cpu_per_second() > 0) order.push_back(i);
@@ -215,11 +218,11 @@ std::vector<std::size_t> pareto_front(const StudyResult& r)
               [&](std::size_t a, std::size_t b)
               {
                   const Point &x = r.points[a], &y = r.points[b];
-                  return std::pair(x.cpu_per_second(), told(x)) < std::pair(y.cpu_per_second(), told(y));
+                  return std::pair(x.cpu_per_second(), shown_error(x)) < std::pair(y.cpu_per_second(), shown_error(y));
               });
     std::vector<std::size_t> out;
     for (const std::size_t i : order)
-        if (out.empty() || told(r.points[i]) < told(r.points[out.back()])) out.push_back(i);
+        if (out.empty() || shown_error(r.points[i]) < shown_error(r.points[out.back()])) out.push_back(i);
     return out;
 }
 
@@ -228,17 +231,17 @@ Drawing work_precision(const StudyResult& r)
     std::vector<double> costs, errors;
     for (const Point& q : r.points)
         if (q.cpu_per_second() > 0) costs.push_back(milliseconds(q)), errors.push_back(shown(error_of(q)));
-    const std::vector<std::string> rungs = rungs_of(r);
+    const std::vector<std::string> algorithms = algorithms_of(r);
     Drawing d(kWidth, kHeight, "Error against CPU time: " + r.title);
-    Panel p = panel_beside(widest(rungs), Scale::around(Scale::Kind::Log, costs), Scale::around(Scale::Kind::Log, errors));
+    Panel p = panel_beside(widest(algorithms), Scale::around(Scale::Kind::Log, costs), Scale::around(Scale::Kind::Log, errors));
     draw_title(d, "Error against CPU time", r.title);
     Labels labels;
     draw_panel(d, p, "CPU time, ms per simulated second", "largest error, whole series");
     draw_unresolved(d, p, uncertainty_of(r), labels);
     draw_front(d, p, r);
-    draw_series(d, p, r, rungs, &milliseconds, &labels);
-    draw_failures(d, p, r, rungs, &milliseconds);
-    draw_legend(d, p, rungs);
+    draw_series(d, p, r, algorithms, &milliseconds, &labels);
+    draw_failures(d, p, r, algorithms, &milliseconds);
+    draw_legend(d, p, algorithms);
     return d;
 }
 
@@ -248,9 +251,9 @@ std::optional<Drawing> convergence(const StudyResult& r)
     for (const Point& q : r.points)
         if (std::isfinite(error_of(q))) steps.push_back(q.record.dt), errors.push_back(shown(error_of(q)));
     if (steps.empty() || std::all_of(steps.begin(), steps.end(), [&](double s) { return s == steps.front(); })) return {};
-    const std::vector<std::string> rungs = rungs_of(r);
+    const std::vector<std::string> algorithms = algorithms_of(r);
     Drawing d(kWidth, kHeight, "Error against step length: " + r.title);
-    Panel p = panel_beside(widest(rungs), Scale::around(Scale::Kind::Log, steps), Scale::around(Scale::Kind::Log, errors));
+    Panel p = panel_beside(widest(algorithms), Scale::around(Scale::Kind::Log, steps), Scale::around(Scale::Kind::Log, errors));
     draw_title(d, "Error against step length", r.title);
     p.x_marks = step_marks(r, p.x);
     Labels labels;
@@ -259,17 +262,17 @@ std::optional<Drawing> convergence(const StudyResult& r)
     std::vector<std::pair<double, double>> drawn;
     for (const Point& q : r.points)
         if (std::isfinite(error_of(q))) labels.occupy(p.at(q.record.dt, shown(error_of(q))), 5);
-    for (std::size_t k = 0; k < rungs.size(); ++k)
+    for (std::size_t k = 0; k < algorithms.size(); ++k)
     {
-        const auto e = errors_by_step(r, rungs[k]);
-        // Rungs that lie upon one another share a triangle.
+        const auto e = errors_by_step(r, algorithms[k]);
+        // Algorithms that lie upon one another share a triangle.
         if (e.size() < 2 || std::any_of(drawn.begin(), drawn.end(), [&](const auto& other) { return near(other, e[0]); })) continue;
         draw_slope(d, p, e, ink_of(k), labels);
         drawn.push_back(e[0]);
     }
-    draw_series(d, p, r, rungs, &step_of, nullptr);
-    draw_failures(d, p, r, rungs, &step_of);
-    draw_legend(d, p, rungs);
+    draw_series(d, p, r, algorithms, &step_of, nullptr);
+    draw_failures(d, p, r, algorithms, &step_of);
+    draw_legend(d, p, algorithms);
     return d;
 }
 

@@ -11,14 +11,14 @@ namespace plab::study::plot
 
 using figures::Drawing;
 
-/// Error against CPU time, log-log: a marker per combination, a line per rung, the Pareto front, what the reference cannot
+/// Error against CPU time, log-log: a marker per combination, a line per algorithm, the Pareto front, what the reference cannot
 /// resolve.
 Drawing work_precision(const StudyResult& result);
 /// Error against step length, log-log, with slope triangles. None if only one step length was studied.
 std::optional<Drawing> convergence(const StudyResult& result);
 /// Energy that nobody put in, over time; the vertical axis is symlog.
 std::optional<Drawing> energy(const StudyResult& result);
-/// Digits of the worst quantity by rung and step length; with one step length, by rung and quantity.
+/// Digits of the worst quantity by algorithm and step length; with one step length, by algorithm and quantity.
 Drawing digit_map(const StudyResult& result);
 
 /// A named picture of a study, ready to be written as FILE.svg and FILE.png.
@@ -43,8 +43,8 @@ Drawing heat_map(const std::string& title, const std::vector<std::string>& rows,
 Drawing performance_profile(const std::string& title, const std::vector<std::string>& solvers,
                             const std::vector<std::vector<double>>& cost);
 
-/// Rungs in the order of their first point.
-std::vector<std::string> rungs_of(const StudyResult& result);
+/// Algorithms in the order of their first point.
+std::vector<std::string> algorithms_of(const StudyResult& result);
 /// Relative errors up to here are round-off.
 inline constexpr double kRoundOff = 1e-13;
 /// Indices of the points that nobody beats in both error and cost, by cost; errors below round-off or the reference's

@@ -96,14 +96,14 @@ std::size_t place_of(std::vector<std::string>& all, const std::string& text)
     return static_cast<std::size_t>(found - all.begin());
 }
 
-/// Rungs by step lengths: of the worst quantity.
+/// Algorithms by step lengths: of the worst quantity.
 Drawing by_step(const StudyResult& r)
 {
     std::vector<std::string> rows, columns;
-    for (const study::Point& p : r.points) place_of(rows, p.combination.rung), place_of(columns, p.combination.dt + " s");
+    for (const study::Point& p : r.points) place_of(rows, p.combination.algorithm), place_of(columns, p.combination.dt + " s");
     std::vector<std::vector<Cell>> cells(rows.size(), std::vector<Cell>(columns.size(), Cell{std::nan(""), "", "not run"}));
     for (const study::Point& p : r.points)
-        cells[place_of(rows, p.combination.rung)][place_of(columns, p.combination.dt + " s")] = cell_of(r, p, p.error(), "worst");
+        cells[place_of(rows, p.combination.algorithm)][place_of(columns, p.combination.dt + " s")] = cell_of(r, p, p.error(), "worst");
     return heat_map("Correct digits: " + r.title, rows, columns, cells);
 }
 

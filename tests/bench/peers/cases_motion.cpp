@@ -32,7 +32,7 @@ std::vector<double> measure_flight(const FreeRotation& reference, const Scene& s
     start.orientation = body.orientation, start.angular_velocity = body.angular_velocity;
     const Vec3 L0 = momentum(body, start);
     const double T0 = dot(L0, body.angular_velocity);
-    double worst_angle = 0, worst_energy = 0, worst_momentum = 0, worst_way = 0, angle = 0;
+    double worst_angle = 0, worst_energy = 0, worst_momentum = 0, worst_position = 0, angle = 0;
     for (std::size_t i = 0; i < trace.size(); ++i)
     {
         const BodyState& s = trace.at(i)[0];
@@ -42,9 +42,10 @@ std::vector<double> measure_flight(const FreeRotation& reference, const Scene& s
         worst_angle = std::fmax(worst_angle, angle);
         worst_energy = std::fmax(worst_energy, std::fabs(dot(L, s.angular_velocity) / T0 - 1));
         worst_momentum = std::fmax(worst_momentum, length(L - L0) / length(L0));
-        worst_way = std::fmax(worst_way, length(s.position - (body.position + body.velocity * t + scene.gravity * (0.5 * t * t))));
+        worst_position =
+            std::fmax(worst_position, length(s.position - (body.position + body.velocity * t + scene.gravity * (0.5 * t * t))));
     }
-    return {angle, worst_energy, worst_momentum, worst_way, worst_angle};
+    return {angle, worst_energy, worst_momentum, worst_position, worst_angle};
 }
 
 std::vector<double> measure_bounce(const Scene& scene, const Trace& trace)
@@ -67,11 +68,11 @@ std::vector<double> measure_slide(const Scene& scene, const Trace& trace)
 {
     const BodySpec& body = scene.bodies[0];
     const double speed = length(body.velocity);
-    const double way = speed * speed / (2 * scene.friction * -scene.gravity.z);
+    const double method = speed * speed / (2 * scene.friction * -scene.gravity.z);
     const BodyState& end = trace.last()[0];
     const Vec3 moved = end.position - body.position;
     const double turned = std::atan2(moved.y, moved.x) - std::atan2(body.velocity.y, body.velocity.x);
-    return {std::fabs(std::hypot(moved.x, moved.y) / way - 1), std::fabs(turned), length(end.velocity)};
+    return {std::fabs(std::hypot(moved.x, moved.y) / method - 1), std::fabs(turned), length(end.velocity)};
 }
 
 Case flight()

@@ -77,11 +77,12 @@ void add_half_spaces(const Scene& scene, std::string& out)
                "\" orientation=\"" + sides[i][1] + "\"/>\n";
 }
 
-void add_contact(const Scene& scene, const Rung& rung, std::string& out)
+void add_contact(const Scene& scene, const Algorithm& algorithm, std::string& out)
 {
     if (!scene.ground) return;
-    out += "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" " + rung.contact + "/>\n<component id=\"contact.response\" " +
-           rung.response + attribute("friction", text(scene.friction)) + attribute("restitution", text(scene.restitution)) + "/>\n";
+    out += "<component id=\"contact\" type=\"CDetection/ODE\" between=\"*\" " + algorithm.contact +
+           "/>\n<component id=\"contact.response\" " + algorithm.response + attribute("friction", text(scene.friction)) +
+           attribute("restitution", text(scene.restitution)) + "/>\n";
 }
 
 /// Two gears on their axles, without a world of bodies.
@@ -113,22 +114,22 @@ const char* type_of(JointKind kind)
 }
 
 /// Between points that are far enough apart along the axis for the distance never to pass zero.
-void add_spring(const Scene& scene, const JointSpec& j, const Rung& rung, std::string& out)
+void add_spring(const Scene& scene, const JointSpec& j, const Algorithm& algorithm, std::string& out)
 {
     constexpr double kAway = 1;  // m
     const Vec3 at_b = scene.bodies[static_cast<std::size_t>(j.child)].position;
     const Vec3 at_a = j.parent == kWorld ? at_b - j.axis * kAway : scene.bodies[static_cast<std::size_t>(j.parent)].position;
-    out += "<component id=\"spring\" " + rung.spring + pair_of(j) + attribute("anchor_a", text(j.parent == kWorld ? at_a : Vec3{})) +
+    out += "<component id=\"spring\" " + algorithm.spring + pair_of(j) + attribute("anchor_a", text(j.parent == kWorld ? at_a : Vec3{})) +
            attribute("anchor_b", text(Vec3{})) + attribute("stiffness", text(j.stiffness)) + attribute("damping", text(j.damping)) +
            attribute("length", text(length(at_b - at_a) + j.rest)) + "/>\n";
 }
 
-void add_joints(const Scene& scene, const Rung& rung, std::string& out)
+void add_joints(const Scene& scene, const Algorithm& algorithm, std::string& out)
 {
     for (std::size_t i = 0; i < scene.joints.size(); ++i)
     {
         const JointSpec& j = scene.joints[i];
-        if (j.stiffness > 0) add_spring(scene, j, rung, out);
+        if (j.stiffness > 0) add_spring(scene, j, algorithm, out);
         if (j.stiffness > 0 && j.parent != kWorld) continue;  // two free bodies: nothing pushes them off their line
         const std::string place = attribute("anchor", text(j.anchor)) + (j.kind == JointKind::Ball ? "" : attribute("axis", text(j.axis)));
         out += "<component id=\"" + id_of('j', i) + "\" type=\"" + type_of(j.kind) + "\"" + pair_of(j) + place + "/>\n";
@@ -149,21 +150,21 @@ void add_joints(const Scene& scene, const Rung& rung, std::string& out)
 
 std::string body_id(std::size_t i) { return id_of('b', i); }
 
-std::string blueprint_text(const Scene& scene, const Rung& rung, const Step& step)
+std::string blueprint_text(const Scene& scene, const Algorithm& algorithm, const Step& step)
 {
     std::string out = "<plab version=\"1\"><scene dt=\"" + step.text() + "\" solver=\"solver\"/>\n";
-    out += "<component id=\"solver\" " + rung.solver + "/>\n" + rung.extra;
+    out += "<component id=\"solver\" " + algorithm.solver + "/>\n" + algorithm.extra;
     if (length(scene.gravity) > 0)
         out += "<component id=\"gravity\" type=\"Field/Gravity\" between=\"*\"" + attribute("acceleration", text(scene.gravity)) + "/>\n";
-    if (!scene.gears.empty() && rung.gears == Rung::Gears::Shafts)
+    if (!scene.gears.empty() && algorithm.gears == Algorithm::Gears::Shafts)
         add_shafts(scene, out);
     else
     {
         add_bodies(scene, out);
-        add_joints(scene, rung, out);
+        add_joints(scene, algorithm, out);
     }
     add_half_spaces(scene, out);
-    add_contact(scene, rung, out);
+    add_contact(scene, algorithm, out);
     return out + "</plab>\n";
 }
 

@@ -9,7 +9,7 @@ namespace plab::peers
 {
 
 /// One choice of algorithms: fragments that stand in the blueprint.
-struct Rung
+struct Algorithm
 {
     std::string name;      ///< as in the results
     std::string solver;    ///< attributes of the component "solver": type="Solver/..." and its parameters
@@ -26,6 +26,6 @@ struct Rung
 
 /// Body i of the scene is component "b<i>" (five digits, so that the order of ids is the order of bodies).
 std::string body_id(std::size_t i);
-std::string blueprint_text(const Scene& scene, const Rung& rung, const Step& step);
+std::string blueprint_text(const Scene& scene, const Algorithm& algorithm, const Step& step);
 
 }  // namespace plab::peers

@@ -121,19 +121,19 @@ std::string overview_line(const CaseResult& result, std::size_t metric)
 void tell_failures(const CaseResult& result, std::string& out)
 {
     for (const std::string& note : result.notes) out += "- " + note + "\n";
-    std::vector<std::pair<std::string, std::string>> told;  // line, steps
+    std::vector<std::pair<std::string, std::string>> reported;  // line, steps
     for (const Point& p : result.points)
     {
         if (p.outcome == Outcome::Done) continue;
         const std::string line = "- " + p.run.engine + " " + p.run.settings + ": " + name_of(p.outcome) + ", " + p.why;
         const std::string step = p.run.control.empty() ? p.run.step.text() : p.run.control;
-        const auto place = std::find_if(told.begin(), told.end(), [&line](const auto& t) { return t.first == line; });
-        if (place == told.end())
-            told.emplace_back(line, step);
+        const auto place = std::find_if(reported.begin(), reported.end(), [&line](const auto& t) { return t.first == line; });
+        if (place == reported.end())
+            reported.emplace_back(line, step);
         else
             place->second += ", " + step;
     }
-    for (const auto& [line, steps] : told) out += line + " (" + steps + ")\n";
+    for (const auto& [line, steps] : reported) out += line + " (" + steps + ")\n";
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ void answer(TestBus& bus, const publish::RequestText& request, Tick step)
     publish::Answer a;
     a.client = request.client, a.number = request.number, a.reply.done = true, a.reply.step = step, a.reply.revision = 4;
     simulation::SwapReport swap;
-    swap.id = "gear", swap.from = "G/A", swap.to = "G/B", swap.fields = {{"x", simulation::Fate::Kept}, {"y", simulation::Fate::Lost}};
+    swap.id = "gear", swap.from = "G/A", swap.to = "G/B",
+    swap.fields = {{"x", simulation::FieldTransfer::Kept}, {"y", simulation::FieldTransfer::Lost}};
     swap.with_new.momentum = {1, 2, 3};
     a.reply.swaps = {swap};
     bus->answer(std::move(a));
@@ -118,7 +119,7 @@ TEST_CASE("a request arrives as it was sent, and its reply as it was given")
     REQUIRE(r.swaps.size() == 1);
     CHECK(r.swaps[0].to == "G/B");
     REQUIRE(r.swaps[0].fields.size() == 2);
-    CHECK(r.swaps[0].fields[1].fate == "lost");
+    CHECK(r.swaps[0].fields[1].transfer == "lost");
     CHECK(r.swaps[0].with_new.momentum[2] == 3);
 }
 

@@ -20,11 +20,11 @@ TEST_CASE("servers lists those of the domain, and it is an error if there are no
     CHECK(!has(table.out, "note"));
     CHECK(both.json()["servers"][1]["recording"].is_null());
     two.fill_disk();
-    const auto told = [&]
+    const auto reported = [&]
     { return has(plabctl("servers").out, "recording stands still: no space left on device; 3 messages not recorded"); };
-    bool is_told = told();
-    for (int i = 0; i < 10 && !is_told; ++i) is_told = told();
-    CHECK(is_told);
+    bool is_reported = reported();
+    for (int i = 0; i < 10 && !is_reported; ++i) is_reported = reported();
+    CHECK(is_reported);
     CHECK(plabctl("servers --json").json()["servers"][1]["recording"]["dropped"] == 3);
 }
 

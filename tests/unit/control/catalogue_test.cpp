@@ -12,14 +12,14 @@ using namespace plab::test;
 TEST_CASE("a catalogue is complete when it says so, and follows the server")
 {
     auto server = std::make_unique<FakeServer>(test_domain(), "lab");
-    link::Options options;
+    link::SessionOptions options;
     options.server = "lab", options.domain.id = test_domain();
     auto session = link::Session::find(options, link::Seconds(5));
     REQUIRE(session);
     auto catalogue = link::Catalogue::open(*session);
     REQUIRE(catalogue);
     REQUIRE(catalogue->fetch(link::Seconds(5)));
-    const link::Snapshot& now = catalogue->now();
+    const link::CatalogueContents& now = catalogue->now();
     CHECK(now.objects.size() == 2);
     CHECK(now.interactions.size() == 2);
     CHECK(now.types.size() == 6);
@@ -45,7 +45,7 @@ TEST_CASE("a catalogue is complete when it says so, and follows the server")
 
 TEST_CASE("a catalogue without a server gives up and says what is missing")
 {
-    link::Options options;
+    link::SessionOptions options;
     options.server = "nobody", options.domain.id = test_domain();
     auto session = link::Session::join(options);
     REQUIRE(session);

@@ -267,12 +267,12 @@ void FakeServer::reply(const plab_v2_Request& request, const std::vector<std::st
 {
     std::vector<char*> texts;
     for (const std::string& why : reasons) texts.push_back(text(why));
-    std::vector<plab_v2_FieldFate> fates{
+    std::vector<plab_v2_FieldFate> transfers{
         {text("restitution"), text("kept")}, {text("friction"), text("lost")}, {text("softness"), text("fresh")}};
     plab_v2_SwapReport swap{};
     const plab_v2_Operation& first = request.operations._buffer[0];
     swap.component_id = first.target, swap.from_type = text("Response/Impulse"), swap.to_type = first.argument;
-    swap.fields = sequence<dds_sequence_plab_v2_FieldFate>(fates);
+    swap.fields = sequence<dds_sequence_plab_v2_FieldFate>(transfers);
     swap.energy_before = 5.125, swap.with_old = {5.25, {1, 0, 0}, 0.001, 8600}, swap.with_new = {5.5, {1, 0, 0.5}, 0.002, 17100};
     const bool is_late = request.at >= 0 && request.at < step_;
     plab_v2_Reply r{};

@@ -66,11 +66,11 @@ inline std::vector<Vec3> box_corners(const Vec3& h)
 /// The host's side of detection. `rank` gives each body its place in the order of ids; empty: by index.
 struct Sink final : ContactSink
 {
-    std::vector<StandingPair> pairs;
+    std::vector<PersistentPair> pairs;
     std::vector<Contact> contacts;
     std::vector<std::uint32_t> rank;
 
-    std::span<const StandingPair> standing() const override { return pairs; }
+    std::span<const PersistentPair> persistent() const override { return pairs; }
     void add(const Contact& contact) override { contacts.push_back(contact); }
     bool precedes(Ref a, Ref b) const override { return rank.empty() ? a.index < b.index : rank[a.index] < rank[b.index]; }
 };
@@ -109,7 +109,8 @@ struct Detection : OneRow<detection::OdeRows>
     }
 };
 
-inline Contact touch(std::uint32_t a, std::uint32_t b, const Vec3& point, const Vec3& normal, double friction = 0, double restitution = 0)
+inline Contact contact_point(std::uint32_t a, std::uint32_t b, const Vec3& point, const Vec3& normal, double friction = 0,
+                             double restitution = 0)
 {
     Contact c;
     c.a = body(a), c.b = body(b), c.point = point, c.normal = normal;

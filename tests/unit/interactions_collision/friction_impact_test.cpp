@@ -42,7 +42,7 @@ Mat3 rod(double angle)
     add_body(b, 0, {}, {});
     const double I = 1.0 / 3;
     add_body(b, 1, {I, I, 1e-4}, {std::sin(angle), 0, std::cos(angle)}, {}, {std::cos(angle / 2), 0, std::sin(angle / 2), 0});
-    return response::ContactPoint(touch(0, 1, {}, {0, 0, 1}), b).K();
+    return response::ContactPoint(contact_point(0, 1, {}, {0, 0, 1}), b).K();
 }
 
 /// A symmetric positive matrix with strong coupling of all three directions.

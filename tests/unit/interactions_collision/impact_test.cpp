@@ -22,7 +22,7 @@ Spun oblique(double tangential, double azimuth)
     add_body(b, 0, {}, {});
     const Vec3 t{std::cos(azimuth), std::sin(azimuth), 0};
     add_sphere(b, 1, 0.1, {0, 0, 0.1}, t * tangential + Vec3{0, 0, -4});
-    std::vector<Contact> c{touch(0, 1, {}, {0, 0, 1}, 0.3, 0.8)};
+    std::vector<Contact> c{contact_point(0, 1, {}, {0, 0, 1}, 0.3, 0.8)};
     respond(b, c);
     CHECK(b.velocity[1].z == near(3.2, 1e-14));
     CHECK(std::fabs(dot(b.velocity[1], cross(t, {0, 0, 1}))) < 1e-14);
@@ -40,7 +40,7 @@ TEST_CASE("C1: head-on spheres keep 14 digits at mass ratios up to 1e9")
                 Bodies b;
                 add_sphere(b, ma, 1, {-1, 0, 0}, {1, 0, 0});
                 add_sphere(b, mb, 1, {1, 0, 0});
-                std::vector<Contact> c{touch(0, 1, {}, {1, 0, 0}, 0, e)};
+                std::vector<Contact> c{contact_point(0, 1, {}, {1, 0, 0}, 0, e)};
                 const Impact impact = respond(b, c);
                 const double M = ma + mb;
                 const double want = (ma - mb * e) / M;
@@ -88,7 +88,7 @@ TEST_CASE("C3: the end of a rod hits an edge")
     add_body(b, 0, {}, {});
     const double I = 1.0 / 12;
     add_body(b, 1, {1e-3, I, I}, {-0.5, 0, 0}, {0, 0, -1});
-    std::vector<Contact> c{touch(0, 1, {}, {0, 0, 1}, 0, 0.5)};
+    std::vector<Contact> c{contact_point(0, 1, {}, {0, 0, 1}, 0, 0.5)};
     respond(b, c);
     CHECK(c[0].impulse.z == near(0.375, 1e-14));
     CHECK(b.velocity[1].z == near(-0.625, 1e-14));
@@ -112,7 +112,7 @@ TEST_CASE("random impacts never gain energy, keep momentum and part at the right
             set_spin(b, n, random_vector(seed, 5));
         }
         const Vec3 n = normalized(random_vector(seed, 1));
-        std::vector<Contact> c{touch(0, 1, random_vector(seed, 1), n, uniform(seed, 0, 2), uniform(seed, 0, 1))};
+        std::vector<Contact> c{contact_point(0, 1, random_vector(seed, 1), n, uniform(seed, 0, 2), uniform(seed, 0, 1))};
         const auto momentum = [&] { return b.velocity[0] * b.mass[0] + b.velocity[1] * b.mass[1]; };
         const auto spin = [&]
         {
@@ -144,7 +144,7 @@ TEST_CASE("a bounce too low to see does not happen")
     Bodies b;
     add_body(b, 0, {}, {});
     add_sphere(b, 1, 0.1, {0, 0, 0.1}, {0, 0, -4e-7});
-    std::vector<Contact> c{touch(0, 1, {}, {0, 0, 1}, 0, 0.9)};
+    std::vector<Contact> c{contact_point(0, 1, {}, {0, 0, 1}, 0, 0.9)};
     c[0].normal_acceleration = -9.81;
     respond(b, c);
     CHECK(c[0].resting);
@@ -160,7 +160,7 @@ TEST_CASE("without a force that presses, a plastic impact leaves the bodies in c
     Bodies b;
     add_sphere(b, 1, 1, {-1, 0, 0}, {1, 0, 0});
     add_sphere(b, 1, 1, {1, 0, 0});
-    std::vector<Contact> c{touch(0, 1, {}, {1, 0, 0}, 0, 0)};
+    std::vector<Contact> c{contact_point(0, 1, {}, {1, 0, 0}, 0, 0)};
     respond(b, c);
     CHECK(c[0].resting);
     CHECK(b.velocity[0].x == 0.5);
@@ -172,7 +172,7 @@ TEST_CASE("Newton's cradle: with e = 1 one ball in, one ball out")
     Bodies b;
     std::vector<Contact> c;
     for (std::uint32_t i = 0; i < 5; ++i) add_sphere(b, 1, 0.5, {i * 1.0, 0, 0}, {i == 0 ? 1.0 : 0.0, 0, 0});
-    for (std::uint32_t i = 0; i < 4; ++i) c.push_back(touch(i, i + 1, {i + 0.5, 0, 0}, {1, 0, 0}, 0, 1)), c.back().id = 9 - i;
+    for (std::uint32_t i = 0; i < 4; ++i) c.push_back(contact_point(i, i + 1, {i + 0.5, 0, 0}, {1, 0, 0}, 0, 1)), c.back().id = 9 - i;
     respond(b, c);
     for (std::uint32_t i = 0; i < 4; ++i) CHECK(b.velocity[i].x == 0);
     CHECK(b.velocity[4].x == 1);
@@ -186,7 +186,7 @@ TEST_CASE("of several impacts at one time the fastest comes first, whatever the 
         add_sphere(b, 1, 1, {-2, 0, 0}, {3, 0, 0});
         add_sphere(b, 1, 1, {0, 0, 0});
         add_sphere(b, 1, 1, {2, 0, 0}, {-1, 0, 0});
-        std::vector<Contact> c{touch(0, 1, {-1, 0, 0}, {1, 0, 0}, 0, 0.5), touch(1, 2, {1, 0, 0}, {1, 0, 0}, 0, 0.5)};
+        std::vector<Contact> c{contact_point(0, 1, {-1, 0, 0}, {1, 0, 0}, 0, 0.5), contact_point(1, 2, {1, 0, 0}, {1, 0, 0}, 0, 0.5)};
         c[0].id = 5, c[1].id = swapped ? 3 : 7;
         if (swapped) std::swap(c[0], c[1]);
         CHECK(respond(b, c).iterations == 3);  // left, right, left again
@@ -203,7 +203,7 @@ TEST_CASE("a box that lands flat bounces flat, at Newton's speed and with less e
     add_body(b, 2, {0.3, 0.4, 0.5}, {0, 0, 0.5}, {1, 0, -2});
     std::vector<Contact> c;
     for (const Vec3& p : box_corners({0.5, 0.5, 0.5}))
-        if (p.z < 0) c.push_back(touch(0, 1, {p.x, p.y, 0}, {0, 0, 1}, 0.1, 0.5)), c.back().id = c.size();
+        if (p.z < 0) c.push_back(contact_point(0, 1, {p.x, p.y, 0}, {0, 0, 1}, 0.1, 0.5)), c.back().id = c.size();
     const double before = total_energy(b);
     const Impact impact = respond(b, c);
     CHECK(impact.converged);

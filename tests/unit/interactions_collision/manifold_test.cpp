@@ -23,18 +23,18 @@ const Collider& plane()
     static const Collider instance = solid(GeometryKind::Plane, {});
     return instance;
 }
-std::vector<Touch> touches(const Collider& a, const Pose& X, const Collider& b, const Pose& Y, double margin = 0)
+std::vector<ContactPoint> contact_points(const Collider& a, const Pose& X, const Collider& b, const Pose& Y, double margin = 0)
 {
-    Touches out(margin);
+    ContactPoints out(margin);
     collide(a, X, b, Y, out);
-    std::vector<Touch> sorted(out.all().begin(), out.all().end());
-    std::sort(sorted.begin(), sorted.end(), [](const Touch& s, const Touch& t) { return s.feature < t.feature; });
+    std::vector<ContactPoint> sorted(out.all().begin(), out.all().end());
+    std::sort(sorted.begin(), sorted.end(), [](const ContactPoint& s, const ContactPoint& t) { return s.feature < t.feature; });
     return sorted;
 }
-std::set<std::uint32_t> features(const std::vector<Touch>& t)
+std::set<std::uint32_t> features(const std::vector<ContactPoint>& t)
 {
     std::set<std::uint32_t> out;
-    for (const Touch& k : t) out.insert(k.feature);
+    for (const ContactPoint& k : t) out.insert(k.feature);
     return out;
 }
 Quat about(const Vec3& axis, double angle)
@@ -50,9 +50,9 @@ TEST_CASE("stacked boxes: four points, their corners, to the last bit, with a ga
     const Collider cube = solid(GeometryKind::Box, {0.5, 0.5, 0.5});
     for (const double depth : {1e-3, 1e-9, 1e-15, -1e-9, -1e-4})
     {
-        const auto t = touches(cube, {}, cube, {{0, 0, 1 - depth}, {}}, 1e-3);
+        const auto t = contact_points(cube, {}, cube, {{0, 0, 1 - depth}, {}}, 1e-3);
         REQUIRE(t.size() == 4);
-        for (const Touch& k : t)
+        for (const ContactPoint& k : t)
         {
             CHECK(k.normal == Vec3{0, 0, 1});
             CHECK(std::fabs(k.depth - depth) < 3e-16);
@@ -61,8 +61,8 @@ TEST_CASE("stacked boxes: four points, their corners, to the last bit, with a ga
             CHECK(std::fabs(k.point.z - 0.5) < 1e-3);
         }
     }
-    CHECK(touches(cube, {}, cube, {{0, 0, 1 + 1e-9}, {}}).empty());
-    CHECK(touches(cube, {}, cube, {{0, 0, 1 + 2e-3}, {}}, 1e-3).empty());
+    CHECK(contact_points(cube, {}, cube, {{0, 0, 1 + 1e-9}, {}}).empty());
+    CHECK(contact_points(cube, {}, cube, {{0, 0, 1 + 2e-3}, {}}, 1e-3).empty());
 }
 
 TEST_CASE("an overhanging block ends exactly at the edge below it")
@@ -70,10 +70,10 @@ TEST_CASE("an overhanging block ends exactly at the edge below it")
     const Collider block = solid(GeometryKind::Box, {0.5, 0.25, 0.05});
     for (const double overhang : {0.1, 0.5 - 1e-6, 0.5 + 1e-6, 0.9})
     {
-        const auto t = touches(block, {}, block, {{overhang, 0, 0.1 - 1e-9}, {}});
+        const auto t = contact_points(block, {}, block, {{overhang, 0, 0.1 - 1e-9}, {}});
         REQUIRE(t.size() == 4);
         double from = 1, to = -1;
-        for (const Touch& k : t) from = std::min(from, k.point.x), to = std::max(to, k.point.x);
+        for (const ContactPoint& k : t) from = std::min(from, k.point.x), to = std::max(to, k.point.x);
         CHECK(from == doctest::Approx(overhang - 0.5).epsilon(1e-15).scale(1));
         CHECK(to == doctest::Approx(0.5).epsilon(1e-15).scale(1));
     }
@@ -82,14 +82,14 @@ TEST_CASE("an overhanging block ends exactly at the edge below it")
 TEST_CASE("features stay while boxes slide, turn and rock a little")
 {
     const Collider slab = solid(GeometryKind::Box, {2, 2, 0.1}), cube = solid(GeometryKind::Box, {0.3, 0.3, 0.3});
-    const auto first = features(touches(slab, {}, cube, {{0, 0, 0.4}, {}}, 1e-3));
+    const auto first = features(contact_points(slab, {}, cube, {{0, 0, 0.4}, {}}, 1e-3));
     CHECK(first.size() == 4);
     std::uint64_t seed = 5;
     for (int i = 0; i < 300; ++i)
     {
         const Pose X{{uniform(seed, -1, 1), uniform(seed, -1, 1), 0.4 + uniform(seed, -1e-4, 1e-4)},
                      about({0, 0, 1}, uniform(seed, -3, 3)) * about({1, uniform(seed, -1, 1), 0}, uniform(seed, -1e-4, 1e-4))};
-        CHECK(features(touches(slab, {}, cube, X, 1e-3)) == first);
+        CHECK(features(contact_points(slab, {}, cube, X, 1e-3)) == first);
     }
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("edges that cross: one point, square to both; nothing prefers a face")
     const double height = 0.2 * std::sqrt(2.0);
     for (const double depth : {1e-3, 1e-8, -1e-8})
     {
-        const auto t = touches(beam, {{}, on_edge}, beam, {{0.1, 0.05, height - depth}, across}, 1e-6);
+        const auto t = contact_points(beam, {{}, on_edge}, beam, {{0.1, 0.05, height - depth}, across}, 1e-6);
         REQUIRE(t.size() == 1);
         CHECK(length(t[0].normal - Vec3{0, 0, 1}) < 1e-14);
         CHECK(std::fabs(t[0].depth - depth) < 1e-15);
@@ -119,7 +119,7 @@ TEST_CASE("(b, a) is the mirror of (a, b) to the last bit, features changed over
         const Collider &a = solids[static_cast<std::size_t>(i) % 4], &b = solids[static_cast<std::size_t>(i / 4) % 4];
         const Quat q = random_rotation(seed);
         const Pose X{random_vector(seed, 0.1), q}, Y{random_vector(seed, 0.6), i % 3 ? random_rotation(seed) : q};
-        Touches one(0.01), other(0.01), again(0.01);
+        ContactPoints one(0.01), other(0.01), again(0.01);
         collide(a, X, b, Y, one), collide(b, Y, a, X, other), collide(a, X, b, Y, again);
         REQUIRE(one.all().size() == other.all().size());
         for (std::size_t k = 0; k < one.all().size(); ++k)
@@ -144,10 +144,10 @@ TEST_CASE("the deepest point is as deep as the solids are, and no point is deepe
         const Collider &a = solids[static_cast<std::size_t>(i) % 4], &b = solids[static_cast<std::size_t>(i / 4) % 4];
         const Pose X{{}, random_rotation(seed)}, Y{random_vector(seed, 0.7), random_rotation(seed)};
         const Separation s = separation(a, X, b, Y);
-        const auto t = touches(a, X, b, Y);
+        const auto t = contact_points(a, X, b, Y);
         CHECK(t.empty() == (s.gap >= 0));
         double deepest = -1;
-        for (const Touch& k : t) deepest = std::max(deepest, k.depth);
+        for (const ContactPoint& k : t) deepest = std::max(deepest, k.depth);
         CAPTURE(i);
         if (!t.empty()) CHECK(std::fabs(deepest + s.gap) < 2e-3 * std::fabs(s.gap) + 1e-12);
     }
@@ -160,13 +160,13 @@ TEST_CASE("a capsule lies on two points, and stands on one")
     {
         const Collider& ground = on_plane ? plane() : slab;
         const double level = on_plane ? 0 : 0.1;
-        const auto lying = touches(pill, {{0, 0, level + 0.1 - 1e-9}, kLying}, ground, {});
+        const auto lying = contact_points(pill, {{0, 0, level + 0.1 - 1e-9}, kLying}, ground, {});
         REQUIRE(lying.size() == 2);
         CHECK(std::fabs(lying[0].point.x - lying[1].point.x) == doctest::Approx(0.8).epsilon(1e-12));
-        for (const Touch& k : lying) CHECK(std::fabs(k.depth - 1e-9) < 1e-15);
-        CHECK(touches(pill, {{0, 0, level + 0.5 - 1e-9}, {}}, ground, {}).size() == 1);
+        for (const ContactPoint& k : lying) CHECK(std::fabs(k.depth - 1e-9) < 1e-15);
+        CHECK(contact_points(pill, {{0, 0, level + 0.5 - 1e-9}, {}}, ground, {}).size() == 1);
     }
-    const auto side = touches(pill, {}, pill, {{0.2 - 1e-9, 0, 0.3}, {}});
+    const auto side = contact_points(pill, {}, pill, {{0.2 - 1e-9, 0, 0.3}, {}});
     REQUIRE(side.size() == 2);
     CHECK(std::fabs(side[0].point.z - side[1].point.z) == doctest::Approx(0.5).epsilon(1e-12));
 }
@@ -178,13 +178,13 @@ TEST_CASE("a cylinder stands on four points, leans on the exact edge, rolls on t
     {
         const Collider& ground = on_plane ? plane() : slab;
         const double level = on_plane ? 0 : 0.1;
-        CHECK(touches(can, {{0.1, 0, level + 0.3 - 1e-9}, {}}, ground, {}).size() == 4);
-        const auto rolling = touches(can, {{0, 0, level + 0.2 - 1e-9}, about({0, 0, 1}, 0.3) * kLying}, ground, {});
+        CHECK(contact_points(can, {{0.1, 0, level + 0.3 - 1e-9}, {}}, ground, {}).size() == 4);
+        const auto rolling = contact_points(can, {{0, 0, level + 0.2 - 1e-9}, about({0, 0, 1}, 0.3) * kLying}, ground, {});
         REQUIRE(rolling.size() == 2);
         CHECK(length(rolling[0].point - rolling[1].point) == doctest::Approx(0.6).epsilon(1e-12));
         // Leaning by a in a direction between the four: the lowest point of the rim carries it.
         const double a = 0.2, low = 0.3 * std::cos(a) + 0.2 * std::sin(a);
-        const auto leaning = touches(can, {{0, 0, level + low - 1e-6}, about({1, 0.4, 0}, a)}, ground, {});
+        const auto leaning = contact_points(can, {{0, 0, level + low - 1e-6}, about({1, 0.4, 0}, a)}, ground, {});
         REQUIRE(leaning.size() == 1);
         CHECK(std::fabs(leaning[0].depth - 1e-6) < 1e-12);
     }
@@ -193,10 +193,10 @@ TEST_CASE("a cylinder stands on four points, leans on the exact edge, rolls on t
 TEST_CASE("a can on the edge of a table: its points are inside both, on the rim, the edge and where they cross")
 {
     const Collider can = solid(GeometryKind::Cylinder, {0.2, 0, 0.3}), slab = solid(GeometryKind::Box, {1, 1, 0.1});
-    const auto t = touches(can, {{1.1, 0, 0.4 - 1e-9}, {}}, slab, {});
+    const auto t = contact_points(can, {{1.1, 0, 0.4 - 1e-9}, {}}, slab, {});
     REQUIRE(t.size() >= 3);
     double furthest = 0, widest = 0;
-    for (const Touch& k : t)
+    for (const ContactPoint& k : t)
     {
         CHECK(k.point.x < 1 + 1e-8);
         CHECK(std::hypot(k.point.x - 1.1, k.point.y) < 0.2 + 1e-8);

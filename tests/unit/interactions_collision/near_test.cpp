@@ -14,7 +14,7 @@ struct NearSink final : ContactSink
     std::vector<double> how_far;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
 
-    std::span<const StandingPair> standing() const override { return {}; }
+    std::span<const PersistentPair> persistent() const override { return {}; }
     std::span<const double> reach() const override { return how_far; }
     void near(Ref a, Ref b) override { pairs.emplace_back(a.index, b.index); }
     void add(const Contact&) override { CHECK_MESSAGE(false, "no contacts are wanted"); }
@@ -24,7 +24,7 @@ struct MarginSink final : ContactSink
 {
     double gap = 0;
     std::vector<Contact> contacts;
-    std::span<const StandingPair> standing() const override { return {}; }
+    std::span<const PersistentPair> persistent() const override { return {}; }
     double margin() const override { return gap; }
     void add(const Contact& c) override { contacts.push_back(c); }
     bool precedes(Ref a, Ref b) const override { return a.index < b.index; }
@@ -101,12 +101,13 @@ TEST_CASE("pairs that may meet are all those whose bounds, grown by their reach,
                 {
                     const bool named = std::find(sink.pairs.begin(), sink.pairs.end(), std::pair(a, b)) != sink.pairs.end();
                     // Balls that hold a shape wherever it turns: no pair closer than that may be left out.
-                    const double inner = b % 2 == 1 ? 0.1 : 0.05, outer = b % 2 == 1 ? 0.1 : 0.23, way = sink.how_far[a] + sink.how_far[b];
+                    const double inner = b % 2 == 1 ? 0.1 : 0.05, outer = b % 2 == 1 ? 0.1 : 0.23,
+                                 method = sink.how_far[a] + sink.how_far[b];
                     const double inner_a = a % 2 == 1 ? 0.1 : 0.05, outer_a = a % 2 == 1 ? 0.1 : 0.23;
                     const double distance =
                         a == 0 ? crowd.bodies.position[b].z : length(crowd.bodies.position[a] - crowd.bodies.position[b]);
-                    missed += !named && distance < way + inner + (a == 0 ? 0 : inner_a);
-                    idle += named && distance > 1.8 * way + 1.8 * (outer + (a == 0 ? 0 : outer_a));
+                    missed += !named && distance < method + inner + (a == 0 ? 0 : inner_a);
+                    idle += named && distance > 1.8 * method + 1.8 * (outer + (a == 0 ? 0 : outer_a));
                 }
             CHECK(missed == 0);
             CHECK(idle == 0);

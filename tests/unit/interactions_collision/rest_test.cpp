@@ -26,7 +26,7 @@ struct BoxOnPlane
         for (const Vec3& p : box_corners({0.5, 0.5, 0.5}))
         {
             if (p.z > 0) continue;
-            c.push_back(touch(0, 1, {p.x, p.y, 0}, {0, 0, 1}, friction));
+            c.push_back(contact_point(0, 1, {p.x, p.y, 0}, {0, 0, 1}, friction));
             c.back().id = c.size(), c.back().resting = true;
         }
     }
@@ -48,7 +48,7 @@ TEST_CASE("a sphere at rest on a plane has no normal velocity at all")
             Bodies b;
             add_body(b, 0, {}, {});
             add_sphere(b, mass, 0.13, {0.3, 0.1, 0.13}, {0, 0, -kG / 240});
-            std::vector<Contact> c{touch(0, 1, {0.3, 0.1, 0}, {0, 0, 1}, friction)};
+            std::vector<Contact> c{contact_point(0, 1, {0.3, 0.1, 0}, {0, 0, 1}, friction)};
             const Impact impact = respond(b, c, ImpactMode::Rest, 1.0 / 240);
             CHECK(b.velocity[1] == Vec3{});
             CHECK(b.angular_momentum[1] == Vec3{});
@@ -98,7 +98,7 @@ TEST_CASE("a sliding sphere loses mu g dt, in the direction of its slip, alike a
         Bodies b;
         add_body(b, 0, {}, {});
         add_sphere(b, 1, 0.1, {0, 0, 0.1}, t * 5.0 + Vec3{0, 0, -kG * kStep});
-        std::vector<Contact> c{touch(0, 1, {}, {0, 0, 1}, 0.3)};
+        std::vector<Contact> c{contact_point(0, 1, {}, {0, 0, 1}, 0.3)};
         respond(b, c, ImpactMode::Rest, kStep);
         CHECK(length(b.velocity[1] - t * (5 - 0.3 * kG * kStep)) < 1e-14);
         CHECK(dot(b.angular_velocity[1], cross({0, 0, 1}, t)) == near(2.5 * 0.3 * kG * kStep / 0.1, 1e-13));
@@ -111,7 +111,7 @@ TEST_CASE("a gap may close within the step, and no further")
     Bodies b;
     add_body(b, 0, {}, {});
     add_sphere(b, 1, 0.1, {0, 0, 0.1001}, {0, 0, -1});
-    std::vector<Contact> c{touch(0, 1, {}, {0, 0, 1})};
+    std::vector<Contact> c{contact_point(0, 1, {}, {0, 0, 1})};
     c[0].depth = -1e-4;
     respond(b, c, ImpactMode::Rest, kStep);
     CHECK(b.velocity[1].z == -1e-2);
@@ -126,7 +126,7 @@ TEST_CASE("contacts never pull")
     Bodies b;
     add_body(b, 0, {}, {});
     add_sphere(b, 1, 0.1, {0, 0, 0.1}, {0, 0, 2});
-    std::vector<Contact> c{touch(0, 1, {}, {0, 0, 1}, 0.5)};
+    std::vector<Contact> c{contact_point(0, 1, {}, {0, 0, 1}, 0.5)};
     c[0].impulse = {0.1, 0, 3};
     respond(b, c, ImpactMode::Rest, kStep);
     CHECK(length(b.velocity[1] - Vec3{0, 0, 2}) < 1e-14);
@@ -146,7 +146,8 @@ TEST_CASE("random heaps: inside the cone, not closing, friction takes energy")
         std::vector<Contact> c;
         for (int k = 0; k < 3; ++k)
         {
-            c.push_back(touch(0, 1, random_vector(seed, 0.5), normalized(random_vector(seed, 0.4) + Vec3{0, 0, 1}), uniform(seed, 0, 1)));
+            c.push_back(
+                contact_point(0, 1, random_vector(seed, 0.5), normalized(random_vector(seed, 0.4) + Vec3{0, 0, 1}), uniform(seed, 0, 1)));
             c.back().id = static_cast<std::uint64_t>(k) + 1;
         }
         const double before = total_energy(b);
@@ -169,7 +170,7 @@ TEST_CASE("nothing happens between bodies that nothing moves, and without contac
     Bodies b;
     add_body(b, 0, {}, {});
     add_body(b, 0, {}, {});
-    std::vector<Contact> c{touch(0, 1, {}, {0, 0, 1})}, none;
+    std::vector<Contact> c{contact_point(0, 1, {}, {0, 0, 1})}, none;
     for (const ImpactMode mode : {ImpactMode::Impact, ImpactMode::Rest})
     {
         CHECK(respond(b, c, mode, kStep).converged);

@@ -18,16 +18,16 @@ Collider collider(GeometryKind kind, const Vec3& size = {})
 }
 Collider hull_of(std::vector<Vec3> vertices) { return Collider(mesh_of(std::move(vertices))); }
 
-std::vector<Touch> touches(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
+std::vector<ContactPoint> contact_points(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
 {
-    Touches out;
+    ContactPoints out;
     collide(a, X_a, b, X_b, out);
     return {out.all().begin(), out.all().end()};
 }
-double deepest(const std::vector<Touch>& t)
+double deepest(const std::vector<ContactPoint>& t)
 {
     double d = 0;
-    for (const Touch& k : t) d = std::max(d, k.depth);
+    for (const ContactPoint& k : t) d = std::max(d, k.depth);
     return d;
 }
 std::vector<Vec3> random_points(std::uint64_t& seed, int n, double size)
@@ -72,14 +72,14 @@ TEST_CASE("sphere and sphere")
     {
         const Vec3 n = normalized(random_vector(seed, 1));
         const double depth = uniform(seed, -0.1, 0.3);
-        const auto t = touches(a, {{1, 2, 3}, {}}, b, {Vec3{1, 2, 3} + n * (0.8 - depth), random_rotation(seed)});
+        const auto t = contact_points(a, {{1, 2, 3}, {}}, b, {Vec3{1, 2, 3} + n * (0.8 - depth), random_rotation(seed)});
         REQUIRE(t.size() == (depth > 0 ? 1 : 0));
         if (t.empty()) continue;
         CHECK(std::fabs(t[0].depth - depth) < 1e-15);
         CHECK(length(t[0].normal - n) < 1e-14);
         CHECK(length(t[0].point - (Vec3{1, 2, 3} + n * (0.3 - depth / 2))) < 1e-14);
     }
-    CHECK(touches(a, {}, b, {})[0].depth == 0.8);  // same centre
+    CHECK(contact_points(a, {}, b, {})[0].depth == 0.8);  // same centre
 }
 
 TEST_CASE("sphere and plane, in either order")
@@ -91,7 +91,7 @@ TEST_CASE("sphere and plane, in either order")
         const Pose X{random_vector(seed, 1), random_rotation(seed)};
         const double height = uniform(seed, -0.1, 0.3);
         const Pose S{X * Vec3{uniform(seed, -1, 1), uniform(seed, -1, 1), height}, random_rotation(seed)};
-        const auto t = touches(a, S, b, X), back = touches(b, X, a, S);
+        const auto t = contact_points(a, S, b, X), back = contact_points(b, X, a, S);
         REQUIRE(t.size() == (height < 0.25 ? 1 : 0));
         REQUIRE(back.size() == t.size());
         if (t.empty()) continue;
@@ -112,7 +112,7 @@ TEST_CASE("sphere against box and against the same box as a hull")
     {
         const Pose X{random_vector(seed, 1), random_rotation(seed)};
         const Vec3 c = random_vector(seed, 0.7);
-        const auto t = touches(s, {X * c, {}}, box, X), u = touches(hull, X, s, {X * c, {}});
+        const auto t = contact_points(s, {X * c, {}}, box, X), u = contact_points(hull, X, s, {X * c, {}});
         double outside = 0, inside = -HUGE_VAL;
         for (int k = 0; k < 3; ++k)
         {
@@ -145,7 +145,7 @@ TEST_CASE("box and hull on a plane: every corner that is below")
         std::vector<double> below;
         for (const Vec3& c : box_corners(h))
             if (const double z = (inverse(P) * (X * c)).z; z < 0) below.push_back(-z);
-        const auto t = touches(box, X, plane, P), u = touches(plane, P, hull, X);
+        const auto t = contact_points(box, X, plane, P), u = contact_points(plane, P, hull, X);
         REQUIRE(t.size() == below.size());
         for (std::size_t k = 0; k < t.size(); ++k) CHECK(std::fabs(t[k].depth - below[k]) < 2e-15);
         CHECK(std::fabs(deepest(u) - deepest(t)) < 2e-15);
@@ -157,8 +157,8 @@ TEST_CASE("box and hull on a plane: every corner that is below")
             CHECK(u[k].normal == -t[k].normal);
         }
     }
-    CHECK(touches(box, {{0, 0, 0.2 - 1e-9}, {}}, plane, {}).size() == 4);
-    CHECK(touches(plane, {}, plane, {}).empty());
+    CHECK(contact_points(box, {{0, 0, 0.2 - 1e-9}, {}}, plane, {}).size() == 4);
+    CHECK(contact_points(plane, {}, plane, {}).empty());
 }
 
 TEST_CASE("a round mesh on a plane stands on few points that surround it")
@@ -166,11 +166,11 @@ TEST_CASE("a round mesh on a plane stands on few points that surround it")
     std::vector<Vec3> prism;
     for (int i = 0; i < 100; ++i)
         for (const double z : {-0.5, 0.5}) prism.push_back({std::cos(i * 0.0628318530717958), std::sin(i * 0.0628318530717958), z});
-    const auto t = touches(hull_of(prism), {{0, 0, 0.5 - 1e-6}, {}}, collider(GeometryKind::Plane), {});
+    const auto t = contact_points(hull_of(prism), {{0, 0, 0.5 - 1e-6}, {}}, collider(GeometryKind::Plane), {});
     CHECK(t.size() >= 8);
     CHECK(t.size() <= 9);
     Vec3 sum;
-    for (const Touch& k : t)
+    for (const ContactPoint& k : t)
     {
         sum += k.point;
         CHECK(k.depth == near(1e-6, 1e-9));
@@ -189,7 +189,7 @@ TEST_CASE("box and box: depth as by all separating axes")
     {
         const Pose X{{}, random_rotation(seed)}, Y{random_vector(seed, 0.8), random_rotation(seed)};
         const double want = brute_depth(hull_a, X, hull_b, Y);
-        const auto t = touches(a, X, b, Y);
+        const auto t = contact_points(a, X, b, Y);
         if (std::fabs(want) < 1e-12) continue;
         CHECK(t.empty() == (want < 0));
         if (want < 0) continue;
@@ -214,7 +214,7 @@ TEST_CASE("hulls: touching exactly when some axis says so; the depth is the leas
         const Vec3 n = normalized(random_vector(seed, 1));
         const Pose X{{}, random_rotation(seed)}, Y{n * uniform(seed, 0.5, 1.1), random_rotation(seed)};
         const double want = brute_depth(a.hull(), X, *make_hull(points_b), Y);
-        const auto t = touches(a, X, b, Y);
+        const auto t = contact_points(a, X, b, Y);
         if (std::fabs(want) < 1e-13) continue;
         CHECK(t.empty() == (want < 0));
         if (want < 0) continue;
@@ -231,9 +231,9 @@ TEST_CASE("a located hull impact keeps its normal down to the last bits of depth
     const Collider a = hull_of(box_corners({0.5, 0.5, 0.5}));
     for (const double depth : {1e-2, 1e-6, 1e-10, 1e-14})
     {
-        const auto t = touches(a, {}, a, {{0.2, 0.1, 1 - depth}, {}});
+        const auto t = contact_points(a, {}, a, {{0.2, 0.1, 1 - depth}, {}});
         REQUIRE(t.size() == 4);
-        for (const Touch& k : t)
+        for (const ContactPoint& k : t)
         {
             CHECK(k.normal == Vec3{0, 0, 1});
             CHECK(std::fabs(k.depth - depth) < 2e-16);
@@ -245,9 +245,9 @@ TEST_CASE("crossed beams as hulls meet in the four corners of their overlap")
 {
     const Collider beam = hull_of(box_corners({2, 0.1, 0.1}));
     const Quat quarter{std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
-    const auto t = touches(beam, {}, beam, {{0, 0, 0.2 - 1e-5}, quarter});
+    const auto t = contact_points(beam, {}, beam, {{0, 0, 0.2 - 1e-5}, quarter});
     REQUIRE(t.size() == 4);
-    for (const Touch& k : t)
+    for (const ContactPoint& k : t)
     {
         CHECK(std::fabs(std::fabs(k.point.x) - 0.1) < 1e-12);
         CHECK(std::fabs(std::fabs(k.point.y) - 0.1) < 1e-12);

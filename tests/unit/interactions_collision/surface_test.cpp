@@ -139,10 +139,10 @@ TEST_CASE("a box lies in a bore on two edges, along their radii")
 {
     const double half = 0.25, down = std::sqrt(1 - half * half) - 0.1;
     const Collider bore(round_surface(Surface::Bore, 1, 2)), box(solid(GeometryKind::Box, {half, 0.1, 0.6}));
-    Touches touches(1e-9);
-    collide(box, {{0, -down, 0}, {}}, bore, {}, touches);
-    REQUIRE(touches.all().size() == 4);
-    for (const Touch& t : touches.all())
+    ContactPoints contact_points(1e-9);
+    collide(box, {{0, -down, 0}, {}}, bore, {}, contact_points);
+    REQUIRE(contact_points.all().size() == 4);
+    for (const ContactPoint& t : contact_points.all())
     {
         CHECK(std::fabs(t.depth) < 1e-15);
         CHECK(t.normal.x == near(t.point.x > 0 ? half : -half, 1e-14));
@@ -150,10 +150,10 @@ TEST_CASE("a box lies in a bore on two edges, along their radii")
         CHECK(t.normal.z == 0);
     }
     // Half out of the end: edges carry it where they leave the bore.
-    touches.clear();
-    collide(box, {{0, -down, 2}, {}}, bore, {}, touches);
-    REQUIRE(touches.all().size() == 4);
-    for (const Touch& t : touches.all())
+    contact_points.clear();
+    collide(box, {{0, -down, 2}, {}}, bore, {}, contact_points);
+    REQUIRE(contact_points.all().size() == 4);
+    for (const ContactPoint& t : contact_points.all())
     {
         CHECK(t.point.z == near(t.point.z > 1.7 ? 2 : 1.4, 1e-14));
         CHECK(t.normal.x == near(t.point.x > 0 ? half : -half, 1e-12));
@@ -178,11 +178,11 @@ TEST_CASE("a flat grid is a plane, over faces, edges and corners")
             {
                 X.p.z += height;
                 CHECK(std::fabs(separation(c, X, flat, {}).gap - separation(c, X, plane, {}).gap) < 2e-15);
-                Touches on_plane(1e-6), on_flat(1e-6);
+                ContactPoints on_plane(1e-6), on_flat(1e-6);
                 collide(c, X, plane, {}, on_plane), collide(c, X, flat, {}, on_flat);
                 double deepest_plane = -1, deepest_flat = -1;
-                for (const Touch& t : on_plane.all()) deepest_plane = std::max(deepest_plane, t.depth);
-                for (const Touch& t : on_flat.all())
+                for (const ContactPoint& t : on_plane.all()) deepest_plane = std::max(deepest_plane, t.depth);
+                for (const ContactPoint& t : on_flat.all())
                 {
                     deepest_flat = std::max(deepest_flat, t.depth);
                     CHECK(std::fabs(t.normal.z) == 1);
@@ -225,10 +225,10 @@ TEST_CASE("the triangles of a convex solid are that solid, seen from outside")
                     const Separation want = separation(c, X, hull, {}), got = separation(c, X, surface, {});
                     CHECK(std::fabs(got.gap - want.gap) < (gap > 1e-6 ? 1e-12 : 2e-11));
                     CHECK(length(got.normal - want.normal) < (gap > 1e-6 ? 1e-6 : 0.05));
-                    Touches touches(2 * gap);
-                    collide(c, X, surface, {}, touches);
+                    ContactPoints contact_points(2 * gap);
+                    collide(c, X, surface, {}, contact_points);
                     double deepest = -1;
-                    for (const Touch& t : touches.all()) deepest = std::max(deepest, t.depth);
+                    for (const ContactPoint& t : contact_points.all()) deepest = std::max(deepest, t.depth);
                     CHECK(std::fabs(deepest + want.gap) < 2e-11);
                 }
             }
@@ -243,17 +243,17 @@ TEST_CASE("a ball between two slopes touches both, over a ridge one place alone"
     g.triangles = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
     set_surface(g, Surface::Triangles);
     const Collider valley(g), ball(solid(GeometryKind::Sphere, {0.1, 0, 0}));
-    Touches touches;
-    collide(ball, {{0, 0.3, 0.1 * std::sqrt(2.0) - 1e-6}, {}}, valley, {}, touches);
-    REQUIRE(touches.all().size() == 2);
-    for (const Touch& t : touches.all()) CHECK(t.depth == near(1e-6 / std::sqrt(2.0), 1e-8));
-    CHECK(touches.all()[0].normal.x == near(-touches.all()[1].normal.x, 1e-15));
+    ContactPoints contact_points;
+    collide(ball, {{0, 0.3, 0.1 * std::sqrt(2.0) - 1e-6}, {}}, valley, {}, contact_points);
+    REQUIRE(contact_points.all().size() == 2);
+    for (const ContactPoint& t : contact_points.all()) CHECK(t.depth == near(1e-6 / std::sqrt(2.0), 1e-8));
+    CHECK(contact_points.all()[0].normal.x == near(-contact_points.all()[1].normal.x, 1e-15));
     for (Vec3& v : g.vertices) v.z = -v.z;
     const Collider ridge(g);
-    touches.clear();
-    collide(ball, {{0, 0.3, 0.1 - 1e-6}, {}}, ridge, {}, touches);
-    REQUIRE(touches.all().size() == 1);
-    CHECK(touches.all()[0].normal.z == near(-1, 1e-15));
+    contact_points.clear();
+    collide(ball, {{0, 0.3, 0.1 - 1e-6}, {}}, ridge, {}, contact_points);
+    REQUIRE(contact_points.all().size() == 1);
+    CHECK(contact_points.all()[0].normal.z == near(-1, 1e-15));
 }
 
 TEST_CASE("surfaces without a front do not collide, and say so")

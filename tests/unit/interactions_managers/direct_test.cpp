@@ -122,7 +122,7 @@ TEST_CASE("wherever Newton's method says that it converged, the law holds at eve
             ++converged;
             for (const Point& q : p.points)
             {
-                const Vec3 u = p.slip(q);
+                const Vec3 u = p.relative_velocity(q);
                 const double slip = std::hypot(u.x, u.y), held = std::hypot(q.impulse.x, q.impulse.y);
                 CHECK(u.z >= -1e-11);
                 CHECK(q.impulse.z >= -1e-11);

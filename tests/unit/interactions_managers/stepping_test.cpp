@@ -48,7 +48,7 @@ void run(IslandWorld& w, OneRow<Table>& manager, Solve solve, double h, int step
 
 TEST_CASE("C14: a sliding box stops where it should, whatever the step: 1e-12 with Direct, 1e-8 with sweeps")
 {
-    const double v = 3, mu = 0.4, way = v * v / (2 * mu * kGravity);
+    const double v = 3, mu = 0.4, method = v * v / (2 * mu * kGravity);
     for (const double h : {1.0 / 60, 1.0 / 30, 0.1})
     {
         CAPTURE(h);
@@ -65,7 +65,7 @@ TEST_CASE("C14: a sliding box stops where it should, whatever the step: 1e-12 wi
                 run(w, exact, solve_direct, h, steps);
             else
                 run(w, swept, solve_sequential, h, steps);
-            CHECK(std::fabs(std::hypot(w.bodies.position[box].x, w.bodies.position[box].y) / way - 1) < (direct ? 1e-12 : 1e-7));
+            CHECK(std::fabs(std::hypot(w.bodies.position[box].x, w.bodies.position[box].y) / method - 1) < (direct ? 1e-12 : 1e-7));
             CHECK(length(w.bodies.velocity[box]) < (direct ? 1e-12 : 1e-7));
         }
     }

@@ -20,14 +20,14 @@ using link::Seconds;
 /// Tests may run side by side, in several checkouts.
 inline wire::DomainOptions test_domain() { return {60 + static_cast<std::uint32_t>(getpid()) % 150, {}}; }
 
-inline playback::Options play_options(const std::string& file, const std::string& name)
+inline playback::PlaybackOptions play_options(const std::string& file, const std::string& name)
 {
-    playback::Options options;
+    playback::PlaybackOptions options;
     options.file = file, options.name = name, options.version = "test", options.domain = test_domain();
     return options;
 }
 
-inline std::unique_ptr<playback::Player> open_player(const playback::Options& options)
+inline std::unique_ptr<playback::Player> open_player(const playback::PlaybackOptions& options)
 {
     auto player = playback::Player::open(options);
     REQUIRE_MESSAGE(player.ok(), player.error().text());
@@ -51,7 +51,7 @@ bool play_until(playback::Player& player, Condition is_enough)
 
 inline link::Session watch(const std::string& name)
 {
-    link::Options options;
+    link::SessionOptions options;
     options.server = name, options.domain = test_domain();
     auto session = link::Session::join(options);
     REQUIRE_MESSAGE(session.ok(), session.error().text());

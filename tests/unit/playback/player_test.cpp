@@ -54,7 +54,7 @@ std::uint64_t ns(double seconds) { return static_cast<std::uint64_t>(seconds * 1
 
 TEST_CASE("each turn of a loop is a new run, from where it began, and numbers go on without a gap")
 {
-    playback::Options options = play_options(make_recording("playback_loop.mcap"), "loop");
+    playback::PlaybackOptions options = play_options(make_recording("playback_loop.mcap"), "loop");
     options.from = 0.5, options.to = 1.5, options.rate = 10, options.loop = true, options.readers = 1;
     auto player = open_player(options);
     Watcher watcher("loop");
@@ -74,7 +74,7 @@ TEST_CASE("each turn of a loop is a new run, from where it began, and numbers go
 
 TEST_CASE("a jump brings the catalogue of that time; back it is a new run, forth it is not")
 {
-    playback::Options options = play_options(make_recording("playback_seek.mcap"), "seek");
+    playback::PlaybackOptions options = play_options(make_recording("playback_seek.mcap"), "seek");
     options.from = 0.2, options.paused = true;
     auto player = open_player(options);
     Watcher watcher("seek");
@@ -112,7 +112,7 @@ TEST_CASE("a jump brings the catalogue of that time; back it is a new run, forth
 
 TEST_CASE("a request is refused, with the reason")
 {
-    playback::Options options = play_options(make_recording("playback_asked.mcap"), "asked");
+    playback::PlaybackOptions options = play_options(make_recording("playback_asked.mcap"), "asked");
     options.paused = true;
     auto player = open_player(options);
     const link::Session session = watch("asked");
@@ -150,7 +150,7 @@ TEST_CASE("a second player of one name is refused until the first is gone")
 TEST_CASE("what cannot be played says why")
 {
     const std::string file = make_recording("playback_wrong.mcap");
-    playback::Options options = play_options(file, "wrong");
+    playback::PlaybackOptions options = play_options(file, "wrong");
     options.from = 3;
     const auto beyond = playback::Player::open(options);
     REQUIRE_FALSE(beyond.ok());
@@ -159,7 +159,7 @@ TEST_CASE("what cannot be played says why")
     CHECK_FALSE(playback::Player::open(options).ok());
     CHECK_FALSE(playback::Player::open(play_options(file, "a/b")).ok());
     CHECK_FALSE(playback::Player::open(play_options(fresh_path("playback_none.mcap"), "x")).ok());
-    playback::Options unnamed = play_options(file, "");
+    playback::PlaybackOptions unnamed = play_options(file, "");
     auto player = playback::Player::open(unnamed);
     REQUIRE(player.ok());
     CHECK((*player)->name() == "lab");  // the recorded server's

@@ -7,23 +7,23 @@ using namespace plab::test;
 namespace
 {
 
-recorder::Options record_options(const std::string& name)
+recorder::RecorderOptions record_options(const std::string& name)
 {
-    recorder::Options options;
-    options.tape.file = fresh_path(name);
+    recorder::RecorderOptions options;
+    options.writer.file = fresh_path(name);
     return options;
 }
 
 struct Again
 {
     std::string file;
-    recorder::TapeProgress progress;
+    recorder::WriteProgress progress;
 };
 
 /// Plays `file` twenty times as fast, records it, and ends the playback.
-Again play_and_record(const std::string& file, const std::string& name, recorder::Options options)
+Again play_and_record(const std::string& file, const std::string& name, recorder::RecorderOptions options)
 {
-    playback::Options play = play_options(file, name);
+    playback::PlaybackOptions play = play_options(file, name);
     play.rate = 20, play.readers = 1;
     auto player = open_player(play);
     const link::Session session = watch(name);
@@ -48,7 +48,7 @@ Again play_and_record(const std::string& file, const std::string& name, recorder
     const auto closed = (*recorder)->close();
     REQUIRE_MESSAGE(closed.ok(), closed.error().text());
     CHECK((*recorder)->broken() == 0);
-    return {options.tape.file, *closed};
+    return {options.writer.file, *closed};
 }
 
 void check_same(const recording::Reader& a, const recording::Reader& b, const std::string& topic)
@@ -76,7 +76,7 @@ TEST_CASE("states, events and all that has numbers come out byte for byte; the c
     for (const double seconds : {0.5, 1.5, 2.5})
     {
         const auto time = static_cast<std::uint64_t>(seconds * 1e9);
-        CHECK(playback::shelf_at(a, time).entries() == playback::shelf_at(b, time).entries());
+        CHECK(playback::retained_at(a, time).entries() == playback::retained_at(b, time).entries());
     }
     const auto about = b.metadata("plab");
     REQUIRE(about.ok());
@@ -105,9 +105,9 @@ TEST_CASE("frames that name only what moved are sent whole")
         REQUIRE(frame->bodies._length == 2);
         REQUIRE(frame->shafts._length == 1);
         // Blue was told of at each tenth step, the axle at the first.
-        const double told = static_cast<double>(frame->step / 10) * 0.1;
+        const double reported = static_cast<double>(frame->step / 10) * 0.1;
         CHECK(frame->bodies._buffer[0].position.x == frame->time);
-        CHECK(frame->bodies._buffer[1].position.z == doctest::Approx(told * told));
+        CHECK(frame->bodies._buffer[1].position.z == doctest::Approx(reported * reported));
         CHECK(frame->shafts._buffer[0].angle == 0);
     }
 }
@@ -115,7 +115,7 @@ TEST_CASE("frames that name only what moved are sent whole")
 TEST_CASE("only the topics that are asked for, frames thinned to a rate, up to a time")
 {
     const std::string file = make_recording("playback_source.mcap");
-    recorder::Options options = record_options("playback_thinned.mcap");
+    recorder::RecorderOptions options = record_options("playback_thinned.mcap");
     options.topics = {"plab/states", "plab/events"}, options.state_rate = 10, options.until = 1.2;
     const Again again = play_and_record(file, "thinned", options);
     CHECK(again.progress.missing == 0);  // what is left out is not missing

@@ -1,5 +1,5 @@
 // Disks that are full, broken, or slow, under the recorder's file.
-#include "recorder/tape.h"
+#include "recorder/async_writer.h"
 
 #include <doctest/doctest.h>
 
@@ -11,8 +11,8 @@
 using namespace plab;
 using namespace plab::recording;
 using namespace std::chrono_literals;
-using recorder::Tape;
-using recorder::TapeProgress;
+using recorder::AsyncWriter;
+using recorder::WriteProgress;
 
 namespace
 {
@@ -75,11 +75,11 @@ class Fed
 public:
     explicit Fed(std::size_t most_waiting_bytes = 64u << 20)
     {
-        recorder::TapeOptions options;
+        recorder::AsyncWriterOptions options;
         options.file = "run.mcap", options.compression = Compression::None, options.most_waiting_bytes = most_waiting_bytes;
-        auto opened = Tape::open(std::make_unique<DiskSink>(disk), options, {"plab", {{"format", "2"}}});
+        auto opened = AsyncWriter::open(std::make_unique<DiskSink>(disk), options, {"plab", {{"format", "2"}}});
         REQUIRE(opened);
-        tape = opened.take();
+        writer = opened.take();
     }
     void put(int count)
     {
@@ -87,7 +87,7 @@ public:
         {
             Bytes data(256, 0);
             std::memcpy(data.data(), &offered, sizeof offered);
-            (void)tape->put({&wire::topic_of<plab_v2_Frame>(), offered * 1'000'000, 0, std::move(data)});
+            (void)writer->put({&wire::topic_of<plab_v2_Frame>(), offered * 1'000'000, 0, std::move(data)});
             std::this_thread::sleep_for(1ms);
         }
     }
@@ -95,12 +95,12 @@ public:
     template <class Condition>
     bool comes_to(Condition is_so)
     {
-        for (int i = 0; i < 600 && !is_so(tape->progress()); ++i) std::this_thread::sleep_for(5ms);
-        return is_so(tape->progress());
+        for (int i = 0; i < 600 && !is_so(writer->progress()); ++i) std::this_thread::sleep_for(5ms);
+        return is_so(writer->progress());
     }
 
     std::shared_ptr<Disk> disk = std::make_shared<Disk>();
-    std::unique_ptr<Tape> tape;
+    std::unique_ptr<AsyncWriter> writer;
     std::uint64_t offered = 0;
 };
 
@@ -139,7 +139,7 @@ bool ascends(const std::vector<std::uint64_t>& numbers)
 }
 
 /// Messages that the file itself says are missing.
-std::uint64_t told_missing(const Reader& reader)
+std::uint64_t reported_missing(const Reader& reader)
 {
     std::uint64_t out = 0;
     for (const auto& at : reader.index().metadata)
@@ -153,22 +153,22 @@ TEST_CASE("a disk that fills up and stays full: the end says so, soon, and what 
 {
     Fed fed;
     fed.put(100);
-    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.messages == 100; }));
+    REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.messages == 100; }));
     {
         const std::lock_guard lock(fed.disk->mutex);
         fed.disk->capacity = fed.disk->bytes.size() + 100;  // less than a chunk: a short write
     }
     fed.put(200);
-    CHECK(fed.comes_to([](const TapeProgress& p) { return p.trouble && p.dropped.messages > 0; }));
-    CHECK(fed.tape->progress().trouble->text() == "run.mcap: cannot write: No space left on device");
+    CHECK(fed.comes_to([](const WriteProgress& p) { return p.trouble && p.dropped.messages > 0; }));
+    CHECK(fed.writer->progress().trouble->text() == "run.mcap: cannot write: No space left on device");
     CHECK(numbers_in(OnDisk(*fed.disk).reader).size() == 100);
 
     const auto begin = Clock::now();
-    const auto closed = fed.tape->close();
+    const auto closed = fed.writer->close();
     CHECK(Clock::now() - begin < 1s);
     REQUIRE(!closed);
     CHECK(closed.error().text() == "run.mcap: cannot write: No space left on device");
-    const TapeProgress end = fed.tape->progress();
+    const WriteProgress end = fed.writer->progress();
     CHECK(end.messages == 100);
     CHECK(end.messages + end.dropped.messages == fed.offered);
     CHECK(!end.is_ended);
@@ -184,13 +184,13 @@ TEST_CASE("a disk that has room for all messages and none for the end of the fil
 {
     Fed fed;
     fed.put(100);
-    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.messages == 100; }));
+    REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.messages == 100; }));
     {
         const std::lock_guard lock(fed.disk->mutex);
         fed.disk->capacity = fed.disk->bytes.size() + 50;
     }
-    CHECK(!fed.tape->close());
-    const TapeProgress end = fed.tape->progress();
+    CHECK(!fed.writer->close());
+    const WriteProgress end = fed.writer->progress();
     CHECK(!end.is_ended);
     CHECK(end.dropped.messages == 0);
     REQUIRE(end.last_trouble);
@@ -204,7 +204,7 @@ TEST_CASE("a disk that fails for a while: the file goes on, tells its gap, and n
 {
     Fed fed;
     fed.put(50);
-    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.messages == 50; }));
+    REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.messages == 50; }));
     const auto set_broken = [&](bool is_broken)
     {
         const std::lock_guard lock(fed.disk->mutex);
@@ -212,11 +212,11 @@ TEST_CASE("a disk that fails for a while: the file goes on, tells its gap, and n
     };
     set_broken(true);
     fed.put(60);
-    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.trouble.has_value(); }));
+    REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.trouble.has_value(); }));
     set_broken(false);
-    REQUIRE(fed.comes_to([](const TapeProgress& p) { return !p.trouble; }));
+    REQUIRE(fed.comes_to([](const WriteProgress& p) { return !p.trouble; }));
     fed.put(50);
-    const auto closed = fed.tape->close();
+    const auto closed = fed.writer->close();
     REQUIRE_MESSAGE(closed.ok(), closed.error().text());
     CHECK(closed->is_ended);
     CHECK(closed->dropped.messages > 0);
@@ -230,7 +230,7 @@ TEST_CASE("a disk that fails for a while: the file goes on, tells its gap, and n
     const auto numbers = numbers_in(reader);
     CHECK(numbers.size() == closed->messages);
     CHECK(ascends(numbers));
-    CHECK(told_missing(reader) == closed->dropped.messages);
+    CHECK(reported_missing(reader) == closed->dropped.messages);
 }
 
 TEST_CASE("what waits for a disk that works again only at the end is in the file all the same")
@@ -241,19 +241,19 @@ TEST_CASE("what waits for a disk that works again only at the end is in the file
         fed.disk->is_broken = true;
     }
     fed.put(40);
-    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.trouble.has_value(); }));
-    fed.tape->attach(0, "blueprint.xml", "text/xml", "<plab/>");
+    REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.trouble.has_value(); }));
+    fed.writer->attach(0, "blueprint.xml", "text/xml", "<plab/>");
     fed.put(1);  // wakes the writer, whose next trial is some time away
     {
         const std::lock_guard lock(fed.disk->mutex);
         fed.disk->is_broken = false;
     }
-    const auto closed = fed.tape->close();
+    const auto closed = fed.writer->close();
     REQUIRE_MESSAGE(closed.ok(), closed.error().text());
     const OnDisk found(*fed.disk);
     const Reader& reader = found.reader;
     REQUIRE(reader.index().attachments.size() == 1);
-    CHECK(told_missing(reader) == closed->dropped.messages);
+    CHECK(reported_missing(reader) == closed->dropped.messages);
     CHECK(closed->dropped.messages + closed->messages == fed.offered);
 }
 
@@ -262,20 +262,20 @@ TEST_CASE("a disk that does not answer: who records does not wait, and what find
     constexpr std::size_t kRoom = 20'000;
     Fed fed(kRoom);
     fed.put(20);
-    REQUIRE(fed.comes_to([](const TapeProgress& p) { return p.messages == 20; }));
+    REQUIRE(fed.comes_to([](const WriteProgress& p) { return p.messages == 20; }));
     fed.disk->is_stuck = true;
     fed.put(30);  // the writer is in it now
     const auto begin = Clock::now();
     for (int i = 0; i < 200; ++i, ++fed.offered)
-        (void)fed.tape->put({&wire::topic_of<plab_v2_Frame>(), fed.offered * 1'000'000, 0, Bytes(256, 0)});
+        (void)fed.writer->put({&wire::topic_of<plab_v2_Frame>(), fed.offered * 1'000'000, 0, Bytes(256, 0)});
     CHECK(Clock::now() - begin < 1s);
-    const std::uint64_t lost = fed.tape->progress().dropped.messages;
+    const std::uint64_t lost = fed.writer->progress().dropped.messages;
     CHECK(lost > 200 - kRoom / 256);
     CHECK(lost < 230);
     fed.disk->is_stuck = false;
-    const auto closed = fed.tape->close();
+    const auto closed = fed.writer->close();
     REQUIRE_MESSAGE(closed.ok(), closed.error().text());
     CHECK(closed->messages + closed->dropped.messages == fed.offered);
     CHECK(!closed->last_trouble);
-    CHECK(told_missing(OnDisk(*fed.disk).reader) == closed->dropped.messages);
+    CHECK(reported_missing(OnDisk(*fed.disk).reader) == closed->dropped.messages);
 }

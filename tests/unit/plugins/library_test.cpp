@@ -310,21 +310,21 @@ TEST_CASE("manifests are written sorted, whole or not at all, and read back with
 TEST_CASE("a type is told alike by its manifest and by its plugin")
 {
     PluginLibrary library({PLAB_BINARY_DIR "/lib/plab"});
-    std::vector<model::TypeSummary> told = library.summaries();
+    std::vector<model::TypeSummary> reported = library.summaries();
     CHECK(library.loaded().empty());
-    REQUIRE(told.size() == library.names().size());
-    REQUIRE(told.size() > 20);
-    for (model::TypeSummary& type : told)
+    REQUIRE(reported.size() == library.names().size());
+    REQUIRE(reported.size() > 20);
+    for (model::TypeSummary& type : reported)
     {
         CHECK(!type.loaded);
         CHECK(!type.family.empty());
         REQUIRE(library.require(type.name).ok());
         type.loaded = true;
     }
-    CHECK(library.summaries() == told);
+    CHECK(library.summaries() == reported);
 
     const auto named = [&](const std::string& name)
-    { return std::find_if(told.begin(), told.end(), [&](const auto& t) { return t.name == name; }); };
+    { return std::find_if(reported.begin(), reported.end(), [&](const auto& t) { return t.name == name; }); };
     const model::TypeSummary& gravity = *named("Field/Gravity");
     CHECK(gravity.plugin == "fields");
     REQUIRE(gravity.fields.size() == 1);

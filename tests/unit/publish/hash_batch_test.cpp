@@ -16,16 +16,16 @@ namespace
 
 constexpr Nanoseconds kMillisecond = 1'000'000;
 
-struct Course
+struct Trajectory
 {
     Nanoseconds oldest = 0;  ///< longest time between a step and the record that has its hash
     std::size_t records = 0, largest = 0;
 };
 
 /// Steps at this interval.
-Course course_of(Nanoseconds interval, int steps)
+Trajectory trajectory_of(Nanoseconds interval, int steps)
 {
-    Course out;
+    Trajectory out;
     HashBatch batch;
     Tick due = 1;
     for (Tick step = 1; step <= steps; ++step)
@@ -53,11 +53,11 @@ TEST_CASE("no hash waits for longer than 3 ms, however long steps are, and fast 
          {kMillisecond / 50, kMillisecond / 4, kMillisecond, 2 * kMillisecond, 4 * kMillisecond, 50 * kMillisecond})
     {
         CAPTURE(interval);
-        CHECK(course_of(interval, 1000).oldest <= 3 * kMillisecond);
+        CHECK(trajectory_of(interval, 1000).oldest <= 3 * kMillisecond);
     }
-    CHECK(course_of(kMillisecond, 1000).records == 250);
-    CHECK(course_of(4 * kMillisecond, 1000).records == 1000);
-    CHECK(course_of(kMillisecond / 50, 1000).largest == 64);
+    CHECK(trajectory_of(kMillisecond, 1000).records == 250);
+    CHECK(trajectory_of(4 * kMillisecond, 1000).records == 1000);
+    CHECK(trajectory_of(kMillisecond / 50, 1000).largest == 64);
 }
 
 TEST_CASE("a hash that does not follow the last one begins a record")

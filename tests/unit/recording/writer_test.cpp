@@ -242,9 +242,10 @@ TEST_CASE("a sink that fails at the n-th call, once, three times or for ever: al
             if (more == 0 && !reader->index().has_summary) CHECK(r.bytes->size() == r.size);
             failures += r.dropped.messages > 0 ? 1 : 0;
             // What was lost is told in the file, if the disk came back.
-            std::uint64_t told = 0;
-            for (const MetadataIndex& place : reader->index().metadata) told += std::stoull(reader->metadata(place)->values.at("messages"));
-            if (r.was_closed) CHECK(told == r.dropped.messages);
+            std::uint64_t reported = 0;
+            for (const MetadataIndex& place : reader->index().metadata)
+                reported += std::stoull(reader->metadata(place)->values.at("messages"));
+            if (r.was_closed) CHECK(reported == r.dropped.messages);
             auto found = recover(MemorySource(*r.bytes),
                                  [] { return Result<std::unique_ptr<Sink>>(std::make_unique<MemorySink>(std::make_shared<Bytes>())); });
             REQUIRE(found);

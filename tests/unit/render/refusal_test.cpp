@@ -126,9 +126,9 @@ TEST_CASE("the view of everything holds every ball of the scene")
         const Vec3 right = normalized(cross(along, view.up)), up = cross(right, along);
         const auto inside = [&](const Vec3& p, double radius)
         {
-            const Vec3 way = p - view.position;
-            const double angle = 0.5 * view.field_of_view, most = std::fmax(std::fabs(dot(way, right)), std::fabs(dot(way, up)));
-            return most * std::cos(angle) + radius < dot(way, along) * std::sin(angle);
+            const Vec3 method = p - view.position;
+            const double angle = 0.5 * view.field_of_view, most = std::fmax(std::fabs(dot(method, right)), std::fabs(dot(method, up)));
+            return most * std::cos(angle) + radius < dot(method, along) * std::sin(angle);
         };
         CHECK(inside({10, 0, 0}, 1));
         CHECK(inside({-4, 5, 2}, std::sqrt(14)));

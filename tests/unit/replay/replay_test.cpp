@@ -15,7 +15,7 @@ namespace
 {
 
 /// A recording in memory: what a recorder would have written of a run.
-class Tape final : public record::RunLog
+class MemoryLog final : public record::RunLog
 {
 public:
     const std::vector<record::RecordedSnapshot>& snapshots() const override { return places; }
@@ -80,8 +80,8 @@ public:
         REQUIRE(bytes);
         publish::SnapshotRecord record;
         record.run = s.run(), record.step = s.tick(), record.time = s.time(), record.cause = cause, record.data = bytes.take();
-        tape.places.push_back({s.run(), s.tick(), s.time(), "", cause, tape.records.size()});
-        tape.records.push_back(std::move(record));
+        log.places.push_back({s.run(), s.tick(), s.time(), "", cause, log.records.size()});
+        log.records.push_back(std::move(record));
     }
     void ask(std::vector<publish::OperationText> operations)
     {
@@ -92,8 +92,8 @@ public:
         REQUIRE(scene.simulation().carry_out_now(wanted->request).done);
         publish::JournalRecord entry;
         entry.run = scene.simulation().run(), entry.step = scene.simulation().tick(), entry.operations = std::move(operations);
-        entry.number = tape.entries.size() + 1;
-        tape.entries.push_back(std::move(entry));
+        entry.number = log.entries.size() + 1;
+        log.entries.push_back(std::move(entry));
     }
     void step(int n)
     {
@@ -103,23 +103,23 @@ public:
             scene.step();
             publish::HashRecord record;
             record.run = s.run(), record.step = s.tick(), record.hashes = {s.state_hash()};
-            tape.hashes.push_back(record);
+            log.hashes.push_back(record);
             publish::Frame frame;
             const std::uint32_t ball = s.world().find("ball");
             frame.run = s.run(), frame.step = s.tick();
             if (ball != kNoIndex) frame.bodies = {publish::state_of(s.world().host().bodies, s.world().component(ball).host_index, 1)};
-            tape.frames[{s.run(), s.tick()}] = std::move(frame);
+            log.frames[{s.run(), s.tick()}] = std::move(frame);
         }
     }
     Scene scene;
-    Tape tape;
+    MemoryLog log;
 };
 
-replay::ReplayReport made_again(Tape& tape, replay::ReplayOptions options = {}, int threads = 1)
+replay::ReplayReport made_again(MemoryLog& log, replay::ReplayOptions options = {}, int threads = 1)
 {
     simulation::Simulation simulation(library(), threads);
     options.verify = true;
-    auto report = replay::replay(tape, simulation, library(), options);
+    auto report = replay::replay(log, simulation, library(), options);
     REQUIRE_MESSAGE(report, first_error(report.errors()));
     return *report;
 }
@@ -140,7 +140,7 @@ TEST_CASE("a run with a swap, a set, an added and a removed component gives the 
     taping.step(40);
     for (const int threads : {1, 2})
     {
-        const replay::ReplayReport report = made_again(taping.tape, {}, threads);
+        const replay::ReplayReport report = made_again(taping.log, {}, threads);
         CHECK(!report.mismatch);
         CHECK(report.verified == 100);
         CHECK(report.requests == 2);
@@ -149,10 +149,10 @@ TEST_CASE("a run with a swap, a set, an added and a removed component gives the 
     // From the snapshot in the middle on, and only as far as it is asked for.
     replay::ReplayOptions from;
     from.from = 55;
-    CHECK(made_again(taping.tape, from).verified == 60);
+    CHECK(made_again(taping.log, from).verified == 60);
     replay::ReplayOptions until;
     until.until = 0.3;
-    CHECK(made_again(taping.tape, until).verified == 30);
+    CHECK(made_again(taping.log, until).verified == 30);
 }
 
 TEST_CASE("runs follow one another, each from its own first snapshot")
@@ -162,13 +162,13 @@ TEST_CASE("runs follow one another, each from its own first snapshot")
     taping.ask({{"reset", "", "", "", {}}});
     taping.keep_snapshot("begin");
     taping.step(10);
-    const replay::ReplayReport report = made_again(taping.tape);
+    const replay::ReplayReport report = made_again(taping.log);
     CHECK(!report.mismatch);
     CHECK(report.runs == 2);
     CHECK(report.verified == 40);
     replay::ReplayOptions second;
     second.run = taping.scene.simulation().run();
-    CHECK(made_again(taping.tape, second).verified == 10);
+    CHECK(made_again(taping.log, second).verified == 10);
 }
 
 TEST_CASE("a request that the recording does not know shows at its step, with object, column and both values")
@@ -179,7 +179,7 @@ TEST_CASE("a request that the recording does not know shows at its step, with ob
     taping.step(25);
     taping.keep_snapshot("periodic");
     taping.step(5);
-    const replay::ReplayReport report = made_again(taping.tape);
+    const replay::ReplayReport report = made_again(taping.log);
     REQUIRE(report.mismatch);
     CHECK(report.verified == 25);
     CHECK(report.mismatch->step == 26);
@@ -204,8 +204,8 @@ TEST_CASE("without a frame of the step the next one tells the column, whichever 
         taping.step(snapshot_at - 25);
         taping.keep_snapshot("periodic");
         taping.step(45 - snapshot_at);
-        for (Tick step = 26; step < 30; ++step) taping.tape.frames.erase({taping.scene.simulation().run(), step});
-        const replay::ReplayReport report = made_again(taping.tape);
+        for (Tick step = 26; step < 30; ++step) taping.log.frames.erase({taping.scene.simulation().run(), step});
+        const replay::ReplayReport report = made_again(taping.log);
         REQUIRE(report.mismatch);
         CHECK(report.mismatch->step == 26);
         CHECK(report.mismatch->snapshot_step == snapshot_at);
@@ -226,18 +226,18 @@ TEST_CASE("a gap in the numbers of the journal is a doubt, also between two runs
     taping.ask({{"reset", "", "", "", {}}});
     taping.keep_snapshot("begin");
     taping.step(5);
-    CHECK(made_again(taping.tape).doubts.empty());
-    taping.tape.entries[1].number = 4;
-    const replay::ReplayReport between = made_again(taping.tape);
+    CHECK(made_again(taping.log).doubts.empty());
+    taping.log.entries[1].number = 4;
+    const replay::ReplayReport between = made_again(taping.log);
     REQUIRE(between.doubts.size() == 1);
     CHECK(between.doubts[0].find("entries 2 to 3 are missing, after step 5 of run") != std::string::npos);
     // What came before the first entry is known of plabd's own recordings only.
-    taping.tape.entries[0].number = 3;
-    CHECK(made_again(taping.tape).doubts.empty());
-    taping.tape.about["recorder"] = "plabd";
-    CHECK(made_again(taping.tape).doubts.size() == 1);
-    taping.tape.about["topics"] = "plab/states plab/hashes";
-    const replay::ReplayReport without = made_again(taping.tape);
+    taping.log.entries[0].number = 3;
+    CHECK(made_again(taping.log).doubts.empty());
+    taping.log.about["recorder"] = "plabd";
+    CHECK(made_again(taping.log).doubts.size() == 1);
+    taping.log.about["topics"] = "plab/states plab/hashes";
+    const replay::ReplayReport without = made_again(taping.log);
     REQUIRE(without.doubts.size() == 1);
     CHECK(without.doubts[0].find("made without plab/journal") != std::string::npos);
 }
@@ -246,8 +246,8 @@ TEST_CASE("one wrong bit in a recorded hash is found")
 {
     Taping taping(kBall);
     taping.step(10);
-    taping.tape.hashes[6].hashes[0] ^= 1;
-    const replay::ReplayReport report = made_again(taping.tape);
+    taping.log.hashes[6].hashes[0] ^= 1;
+    const replay::ReplayReport report = made_again(taping.log);
     REQUIRE(report.mismatch);
     CHECK(report.mismatch->step == 7);
     CHECK(report.mismatch->in_frame.empty());
@@ -258,13 +258,13 @@ TEST_CASE("a recording without a snapshot is refused, and so is a request that c
     Taping taping(kBall);
     taping.step(3);
     simulation::Simulation simulation(library());
-    taping.tape.entries.push_back({});
-    taping.tape.entries.back().run = taping.scene.simulation().run(), taping.tape.entries.back().step = 1;
-    taping.tape.entries.back().operations = {{"remove", "nobody", "", "", {}}};
-    const auto impossible = replay::replay(taping.tape, simulation, library(), {});
+    taping.log.entries.push_back({});
+    taping.log.entries.back().run = taping.scene.simulation().run(), taping.log.entries.back().step = 1;
+    taping.log.entries.back().operations = {{"remove", "nobody", "", "", {}}};
+    const auto impossible = replay::replay(taping.log, simulation, library(), {});
     REQUIRE(!impossible);
     CHECK(impossible.error().reason.find("the request of step 1 cannot be carried out again") != std::string::npos);
-    Tape empty;
+    MemoryLog empty;
     const auto nothing = replay::replay(empty, simulation, library(), {});
     REQUIRE(!nothing);
     CHECK(nothing.error().reason.find("no snapshot to begin from") != std::string::npos);

@@ -6,7 +6,7 @@
 
 #include "plab/random.h"
 #include "plab/rotation.h"
-#include "simulation/events/course.h"
+#include "simulation/events/motion_bound.h"
 
 using namespace plab;
 using namespace plab::simulation;
@@ -45,14 +45,14 @@ struct Pair
         return dot(B.position - A.position, n) - support(bodies, shapes, 0, A.orientation, n) -
                support(bodies, shapes, 1, B.orientation, -n);
     }
-    Clearance clearance(double t, double T, Course (&courses)[2], BodyExtent (&extents)[2]) const
+    Clearance clearance(double t, double T, MotionBound (&motions)[2], BodyExtent (&extents)[2]) const
     {
         for (std::uint32_t b = 0; b < 2; ++b)
         {
             extents[b] = extent_of(bodies, shapes, b);
-            courses[b] = course_of(bodies, b, extents[b], 0, at(b, 0), T, at(b, T));
+            motions[b] = motion_bound_of(bodies, b, extents[b], 0, at(b, 0), T, at(b, T));
         }
-        return {bodies, shapes, {0, &courses[0], &extents[0], at(0, t)}, {1, &courses[1], &extents[1], at(1, t)}, T - t};
+        return {bodies, shapes, {0, &motions[0], &extents[0], at(0, t)}, {1, &motions[1], &extents[1], at(1, t)}, T - t};
     }
 };
 
@@ -82,17 +82,17 @@ TEST_CASE("balls: the bound is the time of impact itself")
     Pair p;
     p.add(sphere(0.1), {}, {1, 0, 0}, {0, 9, 0}, {0, 0, -9.81});
     p.add(sphere(0.2), {2, 0.1, 0}, {-9, 0, 0}, {}, {0, 0, -9.81});
-    Course courses[2];
+    MotionBound motions[2];
     BodyExtent extents[2];
     const double T = 1, hit = (2 - std::sqrt(0.09 - 0.01)) / 10;
-    CHECK(std::fabs(p.clearance(0, T, courses, extents).of_balls() - hit) < 1e-14);
+    CHECK(std::fabs(p.clearance(0, T, motions, extents).of_balls() - hit) < 1e-14);
     CHECK(extents[0].arm == 0);
     // Falling onto a flat thing, the way along its normal is as exact.
     Pair q;
     q.add(box({5, 5, 0.1}), {}, {}, {}, {});
     q.add(sphere(0.1), {0.3, 0.2, 1.2}, {3, 0, -1}, {1, 2, 3}, {0, 0, -9.81});
     const double fall = (-1 + std::sqrt(1 + 2 * 9.81)) / 9.81;
-    CHECK(std::fabs(q.clearance(0, T, courses, extents).along({0, 0, 1}, 1) - fall) < 1e-14);
+    CHECK(std::fabs(q.clearance(0, T, motions, extents).along({0, 0, 1}, 1) - fall) < 1e-14);
 }
 
 TEST_CASE("whatever spins, flies and falls: along a normal nothing closes before the bound says so")
@@ -109,9 +109,9 @@ TEST_CASE("whatever spins, flies and falls: along a normal nothing closes before
         const Vec3 n{1, 0, 0};
         const double T = 0.2, gap = p.width(n, 0);
         if (!(gap > 0)) continue;
-        Course courses[2];
+        MotionBound motions[2];
         BodyExtent extents[2];
-        const double clear = p.clearance(0, T, courses, extents).along(n, gap);
+        const double clear = p.clearance(0, T, motions, extents).along(n, gap);
         double first = T;
         for (int i = 1; i <= 4000 && first == T; ++i)
             if (p.width(n, T * i / 4000) < 0) first = T * i / 4000;
@@ -134,9 +134,9 @@ TEST_CASE("steps by the bound converge to a corner's impact like Newton's method
     int looks = 0;
     for (; looks < 30 && p.width(n, t) > 1e-13; ++looks)
     {
-        Course courses[2];
+        MotionBound motions[2];
         BodyExtent extents[2];
-        t += p.clearance(t, T, courses, extents).along(n, p.width(n, t));
+        t += p.clearance(t, T, motions, extents).along(n, p.width(n, t));
         CHECK(t <= want + 1e-14);
     }
     CHECK(std::fabs(t - want) < 1e-13);
@@ -150,7 +150,7 @@ TEST_CASE("a spin that shows at no end of a piece is bounded by the momentum")
     p.add(box({0.1, 0.1, 0.1}), {}, {}, {0.01, 5, 0.01}, {});
     p.bodies.inertia_B[0] = Mat3::diagonal(1, 2, 3), p.bodies.inverse_inertia_B[0] = Mat3::diagonal(1, 0.5, 1.0 / 3);
     // The spin goes over to the opposite and is 5 all the time: I w^2 / 2 = 25, L = 10, and all of it may go nowhere else.
-    const Course c = course_of(p.bodies, 0, extent_of(p.bodies, p.shapes, 0), 0, p.at(0, 0), 1, p.at(0, 0));
+    const MotionBound c = motion_bound_of(p.bodies, 0, extent_of(p.bodies, p.shapes, 0), 0, p.at(0, 0), 1, p.at(0, 0));
     CHECK(c.turning.spin >= std::sqrt(100.0 / 2 * (1 + 1.0 / 3) - 100.0 / 3));
     CHECK(c.turning.spin < 6);
     CHECK(c.turning.spin_up >= 5 * 5 / 4.0);
@@ -162,7 +162,7 @@ TEST_CASE("how far a body gets is no less than any point of it")
     p.add(box({0.3, 0.1, 0.2}), {1, 2, 3}, {2, 0, 4}, {0, 20, 0}, {0, 0, -40});
     const double T = 0.2;
     const BodyExtent e = extent_of(p.bodies, p.shapes, 0);
-    const double reach = reach_of(course_of(p.bodies, 0, e, 0, p.at(0, 0), T, p.at(0, T)), e);
+    const double reach = swept_distance(motion_bound_of(p.bodies, 0, e, 0, p.at(0, 0), T, p.at(0, T)), e);
     double most = 0;
     for (int i = 0; i <= 200; ++i)
     {

@@ -122,13 +122,13 @@ TEST_CASE("what events told of already is not told again")
         "<component id='two' type='Constraint/Distance' a='a' b='b' length='2.5'/>";
     const auto scene = scene_of(torn);
     const auto original = started(scene);
-    std::size_t told = 0;
+    std::size_t reported = 0;
     for (int i = 0; i < 40; ++i)
     {
         original->step();
-        for (const Event& e : original->events()) told += e.kind == "constraint.contradiction" ? 1 : 0;
+        for (const Event& e : original->events()) reported += e.kind == "constraint.contradiction" ? 1 : 0;
     }
-    REQUIRE(told > 0);
+    REQUIRE(reported > 0);
     Plan plan;
     plan.steps = 60, plan.every = 20;
     const std::string what = follow(scene, plan);

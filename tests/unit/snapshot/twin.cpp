@@ -79,9 +79,9 @@ Footprint footprint(const simulation::Simulation& s)
     return out;
 }
 
-Course run(simulation::Simulation& simulation, const Plan& plan)
+Trajectory run(simulation::Simulation& simulation, const Plan& plan)
 {
-    Course out;
+    Trajectory out;
     for (int k = 0; k < plan.steps; ++k)
     {
         if (k % plan.every == 0) out.snapshots.push_back(simulation.capture());
@@ -107,35 +107,35 @@ Result<simulation::Snapshot> arrived(const simulation::Snapshot& snapshot, const
     return file->snapshot;
 }
 
-std::string follow(const Course& course, std::size_t number, const Plan& plan)
+std::string follow(const Trajectory& trajectory, std::size_t number, const Plan& plan)
 {
     const int from = static_cast<int>(number) * plan.every;
     const bool ledger = plan.threads == plan.threads_after;
-    const auto snapshot = arrived(course.snapshots[number], plan);
+    const auto snapshot = arrived(trajectory.snapshots[number], plan);
     if (!snapshot) return "step " + std::to_string(from) + ": " + first_error(snapshot.errors());
     simulation::Simulation twin(library(), plan.threads_after);
     if (auto done = twin.restore(*snapshot); !done) return "step " + std::to_string(from) + ": " + first_error(done.errors());
-    if (auto what = difference_of(course.snapshots[number], twin.capture()); !what.empty())
+    if (auto what = difference_of(trajectory.snapshots[number], twin.capture()); !what.empty())
         return "restored at step " + std::to_string(from) + ": " + what;
     const int until = std::min(from + plan.follow, plan.steps);
     for (int k = from; k < until; ++k)
     {
         plan.meddle(twin, k);
         twin.step();
-        const Footprint now = footprint(twin), &then = course.steps[static_cast<std::size_t>(k)];
+        const Footprint now = footprint(twin), &then = trajectory.steps[static_cast<std::size_t>(k)];
         if (now != then) return words(from, k, then, now);
     }
     if (until < plan.steps) return {};
-    const std::string what = difference_of(course.end, twin.capture(), ledger);
+    const std::string what = difference_of(trajectory.end, twin.capture(), ledger);
     return what.empty() ? what : "from step " + std::to_string(from) + ", at the end: " + what;
 }
 
 }  // namespace
 
-std::string follow(const Course& course, const Plan& plan)
+std::string follow(const Trajectory& trajectory, const Plan& plan)
 {
-    for (std::size_t i = 0; i < course.snapshots.size(); ++i)
-        if (auto what = follow(course, i, plan); !what.empty()) return what;
+    for (std::size_t i = 0; i < trajectory.snapshots.size(); ++i)
+        if (auto what = follow(trajectory, i, plan); !what.empty()) return what;
     return {};
 }
 

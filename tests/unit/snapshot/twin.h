@@ -30,8 +30,8 @@ struct Footprint
 };
 Footprint footprint(const simulation::Simulation& simulation);
 
-/// A course of steps with snapshots on the way.
-struct Course
+/// A trajectory of steps with snapshots on the way.
+struct Trajectory
 {
     std::vector<Footprint> steps;  ///< after step 1, 2, ...
     std::vector<simulation::Snapshot> snapshots;
@@ -50,9 +50,9 @@ struct Plan
     std::function<void(simulation::Simulation&, int)> meddle = [](simulation::Simulation&, int) {};
 };
 
-Course run(simulation::Simulation& simulation, const Plan& plan);
-/// Goes on from each snapshot in a fresh Simulation. Why the first one differs from the course; empty if none does.
-std::string follow(const Course& course, const Plan& plan);
+Trajectory run(simulation::Simulation& simulation, const Plan& plan);
+/// Goes on from each snapshot in a fresh Simulation. Why the first one differs from the trajectory; empty if none does.
+std::string follow(const Trajectory& trajectory, const Plan& plan);
 /// Both, for a scene.
 std::string follow(const model::SceneSpec& scene, const Plan& plan);
 

@@ -168,7 +168,7 @@ TEST_CASE("Stoermer-Verlet and both splittings have their orders, with driving, 
     CHECK(drag_error(splitting(4), 500) < 1e-11);
 }
 
-TEST_CASE("a box under a torque that depends on time, attitude and spin: every rung keeps its order")
+TEST_CASE("a box under a torque that depends on time, attitude and spin: every algorithm keeps its order")
 {
     const auto law = [](double t, const Body& b)
     {

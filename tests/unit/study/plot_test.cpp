@@ -17,10 +17,10 @@ using namespace plab::study::plot;
 namespace
 {
 
-study::Point point(const std::string& rung, const std::string& dt, double error, double cpu)
+study::Point point(const std::string& algorithm, const std::string& dt, double error, double cpu)
 {
     study::Point p;
-    p.combination.rung = rung, p.combination.dt = dt;
+    p.combination.algorithm = algorithm, p.combination.dt = dt;
     p.record.dt = 1.0 / std::stod(dt.substr(2)), p.record.reached = 1, p.record.steps = 10;
     p.record.energy.time = {0, 1}, p.record.energy.drift = {0, -error}, p.record.energy.energy = {1, 1 - error}, p.record.energy.scale = 1;
     p.errors = {{error, error, error, error}}, p.resolved = {true}, p.cpu_min = p.cpu_median = cpu, p.energy_drift = error;
@@ -90,12 +90,13 @@ TEST_CASE("the front holds whom nobody beats")
 {
     const StudyResult r = sample();
     CHECK(pareto_front(r) == std::vector<std::size_t>{0, 2, 3});
-    CHECK(rungs_of(r).size() == 4);
-    const std::vector<std::string> told = findings(r);
-    CHECK(has(told.front(), "Better at 1/20 s is the most accurate"));
-    CHECK(std::any_of(told.begin(), told.end(), [](const auto& s) { return has(s, "Worse is never the best choice"); }));
-    CHECK(std::any_of(told.begin(), told.end(), [](const auto& s) { return has(s, "Better 4.0"); }));
-    CHECK(std::any_of(told.begin(), told.end(), [](const auto& s) { return has(s, "One run gave no result (not finite): Broken"); }));
+    CHECK(algorithms_of(r).size() == 4);
+    const std::vector<std::string> reported = findings(r);
+    CHECK(has(reported.front(), "Better at 1/20 s is the most accurate"));
+    CHECK(std::any_of(reported.begin(), reported.end(), [](const auto& s) { return has(s, "Worse is never the best choice"); }));
+    CHECK(std::any_of(reported.begin(), reported.end(), [](const auto& s) { return has(s, "Better 4.0"); }));
+    CHECK(
+        std::any_of(reported.begin(), reported.end(), [](const auto& s) { return has(s, "One run gave no result (not finite): Broken"); }));
 }
 
 TEST_CASE("pictures are well-formed SVG and PNG; the report holds them, and nothing from outside")

@@ -23,9 +23,9 @@ Reference three(double y1, double y2, double y4)
     {
         Quantity q;
         q.name = "ball.x", q.width = 1;
-        runs[i].times = {0, 1}, runs[i].quantities = {q}, runs[i].courses = {{1, {0, last[i]}}};
+        runs[i].times = {0, 1}, runs[i].quantities = {q}, runs[i].time_series = {{1, {0, last[i]}}};
     }
-    return auto_reference(runs, "Rung", "0.1");
+    return auto_reference(runs, "Algorithm", "0.1");
 }
 
 /// Runs with errors kSmall h^p at h = 1/10, 1/20, 1/40 from the truth 2: so small that mixed errors have their order, too.
@@ -35,7 +35,7 @@ Reference of_order(double p)
     return three(2 + kSmall * std::pow(0.1, p), 2 + kSmall * std::pow(0.05, p), 2 + kSmall * std::pow(0.025, p));
 }
 
-double error_of(const Reference& r) { return std::fabs(r.courses[0].values[1] - 2); }
+double error_of(const Reference& r) { return std::fabs(r.time_series[0].values[1] - 2); }
 
 }  // namespace
 
@@ -61,7 +61,7 @@ TEST_CASE("below order 0.9 nothing is extrapolated: not converged, and an uncert
         const Reference r = of_order(p);
         CHECK(!r.converges);
         CHECK(!r.converged[0]);
-        CHECK(r.courses[0].values[1] == 2 + kSmall * std::pow(0.025, p));
+        CHECK(r.time_series[0].values[1] == 2 + kSmall * std::pow(0.025, p));
         // What goes on at the order seen ends where the uncertainty says; no wider, unless the runs differ by more.
         CHECK(r.uncertainty[0].series_absolute >= error_of(r) * (1 - 1e-9));
         const double most = kSmall * (std::pow(0.1, p) - std::pow(0.05, p));
@@ -79,7 +79,7 @@ TEST_CASE("runs that come no closer are doubted by more than they differ")
         const Reference r = three(y1, y2, y4);
         const double most = std::max(std::fabs(y1 - y2), std::fabs(y2 - y4));
         CHECK(!r.converges);
-        CHECK(r.courses[0].values[1] == y4);
+        CHECK(r.time_series[0].values[1] == y4);
         CHECK(r.uncertainty[0].series_absolute == doctest::Approx(most / (std::pow(2.0, 0.2) - 1)));
     }
 }
@@ -99,10 +99,10 @@ TEST_CASE("an uncertain reference is told")
 {
     StudyResult r;
     r.reference = of_order(0.62);
-    const auto told = findings(r);
-    REQUIRE(told.size() == 1);
-    CHECK(told[0].starts_with("The reference is uncertain: Rung with dt = 0.1 s, halved twice; not converged"));
-    CHECK(told[0].find("0.62") != std::string::npos);
+    const auto reported = findings(r);
+    REQUIRE(reported.size() == 1);
+    CHECK(reported[0].starts_with("The reference is uncertain: Algorithm with dt = 0.1 s, halved twice; not converged"));
+    CHECK(reported[0].find("0.62") != std::string::npos);
     r.reference = of_order(1);
     CHECK(findings(r).empty());
 }

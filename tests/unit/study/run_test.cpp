@@ -58,9 +58,9 @@ TEST_CASE("a recorded run ends in the state that the scene ends in; so does a ti
     CHECK(record.hash == scene.hash());
     CHECK(record.steps == 960);
     CHECK(record.ok());
-    CHECK(record.courses[0].at(record.times.size() - 1)[2] == scene.vec("red", "position").z);
-    CHECK(record.courses[1].values.back() == scene.angle("fan"));
-    CHECK(record.courses[3].values.front() == 1);
+    CHECK(record.time_series[0].at(record.times.size() - 1)[2] == scene.vec("red", "position").z);
+    CHECK(record.time_series[1].values.back() == scene.angle("fan"));
+    CHECK(record.time_series[3].values.front() == 1);
     CHECK(record.events.at("contact.impact") >= 1);
     const Timing timing = time_run(library(), *spec, how);
     CHECK(timing.steps == 960);
@@ -273,7 +273,7 @@ TEST_CASE("a swap inside a run is carried out and answered; one that is refused 
     CHECK(record.swaps[0].swaps.front().to == "Solver/SemiImplicitEuler");
     CHECK(record.allocations == 0);
     // Semi-implicit Euler from t = 0.4 on: late by g dt/2 a second.
-    CHECK(record.courses[0].values.back() == doctest::Approx(1 - 0.5 * 9.81 - 0.6 * 9.81 * 0.005).epsilon(1e-9));
+    CHECK(record.time_series[0].values.back() == doctest::Approx(1 - 0.5 * 9.81 - 0.6 * 9.81 * 0.005).epsilon(1e-9));
     how.swaps.push_back({60, "nobody", "Solver/SemiImplicitEuler"});
     const RunRecord refused = record_run(library(), compiled(kBall + kWeight), how);
     CHECK(refused.outcome == Outcome::SwapRefused);

@@ -54,38 +54,39 @@ StudyResult study_of(const Plan& p)
     return result.take();
 }
 
-std::vector<Touch> impacts(std::initializer_list<double> times)
+std::vector<RecordedContact> impacts(std::initializer_list<double> times)
 {
-    std::vector<Touch> out;
+    std::vector<RecordedContact> out;
     for (const double t : times) out.push_back({"contact.impact", "a", "b", t});
     return out;
 }
 
 }  // namespace
 
-TEST_CASE("all combinations, dt fastest, rungs in front")
+TEST_CASE("all combinations, dt fastest, algorithms in front")
 {
-    const auto rung = parse_rung("fast: contact.response=None");
-    REQUIRE(rung.ok());
-    const auto c = combine({*rung}, {varied("dt=1/60,1/120"), varied("gear=Assign,Constraint/AngularVelocity/Graph"), varied("a.mass=2")});
+    const auto algorithm = parse_algorithm("fast: contact.response=None");
+    REQUIRE(algorithm.ok());
+    const auto c =
+        combine({*algorithm}, {varied("dt=1/60,1/120"), varied("gear=Assign,Constraint/AngularVelocity/Graph"), varied("a.mass=2")});
     REQUIRE(c.size() == 4);
     CHECK(c[0].label() == "fast + Assign + mass 2 at 1/60 s");
     CHECK(c[1].label() == "fast + Assign + mass 2 at 1/120 s");
     CHECK(c[3].label() == "fast + AngularVelocity/Graph + mass 2 at 1/120 s");
     CHECK(c[0].settings.size() == 4);
-    CHECK(combine({}, {}).front().rung == "as written");
+    CHECK(combine({}, {}).front().algorithm == "as written");
     CHECK(!parse_vary("dt").ok());
     CHECK(!parse_vary("dt=1/60,,1/30").ok());
-    CHECK(!parse_rung("solver").ok());
+    CHECK(!parse_algorithm("solver").ok());
 }
 
 TEST_CASE("each run has a name of its own, and no setting is overridden unseen")
 {
-    const auto why = [](const std::vector<std::string>& rungs, const std::vector<std::string>& vary)
+    const auto why = [](const std::vector<std::string>& algorithms, const std::vector<std::string>& vary)
     {
-        std::vector<Rung> all;
+        std::vector<Algorithm> all;
         std::vector<std::vector<Setting>> of;
-        for (const std::string& text : rungs) all.push_back(*parse_rung(text));
+        for (const std::string& text : algorithms) all.push_back(*parse_algorithm(text));
         for (const std::string& text : vary) of.push_back(varied(text));
         const auto done = check_settings(all, of);
         return done ? "none" : done.error().text();
@@ -97,8 +98,8 @@ TEST_CASE("each run has a name of its own, and no setting is overridden unseen")
     CHECK(has(why({}, {"x=Kind/A,A"}), "two runs would have the name 'A'"));
     CHECK(has(why({"x=A", "y=A"}, {}), "two runs would have the name 'A'"));
     CHECK(has(why({"a: x=A", "a: x=B"}, {}), "two runs would have the name 'a'"));
-    CHECK(has(why({"a: x=A x=B"}, {}), "--rung sets x twice"));
-    CHECK(has(why({"a: x=A dt=1/60"}, {"dt=1/60,1/30"}), "dt is set by a --rung and varied"));
+    CHECK(has(why({"a: x=A x=B"}, {}), "--algorithm sets x twice"));
+    CHECK(has(why({"a: x=A dt=1/60"}, {"dt=1/60,1/30"}), "dt is set by a --algorithm and varied"));
 }
 
 TEST_CASE("settings: types, parameters, entries of scripts; what does not hold is said")
@@ -141,16 +142,16 @@ TEST_CASE("errors are mixed and relative to how far the reference goes; attitude
 {
     Quantity q;
     q.width = 2;
-    const Course reference{2, {10, 0, 14, 3}}, course{2, {10, 0.07, 14.18, 3}};
+    const TimeSeries reference{2, {10, 0, 14, 3}}, series{2, {10, 0.07, 14.18, 3}};
     CHECK(scale_of(reference) == 4);
-    const Distance d = distance(q, course, reference, 4);
+    const Distance d = distance(q, series, reference, 4);
     CHECK(near(d.series, 0.0175, 1e-14));
     CHECK(near(d.last, 0.01, 1e-14));
     CHECK(near(d.last_absolute, 0.18, 1e-14));
-    CHECK(scale_of(Course{1, {2, 2}}) == 2);
-    CHECK(scale_of(Course{1, {0, 0}}) == 1);
-    CHECK(std::isnan(distance(q, Course{2, {10, 0}}, reference, 4).last));
-    CHECK(std::isnan(distance(q, Course{2, {10, 0, NAN, 3}}, reference, 4).series));
+    CHECK(scale_of(TimeSeries{1, {2, 2}}) == 2);
+    CHECK(scale_of(TimeSeries{1, {0, 0}}) == 1);
+    CHECK(std::isnan(distance(q, TimeSeries{2, {10, 0}}, reference, 4).last));
+    CHECK(std::isnan(distance(q, TimeSeries{2, {10, 0, NAN, 3}}, reference, 4).series));
     const std::vector<double> identity{1, 0, 0, 0}, turned{-std::cos(0.1), 0, -std::sin(0.1), 0};
     CHECK(near(attitude_angle(turned, identity), 0.2, 1e-15));
     CHECK(digits(1e-7) == doctest::Approx(7));
@@ -204,7 +205,8 @@ TEST_CASE("auto: Richardson finds the order, and its uncertainty holds against t
     for (std::size_t k = 0; k < 2; ++k)
     {
         CHECK(r.reference.order[k] == doctest::Approx(4).epsilon(0.05));
-        const Distance error = distance(r.quantities[k], r.reference.courses[k], exact.reference.courses[k], exact.reference.scale[k]);
+        const Distance error =
+            distance(r.quantities[k], r.reference.time_series[k], exact.reference.time_series[k], exact.reference.scale[k]);
         CHECK(error.series <= r.reference.uncertainty[k].series);
         CHECK(error.series > 0);
         CHECK(r.reference.uncertainty[k].series < 1e-7);
@@ -218,7 +220,7 @@ TEST_CASE("a reference from a file: the course that a study wrote")
     Plan p = plan("scenes/studies/projectile.xml", {"solver=SemiImplicitEuler", "dt=1/60"}, "exact:parabola",
                   {"ball.position", "ball.orientation"}, 2);
     const StudyResult r = study_of(p);
-    REQUIRE(write_file(file, course_csv(r, r.reference.times, r.reference.courses)).ok());
+    REQUIRE(write_file(file, time_series_csv(r, r.reference.times, r.reference.time_series)).ok());
     p.reference = parse_reference(file);
     const StudyResult again = study_of(p);
     CHECK(again.points[0].error() == r.points[0].error());
@@ -249,7 +251,8 @@ TEST_CASE("auto: an uncertainty that holds where the error is known, for order 2
         const StudyResult r = study_of(p);
         p.reference = parse_reference("exact:oscillator");
         const StudyResult exact = study_of(p);
-        const Distance error = distance(r.quantities[0], r.reference.courses[0], exact.reference.courses[0], exact.reference.scale[0]);
+        const Distance error =
+            distance(r.quantities[0], r.reference.time_series[0], exact.reference.time_series[0], exact.reference.scale[0]);
         if (order > 0) CHECK(r.reference.order[0] == doctest::Approx(order).epsilon(0.05));
         CHECK(error.series <= std::max(r.reference.uncertainty[0].series, exact.reference.uncertainty[0].series));
     }
@@ -263,7 +266,7 @@ TEST_CASE("a list of numbers: all of it, or one; the name that plabd's trace has
     CHECK(r.quantities[0].width == 3);
     CHECK(r.quantities[0].column(2) == "reaction.values.3");
     CHECK(r.quantities[1].width == 1);
-    const Course &all = r.points[0].record.courses[0], &second = r.points[0].record.courses[1];
+    const TimeSeries &all = r.points[0].record.time_series[0], &second = r.points[0].record.time_series[1];
     CHECK(all.at(all.samples() - 1)[1] == second.values.back());
     CHECK(near(all.at(all.samples() - 1)[0] + all.at(all.samples() - 1)[1] + all.at(all.samples() - 1)[2], 1, 1e-12));
     CHECK(has(run_study(library(), plan("scenes/studies/robertson.xml", {}, "none", {"reaction.values.4"}, 1)).error().text(), "values"));
@@ -293,8 +296,8 @@ TEST_CASE("a run that is lost is no small error: it is named, left out of the fr
     CHECK(r.points[1].record.ok());
     CHECK(r.points[2].error() < 1e-9);
     CHECK(r.points[1].error() < 1e-3);
-    const auto told = findings(r);
-    CHECK(std::any_of(told.begin(), told.end(),
+    const auto reported = findings(r);
+    CHECK(std::any_of(reported.begin(), reported.end(),
                       [](const auto& s) { return has(s, "One run gave no result (blew up): RungeKutta4 at 1/60 s"); }));
 }
 
@@ -306,7 +309,7 @@ TEST_CASE("one run has no range, and runs that agree have none either")
         for (const double drift : drifts)
         {
             Point& p = r.points.emplace_back();
-            p.combination.rung = "R" + std::to_string(r.points.size()), p.energy_drift = drift, p.record.energy.scale = 1;
+            p.combination.algorithm = "R" + std::to_string(r.points.size()), p.energy_drift = drift, p.record.energy.scale = 1;
         }
         for (const std::string& s : findings(r))
             if (s.starts_with("Energy")) return s;

@@ -106,7 +106,7 @@ TEST_CASE("ids and types are checked before the runs, with the short names of --
     CHECK(wrong(plan("bounce.xml", {"dt=1/60"}, {"0:contact.response=Rows", "1:contact.response.manager=SoftStep"}, "none")) == "none");
 }
 
-TEST_CASE("a swap that one rung does not know is that run's result; a reference that cannot make it is an error")
+TEST_CASE("a swap that one algorithm does not know is that run's result; a reference that cannot make it is an error")
 {
     const StudyResult r =
         study_of(plan("bounce.xml", {"contact.response=Rows,Impulse", "dt=1/60"}, {"0.5s:contact.response.manager=SoftStep"}, "none"));
@@ -115,7 +115,7 @@ TEST_CASE("a swap that one rung does not know is that run's result; a reference 
     CHECK(r.points[1].record.outcome == Outcome::Refused);
     CHECK(has(r.points[1].record.why, "contact.response.manager"));
     Plan p = plan("projectile.xml", {"dt=1/60"}, {"0.5s:solver=SemiImplicitEuler"}, "auto");
-    p.reference.rung = *parse_rung("dt=1/7");
+    p.reference.algorithm = *parse_algorithm("dt=1/7");
     CHECK(has(wrong(p), "in the reference: --swap '0.5s:solver=SemiImplicitEuler': no step of dt = "));
 }
 
@@ -155,8 +155,8 @@ TEST_CASE("a swap that a run refuses is its outcome, and the console's")
     CHECK(name_of(record.outcome) == "swap refused");
     CHECK(record.why.starts_with("the swap before step 40, at t = 0.4 s: "));
     CHECK(record.steps == 41);
-    const auto told = findings(r);
-    CHECK(std::any_of(told.begin(), told.end(),
+    const auto reported = findings(r);
+    CHECK(std::any_of(reported.begin(), reported.end(),
                       [](const auto& s)
                       { return has(s, "One run gave no result (swap refused): as written: the swap before step 40, at t = 0.4 s: "); }));
 }

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-using plab::control::Spread;
+using plab::cli::Spread;
 
 TEST_CASE("the spread of a few numbers")
 {

@@ -64,8 +64,8 @@ TEST_CASE("a time in the middle is come to without reading what was before, also
         const auto at = std::find_if(moments.begin(), moments.end(), [](const view::Moment& m) { return m.state.step == 805; });
         REQUIRE(at != moments.end());
         REQUIRE(at->state.bodies.size() == 2);
-        const double told = only_moved ? 8.0 : 8.05;  // of blue
-        CHECK(at->state.bodies[1].pose.p.z == doctest::Approx(told * told));
+        const double reported = only_moved ? 8.0 : 8.05;  // of blue
+        CHECK(at->state.bodies[1].pose.p.z == doctest::Approx(reported * reported));
     }
 }
 

@@ -193,9 +193,9 @@ TEST_CASE("frames that cannot be had are told, and the exit code says so")
         FakeServer server({.until = 0.3, .leaves = true});
         const Run run = view(server, "--at 0 --fps 10 --duration 0.5 --frames " + folder / "late");
         CHECK(run.code == 1);
-        const bool told =
+        const bool reported =
             has(run.text, "the server has gone; ") && has(run.text, " of 5 frames cannot be had, the last state was of t = 0.");
-        CHECK_MESSAGE(told, run.text);
+        CHECK_MESSAGE(reported, run.text);
         CHECK(std::filesystem::exists(folder / "late/frame_0000.png"));
         CHECK_FALSE(std::filesystem::exists(folder / "late/frame_0004.png"));
     }

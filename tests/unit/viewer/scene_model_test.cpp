@@ -32,9 +32,9 @@ link::Interaction interaction(const std::string& id, const std::string& type, st
 }
 
 /// A ball (handle 1, its sphere 0.5 m off the body's origin), a floor, a wheel on a shaft along x (handle 2).
-link::Snapshot sample()
+link::CatalogueContents sample()
 {
-    link::Snapshot s;
+    link::CatalogueContents s;
     s.scene.emplace();
     s.scene->run = 1, s.scene->title = "Sample";
     s.shapes["round"] = {"round", "Shape/Sphere", "sphere", {0.5, 0, 0}, {}, {0.25, 0, 0}, {}, {}};
@@ -64,10 +64,10 @@ const render::Item* find_form(const render::Drawing& drawing, render::Form form)
     return nullptr;
 }
 
-SceneModel model_of(const link::Snapshot& snapshot)
+SceneModel model_of(const link::CatalogueContents& snapshot)
 {
     SceneModel model({true, true});
-    model.use(std::make_shared<link::Snapshot>(snapshot));
+    model.use(std::make_shared<link::CatalogueContents>(snapshot));
     return model;
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("a body is drawn where its state says, its shape turned with it; a sta
 
 TEST_CASE("capsules and cylinders are forms of their own; a compound is drawn as its triangles")
 {
-    link::Snapshot snapshot = sample();
+    link::CatalogueContents snapshot = sample();
     snapshot.shapes["round"].form = "capsule";
     CHECK(find_form(model_of(snapshot).draw(at(0)), render::Form::Capsule) != nullptr);
     snapshot.shapes["round"].form = "compound";
@@ -138,13 +138,13 @@ TEST_CASE("the radius of an axle follows its inertia within bounds")
 
 TEST_CASE("what the catalogue or the state does not know yet is left out, and comes with it")
 {
-    link::Snapshot snapshot = sample();
+    link::CatalogueContents snapshot = sample();
     SceneModel model = model_of(snapshot);
     State state = at(0);
     state.bodies.push_back({3, {{1, 1, 1}, {}}});
     CHECK(model.draw(state).items.size() == 4);  // ball, floor, axle, mark
     snapshot.objects["late"] = body("late", 3, "dynamic", "round");
-    model.use(std::make_shared<link::Snapshot>(snapshot));
+    model.use(std::make_shared<link::CatalogueContents>(snapshot));
     CHECK(model.draw(state).items.size() == 5);
     CHECK(model.draw(at(0)).items.size() == 4);
     SUBCASE("a handle of another run is somebody else's")
@@ -156,7 +156,7 @@ TEST_CASE("what the catalogue or the state does not know yet is left out, and co
 
 TEST_CASE("meshes are handed over once, and again only when one changes")
 {
-    link::Snapshot snapshot = sample();
+    link::CatalogueContents snapshot = sample();
     snapshot.shapes["tetra"] = {"tetra",
                                 "Shape/Mesh",
                                 "mesh",
@@ -173,16 +173,16 @@ TEST_CASE("meshes are handed over once, and again only when one changes")
     CHECK(drawing.meshes[0].triangles == std::vector<std::uint32_t>{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3});
     REQUIRE(find_form(drawing, render::Form::Mesh) != nullptr);
     snapshot.interactions["contact"].type = "CDetection/Other";
-    model.use(std::make_shared<link::Snapshot>(snapshot));
+    model.use(std::make_shared<link::CatalogueContents>(snapshot));
     CHECK(model.draw(at(0)).meshes_revision == revision);
     snapshot.shapes["tetra"].vertices[3].z = 2;
-    model.use(std::make_shared<link::Snapshot>(snapshot));
+    model.use(std::make_shared<link::CatalogueContents>(snapshot));
     CHECK(model.draw(at(0)).meshes_revision != revision);
 }
 
 TEST_CASE("a caption shows each algorithm as it was at the step of the state")
 {
-    link::Snapshot snapshot = sample();
+    link::CatalogueContents snapshot = sample();
     SceneModel model = model_of(snapshot);
     const auto lines = [&](std::int64_t step)
     {
@@ -192,14 +192,14 @@ TEST_CASE("a caption shows each algorithm as it was at the step of the state")
     };
     CHECK(lines(0) == std::vector<std::string>{"Sample, t = 1.500 s", "contact: CDetection/ODE"});
     snapshot.interactions["contact"] = interaction("contact", "CDetection/Other", 100);
-    model.use(std::make_shared<link::Snapshot>(snapshot));
+    model.use(std::make_shared<link::CatalogueContents>(snapshot));
     CHECK(lines(99).back() == "contact: CDetection/ODE");
     CHECK(lines(100).back() == "contact: CDetection/Other");
 }
 
 TEST_CASE("of many interactions the most expensive are shown, and how many more there are")
 {
-    link::Snapshot snapshot = sample();
+    link::CatalogueContents snapshot = sample();
     snapshot.metrics.emplace();
     for (int i = 10; i < 51; ++i)
     {
@@ -220,7 +220,7 @@ TEST_CASE("of many interactions the most expensive are shown, and how many more 
 
 TEST_CASE("an object without a colour has one of its id; a colour that is given is kept")
 {
-    link::Snapshot snapshot = sample();
+    link::CatalogueContents snapshot = sample();
     snapshot.objects["ball"].color = Vec3{0.1, 0.2, 0.3};
     SceneModel model = model_of(snapshot);
     CHECK(find_form(model.draw(at(0)), render::Form::Sphere)->color == Vec3{0.1, 0.2, 0.3});
@@ -230,7 +230,7 @@ TEST_CASE("an object without a colour has one of its id; a colour that is given 
 
 TEST_CASE("the view: a named camera, the front one, everything; and what the options change")
 {
-    link::Snapshot snapshot = sample();
+    link::CatalogueContents snapshot = sample();
     snapshot.scene->cameras = {{"side", {9, 0, 0}, {}, {0, 0, 1}, 0.5}, {"front", {0, -9, 0}, {}, {0, 0, 1}, 0.6}};
     SceneModel model = model_of(snapshot);
     const std::vector<render::Item> items = model.draw(at(0)).items;

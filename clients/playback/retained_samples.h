@@ -1,0 +1,41 @@
+/// The catalogue of a recording: what its topics for late joiners hold at a time.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "idl/recording/reader.h"
+#include "idl/recording/sample_header.h"
+
+namespace plab::playback
+{
+
+/// Topic and key.
+using InstanceKey = std::pair<std::string, std::string>;
+
+/// Whether a topic has instances that come, stay and go: objects, shapes, interactions, types, the scene.
+bool is_catalogue(const std::string& topic);
+
+class RetainedSamples
+{
+public:
+    RetainedSamples();
+
+    /// A sample of a catalogue topic.
+    Result<InstanceKey> put(const std::string& topic, recording::ByteView bytes);
+    /// Takes what a sample of plab/gone names off the shelf. An error: it is no such sample.
+    Result<std::set<InstanceKey>> remove(recording::ByteView gone);
+
+    const std::map<InstanceKey, recording::Bytes>& entries() const { return entries_; }
+    bool has(const InstanceKey& place) const { return entries_.contains(place); }
+
+private:
+    std::map<std::string, std::unique_ptr<recording::Peek>> peeks_;
+    std::map<InstanceKey, recording::Bytes> entries_;
+};
+
+/// What stands there after all that has come until `time`, and at it. What is damaged is left out.
+RetainedSamples retained_at(const recording::Reader& reader, std::uint64_t time);
+
+}  // namespace plab::playback

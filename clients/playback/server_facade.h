@@ -1,0 +1,66 @@
+/// What makes a playback a server to others: its name, its status, and that it answers requests, with a no.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "idl/entity.h"
+#include "idl/identity.h"
+#include "idl/name_lock.h"
+#include "idl/recording/cdr.h"
+
+namespace plab::playback
+{
+
+/// Where the playback is.
+struct PlaybackState
+{
+    std::uint64_t run = 0;
+    std::int64_t step = 0;
+    double time = 0;  ///< s, simulated
+    bool is_paused = false;
+    double rate_asked = 1, rate_reached = 0;
+    std::uint64_t run_shift = 0, event_shift = 0, collision_shift = 0;  ///< what numbers of the recording are more here
+};
+
+class ServerFacade
+{
+public:
+    /// Takes the name. An error: a server of this name runs already on this host.
+    static Result<ServerFacade> open(std::uint32_t domain, const std::string& name, const std::string& version, const std::string& file);
+    /// Afterwards it can be seen and asked.
+    Result<void> join(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber);
+
+    /// What the recorded server said of itself last; what is no sample of plab/server is an error.
+    Result<void> use(recording::ByteView status);
+    void send(const PlaybackState& state);
+    /// Refuses the requests that have come.
+    void answer(const PlaybackState& state);
+    /// Why this playback has to go, if it has: who was first keeps the name.
+    std::optional<std::string> look_for_rival();
+    /// Says goodbye, for so long at the most.
+    void leave(dds_duration_t longest);
+
+    const wire::Entity& requests() const { return requests_.entity(); }
+    const std::string& name() const { return identity_.name; }
+
+private:
+    ServerFacade(wire::NameLock lock, wire::Identity identity, std::string file)
+        : lock_(std::move(lock)), identity_(std::move(identity)), file_(std::move(file))
+    {
+    }
+    void refuse(const plab_v2_Request& request, const PlaybackState& state);
+
+    wire::NameLock lock_;
+    wire::Identity identity_;
+    std::string file_;
+    recording::Decoder decoder_;
+    std::unique_ptr<recording::Sample<plab_v2_Server>> recorded_ = std::make_unique<recording::Sample<plab_v2_Server>>();
+    wire::Writer<plab_v2_Server> status_;
+    wire::Reader<plab_v2_Server> others_;
+    wire::Reader<plab_v2_Request> requests_;
+    wire::Writer<plab_v2_Reply> replies_;
+    std::uint64_t refused_ = 0;
+};
+
+}  // namespace plab::playback

@@ -1,0 +1,60 @@
+/// What the narrow phase finds: points of contact of two shapes, or the nearest points.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "plab/vector.h"
+
+namespace plab::detection
+{
+
+/// One point of contact; normal from the first shape to the second.
+struct ContactPoint
+{
+    Vec3 point;                 ///< m, half way between the two surfaces
+    Vec3 normal;                ///< unit
+    double depth = 0;           ///< m; < 0: a gap within the margin that was asked for
+    std::uint32_t feature = 0;  ///< which corner or edge, < kFeatures; stable while the same ones touch
+};
+
+inline constexpr std::uint32_t kFeatures = 1u << 20;
+
+/// Up to kCapacity points between two shapes.
+class ContactPoints
+{
+public:
+    static constexpr std::size_t kCapacity = 16;
+    /// m: points with a gap up to this are kept too.
+    explicit ContactPoints(double margin = 0) : margin_(margin) {}
+    void clear() { count_ = 0, triangles_ = 0; }
+    void clear(double margin) { clear(), margin_ = margin; }
+    double margin() const { return margin_; }
+    /// Keeps points that overlap, as far as there is room.
+    void add(const ContactPoint& contact_point)
+    {
+        if (contact_point.depth > -margin_ && count_ < kCapacity) contact_points_[count_++] = contact_point;
+    }
+    /// Triangles gone through to find them.
+    std::size_t triangles() const { return triangles_; }
+    void note_triangles(std::size_t more) { triangles_ += more; }
+    std::span<ContactPoint> all() { return {contact_points_.data(), count_}; }
+    std::span<const ContactPoint> all() const { return {contact_points_.data(), count_}; }
+
+private:
+    std::array<ContactPoint, kCapacity> contact_points_{};
+    std::size_t count_ = 0, triangles_ = 0;
+    double margin_ = 0;
+};
+
+/// The nearest points of two shapes.
+struct Separation
+{
+    double gap = 0;             ///< m; < 0: depth along `normal`
+    Vec3 point_a, point_b;      ///< m
+    Vec3 normal;                ///< unit, from a to b
+    std::size_t triangles = 0;  ///< gone through to find it
+};
+
+}  // namespace plab::detection

@@ -1,0 +1,148 @@
+// Pairs that may meet anywhere inside their present smooth pieces: courses of bodies, the broad look, the first bounds.
+#include <algorithm>
+
+#include "simulation/events/event_locator.h"
+
+namespace plab::simulation
+{
+
+void EventLocator::begin_motion_bounds()
+{
+    const world::HostTables& host = step_.world.host();
+    const Bodies& bodies = host.bodies;
+    const double step = step_.frame.step;
+    // The stepper makes a new locator when anything but motion has changed.
+    if (motions_.size() != bodies.size())
+    {
+        motions_.assign(bodies.size(), {});
+        for (std::uint32_t b = 0; b < bodies.size(); ++b) extents_.push_back(extent_of(bodies, host.shapes, b));
+        motion_margin_.assign(bodies.size(), 0.0), active_.assign(bodies.size(), 0);
+    }
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)
+    {
+        const BodyState last = BodyState::of(bodies, b);
+        if (bodies.motion[b] == Motion::Static)
+        {
+            motions_[b] = prescribed_motion_bound(extents_[b], 0, last, step, last);
+            motion_margin_[b] = 0;
+            continue;
+        }
+        motion_.start().restore_body(step_.world.host(), b);
+        const BodyState first = BodyState::of(bodies, b);
+        motion_.end().restore_body(step_.world.host(), b);
+        motions_[b] = bodies.dynamic(b) ? motion_bound_of(bodies, b, extents_[b], 0, first, step, last)
+                                        : prescribed_motion_bound(extents_[b], 0, first, step, last);
+        motion_margin_[b] = swept_distance(motions_[b], extents_[b]);
+    }
+}
+
+void EventLocator::start_pieces(double time)
+{
+    for (const std::uint32_t g : scope_)
+        for (const std::uint32_t b : step_.groups.all[g].bodies)
+            motions_[b].begin = time, motions_[b].first = BodyState::of(step_.world.host().bodies, b);
+}
+
+void EventLocator::end_pieces()
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    for (const std::uint32_t g : scope_)
+        for (const std::uint32_t b : step_.groups.all[g].bodies)
+        {
+            const MotionBound& c = motions_[b];
+            motions_[b] = motion_bound_of(bodies, b, extents_[b], c.begin, c.first, step_.frame.step, BodyState::of(bodies, b));
+            motion_margin_[b] = swept_distance(motions_[b], extents_[b]);
+        }
+}
+
+void EventLocator::find_near(bool only_rewound)
+{
+    const Bodies& bodies = step_.world.host().bodies;
+    const auto activate = [&](std::uint8_t flag)
+    {
+        for (const std::uint32_t g : scope_)
+            if (rewound_[g] != 0)
+                for (const std::uint32_t b : step_.groups.all[g].bodies) active_[b] = flag;
+    };
+    if (only_rewound) activate(1);
+    for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d)
+    {
+        const Detector& detector = contacts_.detectors()[d];
+        if (!detector.certifies) continue;
+        near_.clear();
+        NearCollector sink(step_.world, motion_margin_, near_);
+        contacts_.sample(detector, sink, only_rewound ? std::span<const std::uint8_t>(active_) : std::span<const std::uint8_t>());
+        budget_.spend(WorkBudget::kListedPair * static_cast<double>(near_.size()));
+        for (const NearCollector::Pair& pair : near_)
+            if (bodies.dynamic(pair.a.index) || bodies.dynamic(pair.b.index)) consider_near(d, pair.a, pair.b);
+    }
+    if (only_rewound) activate(0);
+}
+
+/// The contacts of one pair, as if b were `shift` further. The detection knows the bodies from the look at all.
+void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, std::vector<FoundContact>& found)
+{
+    const Detector& detector = contacts_.detectors()[candidate.detector];
+    const PersistentPair pair{candidate.a, candidate.b, shift};
+    active_[candidate.a.index] = active_[candidate.b.index] = 1;
+    ContactCollector sink(step_.world, found);
+    sink.begin_query(candidate.detector, std::span(&pair, 1), true);
+    contacts_.sample(detector, sink, active_);
+    step_.report.further_pairs += sink.further_pairs();
+    active_[candidate.a.index] = active_[candidate.b.index] = 0;
+    sort_contacts(found, step_.world);
+}
+
+void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
+{
+    // Rounding, where a course starts again inside the step, is far below this share of what moves a body.
+    constexpr double kExact = 0x1p-32;
+    const MotionBound &ca = motions_[a.index], &cb = motions_[b.index];
+    const double begin = std::max(ca.begin, cb.begin), left = step_.frame.step - begin;
+    if (!(left > 0)) return;
+    const Bodies& bodies = step_.world.host().bodies;
+    const Shapes& shapes = step_.world.host().shapes;
+    double clear = 0;
+    // Where one began earlier, it is where its course says, unless its forces change.
+    const auto is_exact = [&](const MotionBound& c)
+    { return c.begin == begin || c.deviation <= kExact * (length(c.acceleration) + length(c.first.velocity) / (c.end - c.begin)); };
+    if (is_exact(ca) && is_exact(cb))
+    {
+        const auto at_begin = [&](std::uint32_t body, const MotionBound& c) {
+            return mover(body, {c.position_at(begin), c.first.orientation, c.velocity_at(begin), c.first.spin});
+        };
+        const Clearance clearance(bodies, shapes, at_begin(a.index, ca), at_begin(b.index, cb), left);
+        clear = clearance.of_balls();
+        // The attitude is known where the course begins.
+        const auto known = [&](std::uint32_t body, const MotionBound& c) { return c.begin == begin || extents_[body].arm == 0; };
+        if (known(a.index, ca) && known(b.index, cb)) clear = std::max(clear, clearance.of_half_space());
+        if (clear >= left) return;
+    }
+    const Detector& by = contacts_.detectors()[detector];
+    const PairState* pair = contacts_.cache().find(by.component, a, b, step_.world);
+    if (pair && (pair->resting || !by.responds)) return;
+    const std::uint32_t slot = new_slot();
+    Candidate& c = candidates_[slot];
+    c.detector = detector, c.a = a, c.b = b;
+    c.certified = true;
+    c.time = begin + clear;
+    c.version = version_of(c);
+    push(slot);
+}
+
+void EventLocator::query_known_pairs(std::vector<FoundContact>& found)
+{
+    // Everything else is known to be apart.
+    found.clear();
+    for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d)
+    {
+        persistent_.clear();
+        for (const PairState& p : contacts_.cache().pairs())
+            if (p.detector == contacts_.detectors()[d].component)
+                persistent_.push_back({p.a, p.b, p.resting ? p.normal * -contacts_.persistence_margin(p) : Vec3{}});
+        if (!persistent_.empty()) contacts_.detect(contacts_.detectors()[d], d, persistent_, true, found);
+    }
+    sort_contacts(found, step_.world);
+}
+
+}  // namespace plab::simulation
