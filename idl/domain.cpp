@@ -27,21 +27,21 @@ Error not_joined(const DomainOptions& options, dds_return_t code)
         why += " with the configuration in CYCLONEDDS_URI";
     else
         why += " on interface " + (options.network_interface.empty() ? std::string("lo") : options.network_interface);
-    return reason(why + ": " + dds_strretcode(code) + " (Cyclone DDS says more on standard error)");
+    return reason(why + ": " + dds_strretcode(code) + " (see the message of Cyclone DDS on standard error)");
 }
 
-/// Domains that this process has opened with a configuration of its own, and how many participants each has.
+/// Domains that this process has opened with a configuration of its own, and the number of participants in each.
 class OpenDomains
 {
 public:
     static OpenDomains& instance()
     {
-        // Never destroyed: who calls exit() with participants open leaves them to the system.
+        // Never destroyed: a process that calls exit() with open participants leaves them to the system.
         static OpenDomains& domains = *new OpenDomains;
         return domains;
     }
 
-    /// What Cyclone says where it cannot open the domain; 0 or more: counted in.
+    /// The error of Cyclone DDS if it cannot open the domain; 0 or more: the domain is counted.
     dds_return_t enter(const DomainOptions& options)
     {
         const std::lock_guard guard(mutex_);
@@ -84,8 +84,9 @@ void Participant::reset()
 
 std::string configuration_of(const DomainOptions& options)
 {
-    // Big datagrams double the throughput on loopback; on a real network Cyclone's own sizes are right. On loopback everybody says
-    // every 2 s that it is there: by Cyclone's own interval one whose first word is lost stays unseen for 8 s.
+    // Big datagrams double the throughput on loopback; on a real network Cyclone's own sizes are right. On loopback every
+    // participant announces itself every 2 s: with Cyclone's own interval, one whose first announcement is lost stays unseen
+    // for 8 s.
     std::string general, discovery;
     if (options.network_interface.empty())
     {
@@ -103,14 +104,14 @@ std::string configuration_of(const DomainOptions& options)
 
 Result<Participant> join(const DomainOptions& options)
 {
-    if (options.id > kLastDomain) return reason("a DDS domain is from 0 to 232, not " + std::to_string(options.id));
+    if (options.id > kLastDomain) return reason("a DDS domain must be from 0 to 232, not " + std::to_string(options.id));
     if (!options.network_interface.empty() && !is_interface_name(options.network_interface))
-        return reason("'" + options.network_interface + "' is no name of a network interface");
+        return reason("'" + options.network_interface + "' is not the name of a network interface");
     std::optional<std::uint32_t> counted;
     if (const char* const own = std::getenv("CYCLONEDDS_URI"); own == nullptr || *own == 0)
     {
         const dds_return_t entered = OpenDomains::instance().enter(options);
-        // Somebody else in this process may have opened it.
+        // Other code in this process may have opened it.
         if (entered < 0 && entered != DDS_RETCODE_PRECONDITION_NOT_MET) return not_joined(options, entered);
         if (entered > 0) counted = options.id;
     }
@@ -128,7 +129,7 @@ Result<DomainOptions> domain_from_environment()
         const char* const end = text + std::strlen(text);
         const auto [stop, error] = std::from_chars(text, end, options.id);
         if (error != std::errc() || stop != end || options.id > kLastDomain)
-            return reason(std::string("PLAB_DOMAIN is a number from 0 to 232, not '") + text + "'");
+            return reason(std::string("PLAB_DOMAIN must be a number from 0 to 232, not '") + text + "'");
     }
     if (const char* text = std::getenv("PLAB_INTERFACE"); text != nullptr) options.network_interface = text;
     return options;

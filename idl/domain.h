@@ -1,4 +1,4 @@
-/// Joining the bus. This host only unless told otherwise.
+/// Joins the bus; by default on this host only.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,16 @@ struct DomainOptions
     std::string network_interface;  ///< empty: loopback, no multicast
 };
 
-/// The Cyclone DDS configuration that these options mean.
+/// The Cyclone DDS configuration for these options.
 std::string configuration_of(const DomainOptions& options);
 
-/// A participant, and this process's share in its domain: with the last one the domain is closed, sockets and threads with it.
+/// A participant, and this process's share in its domain: when the last participant is destroyed, the domain is closed with its
+/// sockets and threads.
 class Participant
 {
 public:
     Participant() = default;
-    /// `domain`: as join() counted it in; none where CYCLONEDDS_URI made the domain, which Cyclone closes by itself.
+    /// `domain`: as join() counted it; none if CYCLONEDDS_URI configured the domain, which Cyclone then closes by itself.
     Participant(Entity entity, std::optional<std::uint32_t> domain) : entity_(std::move(entity)), domain_(domain) {}
     Participant(Participant&& other) noexcept : entity_(std::move(other.entity_)), domain_(std::exchange(other.domain_, {})) {}
     Participant& operator=(Participant&& other) noexcept;
@@ -44,11 +45,11 @@ private:
     std::optional<std::uint32_t> domain_;
 };
 
-/// A participant in the domain. CYCLONEDDS_URI, where it is set, wins over `network_interface` and over the default.
-/// Errors name what could not be used (an interface that does not exist, a broken configuration).
+/// A participant in the domain. CYCLONEDDS_URI, if set, overrides `network_interface` and the default. Errors name what could
+/// not be used (an interface that does not exist, an invalid configuration).
 Result<Participant> join(const DomainOptions& options);
 
-/// Options that PLAB_DOMAIN and PLAB_INTERFACE stand for, where they are set.
+/// The options given by PLAB_DOMAIN and PLAB_INTERFACE, if set.
 Result<DomainOptions> domain_from_environment();
 
 }  // namespace plab::wire

@@ -1,4 +1,4 @@
-/// DDS entities as C++ values: they close themselves; readers and writers know their types.
+/// DDS entities as C++ values: they close themselves, and readers and writers are typed.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace plab::wire
 {
 
-/// Owns one DDS entity and whatever was created from it.
+/// Owns one DDS entity and everything created from it.
 class Entity
 {
 public:
@@ -43,7 +43,7 @@ private:
 
 inline Error failed(const std::string& what, dds_return_t code) { return reason(what + ": " + dds_strretcode(code)); }
 
-/// A topic entity of T in this participant. Each call gives an independent entity (they may have different filters).
+/// A topic entity of T in this participant. Each call creates an independent entity (they may have different filters).
 template <class T>
 Result<Entity> make_topic(const Entity& participant)
 {
@@ -90,10 +90,10 @@ public:
         w.writer_ = Entity(e);
         return w;
     }
-    /// DDS_RETCODE_OK or what went wrong; reliable topics other than requests never block.
+    /// DDS_RETCODE_OK or the error; reliable topics other than requests never block.
     dds_return_t write(const T& sample) { return dds_write(writer_.get(), &sample); }
-    /// The instance with the key of `sample` is gone. Unregistering disposes of it as well (autodispose, the default).
-    /// Disposal alone would be kept for ever, and told to late joiners.
+    /// Reports that the instance with the key of `sample` no longer exists. Unregistering also disposes of it (autodispose, the
+    /// default). Disposal alone would be kept forever, and sent to late joiners.
     dds_return_t dispose(const T& sample) { return dds_unregister_instance(writer_.get(), &sample); }
     Matched matched() const
     {
@@ -101,12 +101,12 @@ public:
         if (dds_get_publication_matched_status(writer_.get(), &status) < 0) return {};
         return {status.current_count, status.total_count};
     }
-    /// Readers that are matched now.
+    /// Number of readers that are matched now.
     std::uint32_t readers() const { return matched().now; }
     const Entity& entity() const { return writer_; }
 
 private:
-    Entity topic_, writer_;  // in this order: the writer goes first
+    Entity topic_, writer_;  // order matters: the writer is destroyed first
 };
 
 template <class T>
@@ -114,7 +114,7 @@ class Reader
 {
 public:
     Reader() = default;
-    /// `filter`: samples for which it is false are not delivered to this reader.
+    /// `filter`: samples for which it returns false are not delivered to this reader.
     static Result<Reader> make(const Entity& participant, const Entity& subscriber, dds_topic_filter_arg_fn filter = nullptr,
                                void* argument = nullptr)
     {
@@ -130,9 +130,9 @@ public:
         r.reader_ = Entity(e);
         return r;
     }
-    /// Hands every waiting sample to `handle(const T&, const dds_sample_info_t&)`; valid_data false means that only the
-    /// key is filled (the instance was disposed of, or its writer is gone). Returns their number, or an error code.
-    /// Stops after the batch in which `most` is reached: who floods a reader must not keep its thread for ever.
+    /// Passes every waiting sample to `handle(const T&, const dds_sample_info_t&)`; valid_data false means that only the key is
+    /// filled (the instance was disposed of, or its writer is gone). Returns their number, or an error code. Stops after the
+    /// batch in which `most` is reached, so that a flood of samples cannot keep the reader's thread forever.
     template <class Handle>
     dds_return_t take(Handle&& handle, dds_return_t most = std::numeric_limits<dds_return_t>::max())
     {
@@ -151,7 +151,7 @@ public:
             if (static_cast<std::size_t>(n) < kBatch || total >= most) return total;
         }
     }
-    /// Writers that are matched now.
+    /// Number of writers that are matched now.
     std::uint32_t writers() const
     {
         dds_subscription_matched_status_t status{};

@@ -1,4 +1,5 @@
-/// Who writes `plab/server`: a simulation, or the player of a recording. Both keep to one server for each name.
+/// Identifies the writer of `plab/server`: a simulation, or the player of a recording. Both obey the rule that a server name is
+/// unique.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 namespace plab::wire
 {
 
-/// What a server says of itself beside its status.
+/// The identity of a server, apart from its status.
 struct Identity
 {
     std::string name, version, host;
@@ -17,11 +18,11 @@ struct Identity
     std::int64_t started_ns = 0;  ///< since 1970
 };
 
-/// Of this process, which starts now.
+/// The identity of this process, starting now.
 Identity identify(const std::string& name, const std::string& version);
 
-/// Whether `other` is another server of this name, and may keep it: it started earlier, or at the same time and comes
-/// first by host and process.
+/// Whether `other` is another server with this name, and may keep it: it started earlier, or at the same time and is first by
+/// host and process.
 bool keeps_the_name(const plab_v2_Server& other, const Identity& self);
 
 }  // namespace plab::wire

@@ -21,7 +21,7 @@ struct Address
     const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&name); }
 };
 
-/// A name that begins with a zero byte is no file.
+/// A name that begins with a zero byte is not a file (abstract socket).
 Address address_of(std::uint32_t domain, const std::string& server)
 {
     Address address;
@@ -33,10 +33,10 @@ Address address_of(std::uint32_t domain, const std::string& server)
     return address;
 }
 
-/// A socket that tells who listens: connections, with packets. Datagrams do not.
+/// A socket type that can report the listening process: connection-oriented, with packets. Datagram sockets cannot.
 int make_socket() { return socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0); }
 
-/// The process that listens there; 0 if that cannot be known.
+/// The process that listens there; 0 if it cannot be determined.
 int holder_of(const Address& address)
 {
     const int fd = make_socket();
@@ -52,7 +52,7 @@ int holder_of(const Address& address)
 
 Result<NameLock> NameLock::take(std::uint32_t domain, const std::string& name)
 {
-    // Nobody is ever let in. Once as many have asked as may queue, the next ones are not told the process.
+    // Connections are never accepted. Once the queue is full, further clients do not learn the process id.
     constexpr int kAskers = 128;
     NameLock lock(make_socket());
     if (lock.socket_ < 0) return reason(std::string("cannot reserve the server's name: ") + std::strerror(errno));
@@ -64,7 +64,7 @@ Result<NameLock> NameLock::take(std::uint32_t domain, const std::string& name)
     }
     if (errno != EADDRINUSE) return reason(std::string("cannot reserve the server's name: ") + std::strerror(errno));
     const int pid = holder_of(address);
-    return reason("a server '" + name + "' runs already on this host in domain " + std::to_string(domain) +
+    return reason("a server '" + name + "' is already running on this host in domain " + std::to_string(domain) +
                   (pid > 0 ? " (process " + std::to_string(pid) + ")" : "") + ": give this one another name");
 }
 

@@ -1,4 +1,4 @@
-/// A server's name is taken once on a host (and in a network name space), for as long as the process lives.
+/// Reserves a server's name on a host (within a network namespace) for the lifetime of the process.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace plab::wire
 {
 
-/// An abstract unix socket of that name. The kernel lets go of it when the process ends, however it ends.
+/// An abstract unix socket of that name. The kernel releases it when the process ends, however it ends.
 class NameLock
 {
 public:
@@ -25,7 +25,7 @@ public:
     NameLock& operator=(const NameLock&) = delete;
     ~NameLock();
 
-    /// The error names the process that has it, where that can be known.
+    /// The error names the process that has it, if that is known.
     static Result<NameLock> take(std::uint32_t domain, const std::string& name);
 
 private:

@@ -9,21 +9,21 @@ namespace
 
 constexpr std::array<Topic, 17> kTopics{{
     {"plab/server", &plab_v2_Server_desc, Delivery::Catalogue, "the server's state, at least once a second"},
-    {"plab/scene", &plab_v2_Scene_desc, Delivery::Catalogue, "what is loaded, and its cameras"},
+    {"plab/scene", &plab_v2_Scene_desc, Delivery::Catalogue, "the loaded scene, and its cameras"},
     {"plab/objects", &plab_v2_SceneObject_desc, Delivery::Catalogue, "bodies and shafts"},
     {"plab/shapes", &plab_v2_Shape_desc, Delivery::Catalogue, "geometry of bodies"},
-    {"plab/interactions", &plab_v2_Interaction_desc, Delivery::Catalogue, "all other components, with their algorithm"},
-    {"plab/types", &plab_v2_Type_desc, Delivery::Catalogue, "what can be added or swapped in"},
+    {"plab/interactions", &plab_v2_Interaction_desc, Delivery::Catalogue, "all other components, with their algorithms"},
+    {"plab/types", &plab_v2_Type_desc, Delivery::Catalogue, "types that can be added or swapped in"},
     {"plab/states", &plab_v2_Frame_desc, Delivery::Newest, "positions and velocities, one sample per frame"},
     {"plab/collisions", &plab_v2_Collisions_desc, Delivery::Log, "contacts that begin, bounce, rest and end"},
     {"plab/events", &plab_v2_Events_desc, Delivery::Log, "events of interactions, failures, applied requests"},
     {"plab/metrics", &plab_v2_Metrics_desc, Delivery::Catalogue, "cost, error and work of each interaction, energy"},
-    {"plab/requests", &plab_v2_Request_desc, Delivery::Request, "what clients ask for"},
-    {"plab/replies", &plab_v2_Reply_desc, Delivery::Reply, "answers, each for one client"},
+    {"plab/requests", &plab_v2_Request_desc, Delivery::Request, "requests of clients"},
+    {"plab/replies", &plab_v2_Reply_desc, Delivery::Reply, "replies, each for one client"},
     {"plab/images", &plab_v2_Image_desc, Delivery::Newest, "pictures of cameras in the scene"},
-    {"plab/journal", &plab_v2_Journal_desc, Delivery::Log, "requests that took effect, in words"},
+    {"plab/journal", &plab_v2_Journal_desc, Delivery::Log, "requests that took effect, as text"},
     {"plab/hashes", &plab_v2_Hashes_desc, Delivery::Log, "the state hash of every step"},
-    {"plab/snapshots", &plab_v2_Snapshot_desc, Delivery::Newest, "everything that a run needs to go on from there"},
+    {"plab/snapshots", &plab_v2_Snapshot_desc, Delivery::Newest, "everything that a run needs to continue from there"},
     {"plab/gone", &plab_v2_Gone_desc, Delivery::Log, "in recordings only: catalogue entries that were disposed of"},
 }};
 

@@ -1,7 +1,6 @@
 /// Topic names, types and QoS of the bus: the one table that server and clients share.
-///
-/// Every topic lives in the partition that is the server's name, so that several servers share a domain. Why each
-/// delivery is as it is: README.md.
+/// Every topic is in the partition named after the server, so that several servers can share a domain. The reasons for each
+/// kind of delivery are in README.md.
 #pragma once
 
 #include <dds/dds.h>
@@ -17,11 +16,15 @@
 namespace plab::wire
 {
 
+/// The strings of a sample that is written. Cyclone only reads them, although its C types have no const.
+inline char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
+inline char* text(const char* s) { return const_cast<char*>(s); }
+
 enum class Delivery : std::uint8_t
 {
-    Catalogue,  ///< reliable, kept for late joiners: the last sample of each instance; disposed when it is gone
-    Newest,     ///< reliable, the last 4: who is slow misses frames, nobody waits
-    Log,        ///< reliable, the last 4096 samples: gaps are seen by their numbers
+    Catalogue,  ///< reliable, kept for late joiners: the last sample of each instance; disposed when the instance no longer exists
+    Newest,     ///< reliable, the last 4: a slow reader misses frames, but never blocks the writer
+    Log,        ///< reliable, the last 4096 samples: sequence numbers reveal gaps
     Request,    ///< reliable, all; the client blocks for at most a second
     Reply,      ///< reliable, the last 256 of each client
 };

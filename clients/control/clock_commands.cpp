@@ -47,7 +47,7 @@ void add_step(const Command& app, Context& context)
     auto count = std::make_shared<std::int64_t>(1);
     const Command command = add_command(
         app, context,
-        {"step", "let a paused server make some steps", "  plabctl pause && plabctl step\n  plabctl step 100 && plabctl wait --step 700\n"},
+        {"step", "let a paused server execute a number of steps", "  plabctl pause && plabctl step\n  plabctl step 100 && plabctl wait --step 700\n"},
         [count](Context& c) {
             return send(c, {{"step", "", std::to_string(*count)}});
         });
@@ -73,7 +73,7 @@ void add_rate(const Command& app, Context& context)
     const Command command = add_command(app, context,
                                         {"rate", "set the pace, or print it",
                                          "  plabctl rate real\n  plabctl rate 0.1     slow motion\n"
-                                         "  plabctl rate max\n  plabctl rate         what it is\n"},
+                                         "  plabctl rate max\n  plabctl rate         print the current rate\n"},
                                         [rate, text, json](Context& c) {
                                             return rate->empty() ? print_state(c, text, json) : send(c, {{"rate", "", *rate}});
                                         });
@@ -118,13 +118,13 @@ void add_cancel(const Command& app, Context& context)
 {
     auto name = std::make_shared<std::string>();
     const Command command = add_command(app, context,
-                                        {"cancel", "take back a request that waits",
+                                        {"cancel", "cancel a request that is still waiting",
                                          "  plabctl cancel 3f9c01d2a4b5e6f70819a2b3c4d5e6f7:1\n"
-                                         "The name is what a time-out of plabctl tells.\n"},
+                                         "plabctl prints the name of the request when it times out.\n"},
                                         [name](Context& c) {
                                             return send(c, {{"cancel", "", *name}});
                                         });
-    command.add_option("request", *name, "as the time-out named it: client and number").required().type_name("CLIENT:NUMBER");
+    command.add_option("request", *name, "name of the request, as printed at the time-out: client:number").required().type_name("CLIENT:NUMBER");
 }
 
 Exit run_shutdown(Context& c)
@@ -139,7 +139,7 @@ Exit run_shutdown(Context& c)
     {
         if (c.stopped()) return Exit::Interrupted;
         if (std::chrono::steady_clock::now() >= end)
-            return c.fail(Exit::NoServer, "server '" + c.session().server() + "' agreed, but is still there");
+            return c.fail(Exit::NoServer, "server '" + c.session().server() + "' accepted the shutdown, but is still running");
         (void)catalogue->wait(link::Seconds(0.1));
     }
     return Exit::Done;
@@ -150,14 +150,14 @@ Exit run_shutdown(Context& c)
 void add_clock_commands(const Command& app, Context& context)
 {
     add_plain(app, context, {"pause", "stop the clock", "  plabctl pause\n  plabctl pause --at 1000\n"});
-    add_plain(app, context, {"resume", "let the clock run on", "  plabctl resume\n"});
+    add_plain(app, context, {"resume", "let the clock continue", "  plabctl resume\n"});
     add_step(app, context);
     add_rate(app, context);
     add_dt(app, context);
-    add_plain(app, context, {"reset", "go back to the scene as loaded; a new run begins", "  plabctl reset\n"});
+    add_plain(app, context, {"reset", "return to the scene as it was loaded; a new run begins", "  plabctl reset\n"});
     add_load(app, context);
     add_cancel(app, context);
-    add_command(app, context, {"shutdown", "end the server; waits until it is gone", "  plabctl shutdown --server lab\n"}, run_shutdown);
+    add_command(app, context, {"shutdown", "shut the server down, and wait until it has ended", "  plabctl shutdown --server lab\n"}, run_shutdown);
 }
 
 }  // namespace plab::cli

@@ -1,5 +1,5 @@
-/// Commands and their options. CLI11 is behind it, in command_line.cpp and main.cpp alone: its headers take a compiler longer than a
-/// command does.
+/// Commands and their options. Only command_line.cpp and main.cpp include CLI11, because its headers take longer to compile
+/// than a command does.
 #pragma once
 
 #include <functional>
@@ -16,21 +16,21 @@ class Option;
 namespace plab::cli
 {
 
-/// What may be said of an option, one after the other.
+/// Properties of an option, set one after the other.
 class Option
 {
 public:
     explicit Option(CLI::Option* option) : option_(option) {}
     Option required() const;
-    /// What stands for its value in the help.
+    /// Placeholder for its value in the help.
     Option type_name(std::string_view name) const;
-    /// `wrong_with` gives what is wrong with a text; "": nothing.
+    /// `wrong_with` returns the error in a text; "": none.
     Option check(std::string (*wrong_with)(const std::string& text)) const;
     Option one_of(std::initializer_list<const char*> words) const;
     /// It may be given several times, with one value each.
     Option repeated() const;
     Option excludes(const Option& other) const;
-    /// The help tells the value that is there before.
+    /// The help shows the initial value.
     Option show_default() const;
 
 private:
@@ -41,11 +41,11 @@ class Command
 {
 public:
     explicit Command(CLI::App& app) : app_(&app) {}
-    /// `name` with dashes is an option ("-o,--output"), without it a word by its place. T: std::string, a vector of it, a number, or an
-    /// optional one. What `value` refers to must be there until the line is parsed.
+    /// `name` with dashes is an option ("-o,--output"), otherwise a positional argument. T: std::string, a vector of it, a
+    /// number, or an optional one. `value` must outlive parsing.
     template <class T>
     Option add_option(std::string_view name, T& value, std::string_view help) const;
-    /// A command of this one; global options may stand behind it. `footer` ends its help.
+    /// A sub-command of this one; global options may follow it. `footer` ends its help.
     Command add_command(const std::string& name, const std::string& doc, const std::string& footer, std::function<void()> chosen) const;
     void add_flag(std::string_view name, bool& value, std::string_view help) const;
 

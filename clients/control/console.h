@@ -27,13 +27,13 @@ public:
     static Console make(const std::string& color);
 
     bool is_terminal() const { return is_terminal_; }
-    /// Columns of a line; 0: unlimited, where standard output is no terminal.
+    /// Columns of a line; 0: unlimited, if standard output is not a terminal.
     std::size_t width() const { return width_; }
     std::string styled(Style style, std::string_view text) const;
 
-    /// Standard output. Control characters are the caller's: whatever comes from the bus goes through printable().
+    /// Standard output. The caller handles control characters: text from the bus must go through printable().
     void out(std::string_view text) const;
-    /// Also flushes: for streams, and the last thing of a command. False if nobody reads any more (a closed pipe).
+    /// Also flushes: for streams, and at the end of a command. False if the reader is gone (a closed pipe).
     bool flush() const;
     /// A message on standard error.
     void say(std::string_view text) const;
@@ -43,7 +43,7 @@ private:
     std::size_t width_ = 0;
 };
 
-/// Text from elsewhere without control characters: it cannot move the cursor or colour the terminal.
+/// Foreign text without control characters, so that it cannot move the cursor or colour the terminal.
 std::string printable(std::string_view text);
 /// Columns that UTF-8 text takes, one per character.
 std::size_t columns_of(std::string_view text);

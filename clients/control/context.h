@@ -25,7 +25,7 @@ enum class Exit : int
     Usage = 2,
     NoServer = 3,  ///< or time-out
     Refused = 4,
-    Lost = 5,           ///< of a recording: something could not be recovered, or found no place on the disk
+    Lost = 5,           ///< of a recording: something could not be recovered, or could not be written to the disk
     Interrupted = 130,  ///< by a signal; main() gives 128 + its number
 };
 
@@ -34,27 +34,27 @@ struct Settings
 {
     link::SessionOptions link;           ///< server, domain, interface
     std::optional<double> timeout;       ///< s; see Context::timeout()
-    bool progress = false;               ///< lines of progress also where standard error is no terminal
-    bool json = false;                   ///< one object; a line per sample of streams
+    bool progress = false;               ///< lines of progress even if standard error is not a terminal
+    bool json = false;                   ///< one object; for streams, one line per sample
     std::string color = "auto";          ///< "auto", "always", "never"
-    std::optional<std::uint64_t> count;  ///< of a stream: end after so many samples
-    std::optional<double> duration;      ///< s, of a stream: end after that long
+    std::optional<std::uint64_t> count;  ///< of a stream: end after this many samples
+    std::optional<double> duration;      ///< s, of a stream: end after this time
 };
 
 class Context
 {
 public:
     using Action = std::function<Exit(Context&)>;
-    static constexpr double kTimeout = 5.0;  ///< s, where a command has no other
+    static constexpr double kTimeout = 5.0;  ///< s, for commands without a time-out of their own
 
     Settings settings;
     Console console;
-    Action action;  ///< of the command that was named; main runs it when the command line is parsed
+    Action action;  ///< of the selected command; main runs it after the command line is parsed
 
-    /// Joins and finds the server, within timeout(otherwise). Prints why not and gives the exit code; Done: session()
-    /// is there.
+    /// Joins and finds the server, within timeout(otherwise). Prints errors and returns the exit code; Done: session() is
+    /// available.
     Exit connect(double otherwise = kTimeout);
-    /// Joins the domain only: for commands that look at no particular server.
+    /// Joins the domain only: for commands that do not address a particular server.
     Exit join();
     bool is_connected() const { return session_.has_value(); }
     const link::Session& session() const { return *session_; }
@@ -63,13 +63,13 @@ public:
 
     program::ProgressTo progress_to() const { return settings.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal; }
 
-    /// Ctrl-C was pressed, or SIGTERM came: what waits, reads or streams ends soon.
+    /// Ctrl-C was pressed, or SIGTERM came: waiting, reading and streaming end soon.
     bool stopped() const;
     link::Stop stop() const
     {
         return [this] { return stopped(); };
     }
-    /// Says it on standard error, "plabctl: ..."; gives `code`, or Interrupted after Ctrl-C.
+    /// Prints it on standard error, "plabctl: ..."; returns `code`, or Interrupted after Ctrl-C.
     Exit fail(Exit code, const std::string& message) const;
     Exit fail(Exit code, const Errors& errors) const;
 

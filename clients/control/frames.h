@@ -1,4 +1,4 @@
-/// Motion of objects, out of the newest frame.
+/// Motion of objects, from the newest frame.
 #pragma once
 
 #include <map>
@@ -25,7 +25,7 @@ struct Frame
 };
 
 Frame frame_of(const plab_v2_Frame& sample);
-/// The next frame that comes within `timeout`; empty where none does (a paused server sends none).
+/// The next frame that arrives within `timeout`; empty if none does (a paused server sends none).
 std::optional<Frame> next_frame(const link::Session& session, link::Seconds timeout);
 
 Json json_of(const Motion& m);

@@ -14,7 +14,7 @@ namespace plab::cli
 namespace
 {
 
-// A server at 4 frames a second still shows where things are.
+// A server with 4 frames per second still shows current positions.
 constexpr link::Seconds kForFrame(0.3);
 
 Result<link::Catalogue> fetch(Context& c, link::Parts parts)
@@ -25,7 +25,7 @@ Result<link::Catalogue> fetch(Context& c, link::Parts parts)
     return catalogue;
 }
 
-std::string fixed(double value)
+std::string three_decimals(double value)
 {
     char buffer[64];
     return {buffer, static_cast<std::size_t>(std::snprintf(buffer, sizeof buffer, std::abs(value) < 1e6 ? "%.3f" : "%.3g", value))};
@@ -33,7 +33,7 @@ std::string fixed(double value)
 
 // ---- servers --------------------------------------------------------------------------------------------------------
 
-/// In a word: what it does, or what is done about steps that take too long.
+/// In a word: what it is doing, or how it handles steps that take too long.
 std::string doing(const link::ServerInfo& s)
 {
     const std::string word = s.playback.empty() ? "running" : "playback";
@@ -41,10 +41,10 @@ std::string doing(const link::ServerInfo& s)
     return s.overload.empty() ? word : s.overload;
 }
 
-/// What somebody should know: a recording that is not whole, samples that rings gave up.
+/// Conditions that a user should know: an incomplete recording, samples that rings dropped.
 std::string note_of(const link::ServerInfo& s)
 {
-    std::string out = s.recording.trouble.empty() ? "" : "recording stands still: " + s.recording.trouble;
+    std::string out = s.recording.trouble.empty() ? "" : "recording is stalled: " + s.recording.trouble;
     const auto add = [&](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
     if (s.recording.dropped > 0) add(std::to_string(s.recording.dropped) + " messages not recorded");
     for (const auto& [topic, samples] : s.dropped)
@@ -68,9 +68,9 @@ void print_servers(const Console& console, const std::vector<link::ServerInfo>& 
                  {"host", Align::Left, Shrink::End},
                  {"version", Align::Left, Shrink::Never, 8}});
     for (const link::ServerInfo& s : servers)
-        table.add({s.name, doing(s), std::to_string(s.step), fixed(s.time) + " s", number(s.rate_reached) + "x", std::to_string(s.run),
-                   s.scene_file, note_of(s), age_text(static_cast<double>(now - s.started_ns) * 1e-9), std::to_string(s.process), s.host,
-                   s.version},
+        table.add({s.name, doing(s), std::to_string(s.step), three_decimals(s.time) + " s", number(s.rate_reached) + "x",
+                   std::to_string(s.run), s.scene_file, note_of(s), age_text(static_cast<double>(now - s.started_ns) * 1e-9),
+                   std::to_string(s.process), s.host, s.version},
                   !s.recording.trouble.empty() || s.recording.dropped > 0 ? Style::Red
                   : s.paused                                              ? Style::Dim
                   : s.overload.empty()                                    ? Style::Plain
@@ -80,7 +80,7 @@ void print_servers(const Console& console, const std::vector<link::ServerInfo>& 
 
 Exit run_servers(Context& c)
 {
-    // All of them, whichever one --server means; each shows itself at once to who joins.
+    // All servers, whichever one --server names; each announces itself at once to a new participant.
     c.settings.link.server.clear();
     if (const Exit e = c.join(); e != Exit::Done) return e;
     const std::vector<link::ServerInfo> servers = c.session().servers(c.timeout(0.5));
@@ -103,14 +103,14 @@ std::vector<std::string> object_row(const link::Object& o, const Motion* m)
     const Vec3 p = m != nullptr && !m->is_shaft ? m->position : o.position;
     std::string speed, angle;
     if (m != nullptr) speed = m->is_shaft ? number(m->speed) + " rad/s" : number(length(m->linear_velocity)) + " m/s";
-    if (m != nullptr && m->is_shaft) angle = fixed(m->angle) + " rad";
+    if (m != nullptr && m->is_shaft) angle = three_decimals(m->angle) + " rad";
     return {o.id,
             o.type,
             o.motion,
             number(o.mass) + (o.is_shaft ? " kg m2" : " kg"),
-            fixed(p.x),
-            fixed(p.y),
-            fixed(p.z),
+            three_decimals(p.x),
+            three_decimals(p.y),
+            three_decimals(p.z),
             angle,
             speed,
             o.quarantined ? "quarantined" : "",
@@ -228,7 +228,7 @@ std::string lower(std::string text)
     return text;
 }
 
-/// The family of the component's type; an error names ids that are near.
+/// The family of the component's type; an error names similar ids.
 Result<std::string> family_of(const link::CatalogueContents& now, const std::string& id)
 {
     std::string type;
@@ -292,7 +292,7 @@ Exit run_types(Context& c, const TypesOptions& o)
 
 void add_list_commands(const Command& app, Context& context)
 {
-    add_command(app, context, {"servers", "list the servers of the domain", "  plabctl servers\n  plabctl servers --domain 7 --json\n"},
+    add_command(app, context, {"servers", "list the servers in the domain", "  plabctl servers\n  plabctl servers --domain 7 --json\n"},
                 run_servers);
     add_command(
         app, context,
@@ -304,12 +304,12 @@ void add_list_commands(const Command& app, Context& context)
                 run_interactions);
     auto o = std::make_shared<TypesOptions>();
     const Command types = add_command(app, context,
-                                      {"types", "list types that can be added or swapped in",
+                                      {"types", "list the types that can be added or swapped in",
                                        "  plabctl types\n  plabctl types solver\n  plabctl types --for contact.response\n"},
                                       [o](Context& c) { return run_types(c, *o); });
     types.add_option("pattern", o->pattern, "part of a type's or family's name").type_name("TEXT");
     const Option family = types.add_option("--family", o->family, "of this family only").type_name("FAMILY");
-    types.add_option("--for", o->replaces, "what can take the place of this component").type_name("ID").excludes(family);
+    types.add_option("--for", o->replaces, "types that can replace this component").type_name("ID").excludes(family);
 }
 
 }  // namespace plab::cli

@@ -15,7 +15,7 @@ namespace plab::cli
 /// plabd beside this program, or the one that PATH finds.
 std::string plabd_program();
 
-/// Starts a server that belongs to nobody: a session of its own, no terminal, its log in `log`. The process id.
+/// Starts an independent server: a session of its own, no terminal, its log in `log`. Returns the process id.
 Result<int> start_server(const std::vector<std::string>& arguments, const std::string& log);
 /// Whether it still runs; its exit code if not.
 struct Life
@@ -25,11 +25,11 @@ struct Life
 };
 Life look_at(int process);
 
-/// Runs plabd to its end with this program's own output; the exit code, or 128 + the signal that ended it. Once `stop` says so
-/// it is told to end, and waited for.
+/// Runs plabd to its end with this program's own output; returns the exit code, or 128 + the signal that ended it. When `stop`
+/// returns true, it is asked to end, and waited for.
 Result<int> run_plabd(const std::vector<std::string>& arguments, const link::Stop& stop);
 
-/// A file of this process's own, removed with the object.
+/// A temporary file of this process, removed with the object.
 class TemporaryFile
 {
 public:

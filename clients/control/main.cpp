@@ -1,4 +1,4 @@
-/// plabctl: asks a running plabd, and tells it what to do.
+/// plabctl: queries and controls a running plabd.
 #include <CLI/CLI.hpp>
 #include <sstream>
 
@@ -14,12 +14,12 @@ namespace
 using namespace plab::cli;
 
 constexpr const char* kExamples = R"(Examples:
-  plabctl servers                                    who is there
+  plabctl servers                                    list the servers
   plabctl interactions                               algorithm, cost and error of each
   plabctl swap contact.response --to Response/None   exchange an algorithm while it runs
   plabctl set red.mass=0.03 --at 600                 before step 600
-  plabctl watch events -n 10 --json                  ten events, a JSON object on each line
-  plabctl show contact                               everything that is known of a component
+  plabctl watch events -n 10 --json                  ten events, one JSON object per line
+  plabctl show contact                               everything known about a component
 )";
 
 constexpr const char* kExitCodes = R"(
@@ -47,17 +47,17 @@ public:
 void add_global_options(CLI::App& app, Settings& s)
 {
     app.set_version_flag("--version", std::string("plabctl ") + PLAB_VERSION);
-    app.add_option("-s,--server", s.link.server, "name of the server; default: the only one that is there")->type_name("NAME");
+    app.add_option("-s,--server", s.link.server, "name of the server; default: the only one in the domain")->type_name("NAME");
     app.add_option("--domain", s.link.domain.id, "DDS domain, 0 to 232")->check(CLI::Range(0, 232))->type_name("N");
     app.add_option("--interface", s.link.domain.network_interface, "network interface; default: this host only")->type_name("NAME");
     app.add_option("--timeout", s.timeout, "how long to wait for a server and a reply; default 5 (wait: 30, servers: 0.5)")
         ->check(plab::link::check_positive)
         ->type_name("SECONDS");
-    app.add_flag("--progress", s.progress, "long work: a line every five seconds on standard error, also where that is no terminal");
-    app.add_flag("--json", s.json, "print one JSON object; streams: one on each line");
+    app.add_flag("--progress", s.progress, "print the progress of long work every five seconds on standard error, even if that is not a terminal");
+    app.add_flag("--json", s.json, "print one JSON object; for streams, one per line");
     app.add_option("--color", s.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
-    app.add_option("-n,--count", s.count, "end a stream after so many samples")->check(plab::link::check_count)->type_name("N");
-    app.add_option("-d,--duration", s.duration, "end a stream after that long")->check(plab::link::check_positive)->type_name("SECONDS");
+    app.add_option("-n,--count", s.count, "end a stream after this many samples")->check(plab::link::check_count)->type_name("N");
+    app.add_option("-d,--duration", s.duration, "end a stream after this time")->check(plab::link::check_positive)->type_name("SECONDS");
 }
 
 /// What CLI11 says, and which command or option was probably meant.
@@ -97,7 +97,7 @@ int parse_error(const CLI::App& app, const CLI::ParseError& error)
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"plabctl: asks a running plabd, and tells it what to do", "plabctl"};
+    CLI::App app{"plabctl: queries and controls a running plabd", "plabctl"};
     app.formatter(std::make_shared<Format>());
     app.footer(kExamples);
     app.require_subcommand(0, 1);
@@ -132,7 +132,7 @@ int main(int argc, char** argv)
     const std::string& server = context.settings.link.server;
     if (!server.empty() && !plab::wire::is_server_name(server))
         return static_cast<int>(
-            context.fail(Exit::Usage, "'" + server + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'"));
+            context.fail(Exit::Usage, "'" + server + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'"));
     plab::program::catch_signals();
     const Exit code = context.action(context);
     const bool is_flushed = context.console.flush();

@@ -32,7 +32,7 @@ std::string cost_in_words(const link::InteractionMetrics& m)
     if (const std::size_t blank = quartiles.find(' '); blank != std::string::npos)
         out += ", half of the last " + steps + " steps between " + duration_text(std::strtod(quartiles.c_str(), nullptr)) + " and " +
                duration_text(std::strtod(quartiles.c_str() + blank, nullptr));
-    return out + (shared.empty() || shared == "1" ? "" : "; an even share, " + shared + " components of its type are measured together");
+    return out + (shared.empty() || shared == "1" ? "" : "; divided evenly, " + shared + " components of its type are measured together");
 }
 
 std::string error_text(const link::InteractionMetrics& m) { return m.account("no_error") != nullptr ? "-" : number(m.error); }

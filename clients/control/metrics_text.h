@@ -1,4 +1,4 @@
-/// Figures of interactions in words: cost with what shares it, error with its unit.
+/// Figures of interactions in words: cost with the components that share it, error with its unit.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 namespace plab::cli
 {
 
-/// "4.1 us", "418 ns (1/12)" where twelve components share what their type costs, "-" before the first step.
+/// "4.1 us", "418 ns (1/12)" if twelve components share the cost of their type, "-" before the first step.
 std::string cost_text(const link::InteractionMetrics& m);
 /// "4.1 us, half of the last 64 steps between 3.9 us and 4.4 us"
 std::string cost_in_words(const link::InteractionMetrics& m);
-/// "-" where none is known. Servers that say nothing of their errors give a plain number.
+/// "-" if none is known. Servers that do not explain their errors give a plain number.
 std::string error_text(const link::InteractionMetrics& m);
 std::string error_unit(const link::InteractionMetrics& m);
-/// What it is, or why there is none.
+/// The meaning of the error, or why there is none.
 std::string error_meaning(const link::InteractionMetrics& m);
 
 }  // namespace plab::cli

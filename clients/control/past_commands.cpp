@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 /// s: a branch has to load plugins and the state.
 constexpr double kStart = 30;
 
-/// A snapshot as it came over the bus.
+/// A snapshot as received from the bus.
 struct SnapshotSample
 {
     std::int64_t step = 0;
@@ -38,7 +38,7 @@ Result<SnapshotSample> await_snapshot(Context& c, wire::Reader<plab_v2_Snapshot>
     {
         if (c.stopped()) return reason("interrupted");
         if (Clock::now() >= end)
-            return reason("server '" + c.session().server() + "' sends no snapshot: it plays a recording, or is too old");
+            return reason("server '" + c.session().server() + "' does not send snapshots: it plays a recording, or its version is too old");
         (void)c.session().wait(reader, link::Seconds(0.1));
         reader.take(
             [&](const plab_v2_Snapshot& s, const dds_sample_info_t& info)
@@ -50,7 +50,7 @@ Result<SnapshotSample> await_snapshot(Context& c, wire::Reader<plab_v2_Snapshot>
     return *std::move(out);
 }
 
-/// The present state: whoever begins to read the topic gets one.
+/// The current state: a new reader of the topic gets one.
 Result<SnapshotSample> present(Context& c)
 {
     auto reader = c.session().reader<plab_v2_Snapshot>();
@@ -80,12 +80,12 @@ struct SnapshotOptions
 Exit run_snapshot(Context& c, const SnapshotOptions& o)
 {
     if (!wire::is_server_name(o.name))
-        return c.fail(Exit::Usage, "'" + o.name + "' is no name of a snapshot: 1 to 64 letters, digits, '.', '_' or '-'");
+        return c.fail(Exit::Usage, "'" + o.name + "' is not a valid snapshot name: use 1 to 64 letters, digits, '.', '_' or '-'");
     if (o.file.empty()) return send(c, {{"snapshot", o.name}}, o.timing);
     if (const Exit e = c.connect(); e != Exit::Done) return e;
     auto reader = c.session().reader<plab_v2_Snapshot>();
     if (!reader) return c.fail(Exit::Failed, reader.errors());
-    // The first one shows that the server knows of this reader: the one that is asked for will come, too.
+    // The first one shows that the server knows this reader, so that the requested one will arrive too.
     if (auto first = await_snapshot(c, *reader, [](const plab_v2_Snapshot&) { return true; }); !first)
         return c.fail(Exit::NoServer, first.errors());
     if (const Exit e = send(c, {{"snapshot", o.name}}, o.timing); e != Exit::Done) return e;
@@ -98,12 +98,12 @@ void add_snapshot(const Command& app, Context& context)
 {
     auto o = std::make_shared<SnapshotOptions>();
     const Command command = add_command(app, context,
-                                        {"snapshot", "keep the present state under a name, on the server",
+                                        {"snapshot", "keep the current state on the server under a name",
                                          "  plabctl snapshot before\n  plabctl snapshot s600 --at 600\n"
                                          "  plabctl snapshot before -o before.snapshot && plabd --load before.snapshot\n"},
                                         [o](Context& c) { return run_snapshot(c, *o); });
-    command.add_option("name", o->name, "its name; one of that name is replaced").required().type_name("NAME");
-    command.add_option("-o,--out", o->file, "write it to a file, too").type_name("FILE");
+    command.add_option("name", o->name, "name of the snapshot; an existing one of that name is replaced").required().type_name("NAME");
+    command.add_option("-o,--out", o->file, "also write it to a file").type_name("FILE");
     add_timing(command, o->timing);
 }
 
@@ -138,13 +138,13 @@ Exit run_snapshots(Context& c)
 
 // ---- rewind ---------------------------------------------------------------------------------------------------------
 
-/// Units are the server's affair ("500 ms"); what can be no time or span at all is said here.
+/// The server parses units ("500 ms"); only texts that cannot be a time or duration are refused here.
 std::string not_a_time(const std::string& text)
 {
     const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string::npos) return "a time is missing: s, 0 or more";
+    if (first == std::string::npos) return "a time is missing: give seconds, 0 or more";
     if (text[first] != '-') return {};
-    return "'" + text + "' is negative: --to wants a time of the run, --by how far back; both in s, 0 or more";
+    return "'" + text + "' is negative: --to takes a time of the run, --by a duration to go back; both in s, 0 or more";
 }
 
 void add_rewind(const Command& app, Context& context)
@@ -155,12 +155,12 @@ void add_rewind(const Command& app, Context& context)
     };
     auto o = std::make_shared<Options>();
     const Command command = add_command(app, context,
-                                        {"rewind", "go back to an earlier time of this run; what came later is given up",
+                                        {"rewind", "go back to an earlier time of this run; everything later is discarded",
                                          "  plabctl rewind --to 3\n  plabctl rewind --by 0.5\n"},
                                         [o](Context& c)
                                         {
                                             if (o->to.empty() == o->by.empty())
-                                                return c.fail(Exit::Usage, "rewind wants --to TIME or --by TIME");
+                                                return c.fail(Exit::Usage, "rewind needs --to TIME or --by TIME");
                                             return send(c, {{"rewind", "", o->to.empty() ? "back " + o->by : o->to}});
                                         });
     command.add_option("--to", o->to, "simulated time, s").check(&not_a_time).type_name("TIME");
@@ -192,7 +192,7 @@ struct BranchOptions
     bool paused = false;
 };
 
-/// Until the new server shows itself, or has ended.
+/// Until the new server appears on the bus, or has ended.
 Exit await_server(Context& c, int process, const BranchOptions& o)
 {
     const auto end = link::moment_after(c.timeout(kStart));
@@ -204,21 +204,21 @@ Exit await_server(Context& c, int process, const BranchOptions& o)
                 if (c.settings.json)
                     print(c.console, Json{{"server", s.name}, {"process", s.process}, {"step", s.step}, {"time", s.time}, {"log", o.log}});
                 else
-                    c.console.out("server '" + s.name + "' goes on from step " + std::to_string(s.step) + ", t = " + exact_number(s.time) +
-                                  " s; process " + std::to_string(process) + ", log " + o.log + "\n");
+                    c.console.out("server '" + s.name + "' continues from step " + std::to_string(s.step) +
+                                  ", t = " + exact_number(s.time) + " s; process " + std::to_string(process) + ", log " + o.log + "\n");
                 return Exit::Done;
             }
         if (const Life life = look_at(process); !life.runs)
             return c.fail(Exit::Failed, "the branch ended with code " + std::to_string(life.code) + "; see " + o.log);
         if (c.stopped()) return Exit::Interrupted;
-        if (Clock::now() >= end) return c.fail(Exit::NoServer, "the branch does not show itself; see " + o.log);
+        if (Clock::now() >= end) return c.fail(Exit::NoServer, "the branch did not appear on the bus; see " + o.log);
     }
 }
 
 Exit run_branch(Context& c, BranchOptions o)
 {
     if (!wire::is_server_name(o.name))
-        return c.fail(Exit::Usage, "'" + o.name + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
+        return c.fail(Exit::Usage, "'" + o.name + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'");
     if (const Exit e = c.connect(); e != Exit::Done) return e;
     auto snapshot = present(c);
     if (!snapshot) return c.fail(Exit::NoServer, snapshot.errors());
@@ -233,7 +233,7 @@ Exit run_branch(Context& c, BranchOptions o)
     arguments.insert(arguments.end(), o.arguments.begin(), o.arguments.end());
     auto process = start_server(arguments, o.log);
     if (!process) return c.fail(Exit::Failed, process.errors());
-    // The snapshot's file goes when the branch has shown itself, or has ended.
+    // The snapshot's file is removed when the branch has appeared, or has ended.
     return await_server(c, *process, o);
 }
 
@@ -241,12 +241,12 @@ void add_branch(const Command& app, Context& context)
 {
     auto o = std::make_shared<BranchOptions>();
     const Command command = add_command(app, context,
-                                        {"branch", "a second server goes on from the present state, under its own name",
+                                        {"branch", "start a second server, with its own name, that continues from the current state",
                                          "  plabctl branch b && plabctl --server b swap contact.response --to Response/None\n"
                                          "  plabctl branch slow --paused\n  plabctl --server b shutdown\n"},
                                         [o](Context& c) { return run_branch(c, *o); });
     command.add_option("name", o->name, "of the new server").required().type_name("NAME");
-    command.add_flag("--paused", o->paused, "it waits before its first step");
+    command.add_flag("--paused", o->paused, "pause it before its first step");
     command.add_option("--log", o->log, "where its log goes; default: plabd-NAME.log").type_name("FILE");
     command.add_option("--plabd", o->arguments, "one more argument for plabd (may be repeated)").repeated().type_name("ARGUMENT");
 }
@@ -276,11 +276,10 @@ void add_shadow(const Command& app, Context& context)
         if (c.stopped()) return Exit::Interrupted;
         return *code == 0 ? Exit::Done : Exit::Failed;
     };
-    const Command command =
-        add_command(app, context,
-                    {"shadow", "what a swap would do: the scene's future with it beside the one without, on this machine",
-                     "  plabctl shadow contact.response --with Response/None --for 2\n"},
-                    run);
+    const Command command = add_command(app, context,
+                                        {"shadow", "preview a swap: simulate the scene with and without it on this machine, and compare",
+                                         "  plabctl shadow contact.response --with Response/None --for 2\n"},
+                                        run);
     command.add_option("id", o->id, "the component").required().type_name("ID");
     command.add_option("--with", o->type, "the other type").required().type_name("TYPE");
     command.add_option("--for", o->seconds, "simulated seconds, default 1").check(link::check_positive).type_name("SECONDS");
@@ -291,10 +290,11 @@ void add_shadow(const Command& app, Context& context)
 void add_past_commands(const Command& app, Context& context)
 {
     add_snapshot(app, context);
-    add_command(app, context, {"snapshots", "the snapshots that the server keeps, and how far it can be rewound", "  plabctl snapshots\n"},
+    add_command(app, context,
+                {"snapshots", "list the snapshots that the server keeps, and how far it can be rewound", "  plabctl snapshots\n"},
                 &run_snapshots);
-    add_named(app, context, {"restore", "go on from a snapshot that was kept; a new run begins", "  plabctl restore before\n"});
-    add_named(app, context, {"forget", "give up a snapshot that was kept", "  plabctl forget before\n"});
+    add_named(app, context, {"restore", "continue from a kept snapshot; a new run begins", "  plabctl restore before\n"});
+    add_named(app, context, {"forget", "delete a kept snapshot", "  plabctl forget before\n"});
     add_rewind(app, context);
     add_branch(app, context);
     add_shadow(app, context);

@@ -15,16 +15,16 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kExamples =
+constexpr const char* kPlayExamples =
     "  plabctl play run.mcap                          as it was, under the recorded server's name\n"
     "  plabctl play run.mcap --name again --rate 0.2  in slow motion, beside the server itself\n"
-    "  plabctl play run.mcap --from 3 --to 5 --loop   these two seconds, again and again\n"
-    "  plabctl play run.mcap --from 3 --pause         stands still at 3 s\n"
+    "  plabctl play run.mcap --from 3 --to 5 --loop   repeat these two seconds\n"
+    "  plabctl play run.mcap --from 3 --pause         paused at 3 s\n"
     "  plabctl play run.mcap --readers 1 & plabctl record -o again.mcap\n"
-    "On a terminal: space pauses, left and right go a second back and forth, up and down double and halve the rate,\n"
-    "q ends. Whoever watches sees a server; requests are refused.\n";
+    "On a terminal: space pauses, left and right jump back and forward by a second, up and down double and halve the rate,\n"
+    "q quits. Clients see the playback as a server; it refuses requests.\n";
 
-constexpr std::chrono::milliseconds kSlice(40);  // how late a key or Ctrl-C may be seen
+constexpr std::chrono::milliseconds kPlaySlice(40);  // how late a key or Ctrl-C may be seen
 constexpr std::uint64_t kSecond = 1'000'000'000;
 
 std::string check_rate(const std::string& text)
@@ -34,9 +34,9 @@ std::string check_rate(const std::string& text)
     return rate >= playback::Pace::kSlowest && rate <= playback::Pace::kFastest ? "" : "must be from 0.001 to 1000, not '" + text + "'";
 }
 
-double seconds(std::uint64_t time) { return static_cast<double>(time) * 1e-9; }
+double in_seconds(std::uint64_t time) { return static_cast<double>(time) * 1e-9; }
 
-/// False: the playback is to end.
+/// False: the playback should end.
 bool obey(playback::Player& player, playback::Key key)
 {
     const Clock::time_point now = Clock::now();
@@ -70,12 +70,12 @@ void show(program::Progress& line, const playback::Player& player)
     if (!line.is_due()) return;
     const playback::Pace& pace = player.pace();
     const playback::PlaybackState state = player.state();
-    line.show(playback::bar({seconds(pace.span().from), seconds(pace.span().to), seconds(pace.position(Clock::now())), pace.rate(),
+    line.show(playback::bar({in_seconds(pace.span().from), in_seconds(pace.span().to), in_seconds(pace.position(Clock::now())), pace.rate(),
                              pace.is_paused(), state.time, state.run},
                             line.width() - 1));
 }
 
-/// Until it is over, somebody ends it, or another server has its name.
+/// Until it is over, the user ends it, or another server has its name.
 Result<void> follow(const Context& c, playback::Player& player, playback::Terminal& terminal)
 {
     program::Progress line(c.progress_to(), std::chrono::milliseconds(0));
@@ -90,14 +90,14 @@ Result<void> follow(const Context& c, playback::Player& player, playback::Termin
         if (c.settings.duration && link::Seconds(now - begin).count() >= *c.settings.duration) goes_on = false;
         if (c.settings.count && player.sent() >= *c.settings.count) goes_on = false;
         show(line, player);
-        if (goes_on && !player.is_over()) player.wait(now + kSlice);
+        if (goes_on && !player.is_over()) player.wait(now + kPlaySlice);
     }
     return {};
 }
 
 void print_end(const Context& c, const std::string& file, const playback::Player& player)
 {
-    const double at = seconds(player.pace().position(Clock::now()));
+    const double at = in_seconds(player.pace().position(Clock::now()));
     if (c.settings.json)
         print(c.console, {{"file", file},
                           {"server", player.name()},
@@ -112,19 +112,19 @@ void print_end(const Context& c, const std::string& file, const playback::Player
         c.console.out(printable(file) + ": played as '" + player.name() + "' to " + number(at) + " s, " + std::to_string(player.sent()) +
                       " messages\n");
     if (player.broken() > 0)
-        c.console.say("plabctl: " + std::to_string(player.broken()) + " messages are damaged, and were left out: plabctl recover FILE");
+        c.console.say("plabctl: " + std::to_string(player.broken()) + " damaged messages were skipped: plabctl recover FILE");
 }
 
 Exit run_play(Context& c, playback::PlaybackOptions options)
 {
     if (!options.name.empty() && !wire::is_server_name(options.name))
-        return c.fail(Exit::Usage, "'" + options.name + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
+        return c.fail(Exit::Usage, "'" + options.name + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'");
     if (options.from && options.to && *options.to < *options.from) return c.fail(Exit::Usage, "--to is before --from");
     options.domain = c.settings.link.domain, options.version = PLAB_VERSION;
     auto player = playback::Player::open(options);
     if (!player) return c.fail(Exit::Failed, player.errors());
     for (const std::string& topic : (*player)->foreign())
-        c.console.say("plabctl: " + printable(topic) + " is no topic of this version of pLab's, and is not played");
+        c.console.say("plabctl: " + printable(topic) + " is not a topic of this version of pLab, and is not played");
     playback::Terminal terminal;
     const auto followed = follow(c, **player, terminal);
     terminal.give_back();
@@ -139,16 +139,18 @@ Exit run_play(Context& c, playback::PlaybackOptions options)
 void add_play_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<playback::PlaybackOptions>();
-    const Command command = add_command(app, context, {"play", "send a recording on the bus, as its server did", kExamples},
+    const Command command = add_command(app, context, {"play", "publish a recording on the bus, as its server did", kPlayExamples},
                                         [o](Context& c) { return run_play(c, *o); });
     command.add_option("file", o->file, "a recording").required().type_name("FILE");
-    command.add_option("--rate", o->rate, "seconds of the recording in a second; default: 1").check(check_rate).type_name("R");
-    command.add_option("--from", o->from, "begin there, on the recording's time line").check(link::check_not_negative).type_name("SECONDS");
+    command.add_option("--rate", o->rate, "recorded seconds per second of real time; default: 1").check(check_rate).type_name("R");
+    command.add_option("--from", o->from, "start at this time of the recording").check(link::check_not_negative).type_name("SECONDS");
     command.add_option("--to", o->to, "end there").check(link::check_not_negative).type_name("SECONDS");
-    command.add_flag("--loop", o->loop, "begin again at the end, as a new run");
-    command.add_flag("--pause", o->paused, "stand still at the beginning");
-    command.add_option("--name", o->name, "of the server that is played; default: the recorded one's").type_name("NAME");
-    command.add_option("--readers", o->readers, "begin when so many read the states").check(link::check_whole).type_name("N");
+    command.add_flag("--loop", o->loop, "start over at the end, as a new run");
+    command.add_flag("--pause", o->paused, "start paused");
+    command.add_option("--name", o->name, "server name to play under; default: the recorded server's").type_name("NAME");
+    command.add_option("--readers", o->readers, "start when this many readers of the states are connected")
+        .check(link::check_whole)
+        .type_name("N");
 }
 
 }  // namespace plab::cli

@@ -14,7 +14,7 @@ namespace plab::cli
 namespace
 {
 
-constexpr const char* kExamples =
+constexpr const char* kRecordExamples =
     "  plabctl record                                 until Ctrl-C, to lab_2026-11-22_14-05-09.mcap\n"
     "  plabctl record -o run.mcap --until 10          until 10 simulated seconds\n"
     "  plabctl record -o run.mcap -d 60               for a minute\n"
@@ -55,7 +55,7 @@ std::string counts_text(const recorder::WriteProgress& p)
     return out;
 }
 
-/// A disk that fails, and one that works again.
+/// Reports a disk that fails, and one that works again.
 class TroubleWatch
 {
 public:
@@ -64,7 +64,7 @@ public:
         if (trouble.has_value() == is_reported_) return;
         is_reported_ = trouble.has_value();
         line.clear();
-        c.console.say("plabctl: " + (trouble ? printable(trouble->text()) + "; trying on" : std::string("the disk takes data again")));
+        c.console.say("plabctl: " + (trouble ? printable(trouble->text()) + "; retrying" : std::string("the disk accepts data again")));
     }
 
 private:
@@ -108,19 +108,19 @@ void print_end(const Context& c, const std::string& file, const recorder::Record
         c.console.out(printable(file) + ": " + seconds_text(recorder.length()) + " of server '" + c.session().server() + "', " +
                       counts_text(p) + "\n");
     if (recorder.broken() > 0)
-        c.console.say("plabctl: " + std::to_string(recorder.broken()) + " samples were no samples of their topic, and are left out");
+        c.console.say("plabctl: " + std::to_string(recorder.broken()) + " samples did not match the type of their topic, and are left out");
 }
 
-/// Of a file that was ended, and has gaps.
+/// About a completed file that has gaps.
 Exit tell_losses(const Context& c, const recorder::WriteProgress& p)
 {
     if (p.dropped.messages == 0) return Exit::Done;
     c.console.say("plabctl: " + std::to_string(p.dropped.messages) + " messages are not in the file: " +
-                  (p.last_trouble ? printable(p.last_trouble->text()) : std::string("the disk was too slow for what came")));
+                  (p.last_trouble ? printable(p.last_trouble->text()) : std::string("the disk was too slow for the incoming data")));
     return Exit::Lost;
 }
 
-/// Topics without which plabd --replay cannot make a run again, and which are not asked for.
+/// Topics that plabd --replay needs and that were not requested.
 std::string missing_for_replay(const std::vector<std::string>& topics)
 {
     std::string out;
@@ -147,8 +147,8 @@ Exit run_record(Context& c, RecordOptions o)
     const auto closed = (*recorder)->close();
     if (state == recorder::State::Gone) c.console.say("plabctl: server '" + c.session().server() + "' has gone");
     if (state == recorder::State::Restarted)
-        c.console.say("plabctl: server '" + c.session().server() + "' was started anew: a recording is of one server's life");
-    // After Ctrl-C as well: who ended it wants to know what became of the file.
+        c.console.say("plabctl: server '" + c.session().server() + "' was restarted: a recording covers a single server process");
+    // After Ctrl-C as well: the user wants to know the state of the file.
     const recorder::WriteProgress progress = (*recorder)->progress();
     print_end(c, file, **recorder, progress);
     if (closed)
@@ -157,7 +157,8 @@ Exit run_record(Context& c, RecordOptions o)
         return lost == Exit::Done && c.stopped() ? Exit::Interrupted : lost;
     }
     for (const Error& e : closed.errors()) c.console.say("plabctl: " + printable(e.text()));
-    if (!progress.is_ended) c.console.say("plabctl: the file was not ended; what is in it can be read: plabctl recover " + printable(file));
+    if (!progress.is_ended)
+        c.console.say("plabctl: the file was not completed; recover its contents with: plabctl recover " + printable(file));
     return Exit::Failed;
 }
 
@@ -167,14 +168,14 @@ void add_record_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<RecordOptions>();
     const Command command =
-        add_command(app, context, {"record", "write what a server sends into a file, until it ends or Ctrl-C", kExamples},
+        add_command(app, context, {"record", "record what a server publishes to a file, until the server ends or Ctrl-C", kRecordExamples},
                     [o](Context& c) { return run_record(c, *o); });
     command.add_option("-o,--output", o->recorder.writer.file, "default: SERVER_DATE_TIME.mcap").type_name("FILE.mcap");
-    command.add_flag("--overwrite", o->recorder.writer.overwrite, "replace a file that is there");
-    command.add_option("--topics", o->recorder.topics, "only these; default: all but plab/images").type_name("TOPIC ..");
+    command.add_flag("--overwrite", o->recorder.writer.overwrite, "replace an existing file");
+    command.add_option("--topics", o->recorder.topics, "record only these topics; default: all but plab/images").type_name("TOPIC ..");
     command.add_option("--until", o->recorder.until, "end at this simulated time").check(link::check_not_negative).type_name("SECONDS");
     command.add_option("--compression", o->compression, "none, lz4 or zstd").one_of({"none", "lz4", "zstd"}).show_default();
-    command.add_option("--state-rate", o->recorder.state_rate, "frames per simulated second at the most; default: all that come")
+    command.add_option("--state-rate", o->recorder.state_rate, "maximum number of state frames per simulated second; default: all")
         .check(link::check_positive)
         .type_name("HZ");
 }

@@ -1,4 +1,4 @@
-// info, export, recover: what is done with the file of a recording, without a server.
+// info, export, recover: commands on a recording file, without a server.
 #include <filesystem>
 #include <memory>
 
@@ -26,7 +26,7 @@ Exit run_info(Context& c, const std::string& file)
     auto log = Log::open(file, work.watch());
     if (!log && !c.stopped()) return c.fail(Exit::Failed, log.errors());
     auto summary = log ? recordings::summary_of(*log) : Result<recordings::Summary>(log.errors());
-    if (c.stopped()) return work.interrupted("nothing is known of the rest");
+    if (c.stopped()) return work.interrupted("nothing is known about the rest");
     if (!summary) return c.fail(Exit::Failed, summary.errors());
     work.end();
     if (c.settings.json)
@@ -57,7 +57,7 @@ Exit run_export(Context& c, const ExportArguments& o)
     auto done = !log    ? Result<recordings::Exported>(log.errors())
                 : o.csv ? recordings::export_csv(*log, o.options)
                         : recordings::export_json(*log, o.options);
-    if (c.stopped()) return work.interrupted(is_printed ? "what was printed is not all" : o.options.out + " is not written");
+    if (c.stopped()) return work.interrupted(is_printed ? "the output is incomplete" : o.options.out + " is not written");
     if (!done) return c.fail(Exit::Failed, done.errors());
     work.end();
     return warn(c, done->troubles);
@@ -101,12 +101,12 @@ void add_file(const Command& command, std::string& file)
 
 void add_span(const Command& command, recordings::Span& span)
 {
-    constexpr const char* kLine = ": simulated seconds since the recording began, which go on over a reset";
-    command.add_option("--from", span.from, std::string("from here on") + kLine).check(link::check_not_negative).type_name("SECONDS");
-    command.add_option("--to", span.to, "up to here").check(link::check_not_negative).type_name("SECONDS");
+    constexpr const char* kLine = ": simulated seconds since the start of the recording; a reset does not restart this time";
+    command.add_option("--from", span.from, std::string("start at this time") + kLine).check(link::check_not_negative).type_name("SECONDS");
+    command.add_option("--to", span.to, "end at this time").check(link::check_not_negative).type_name("SECONDS");
 }
 
-/// Trouble that did not keep the rest from being read.
+/// Errors that did not prevent reading the rest.
 Exit warn(const Context& c, const recordings::Troubles& troubles)
 {
     for (const std::string& text : troubles.texts) c.console.say("plabctl: " + printable(text));
@@ -119,7 +119,7 @@ void add_recording_commands(const Command& app, Context& context)
 {
     auto info = std::make_shared<std::string>();
     add_file(add_command(app, context,
-                         {"info", "what a recording holds: runs, topics, swaps, events, gaps, snapshots",
+                         {"info", "summarize a recording: runs, topics, swaps, events, gaps, snapshots",
                           "  plabctl info run.mcap\n  plabctl info run.mcap --json | jq '.topics[] | [.topic, .messages]'\n"},
                          [info](Context& c) { return run_info(c, *info); }),
              *info);
@@ -127,27 +127,28 @@ void add_recording_commands(const Command& app, Context& context)
     auto e = std::make_shared<ExportArguments>();
     const Command exported =
         add_command(app, context,
-                    {"export", "a recording as tables (CSV) or lines of JSON",
-                     "  plabctl export run.mcap --csv > states.csv                a row per object and frame\n"
+                    {"export", "export a recording as tables (CSV) or lines of JSON",
+                     "  plabctl export run.mcap --csv > states.csv                one row per object and frame\n"
                      "  plabctl export run.mcap --csv --topic events --from 2 --to 3\n"
-                     "  plabctl export run.mcap --csv -o tables/                  a file for each topic that has a table\n"
-                     "  plabctl export run.mcap --json -o run.jsonl               everything, a message on each line\n"},
+                     "  plabctl export run.mcap --csv -o tables/                  one file per topic that has a table\n"
+                     "  plabctl export run.mcap --json -o run.jsonl               everything, one message per line\n"},
                     [e](Context& c) { return run_export(c, *e); });
     add_file(exported, e->file);
-    exported.add_flag("--csv", e->csv, "tables; their columns name the unit");
+    exported.add_flag("--csv", e->csv, "tables; the column names include the unit");
     exported.add_option("--topic", e->options.topics, "this topic (may be repeated): states, events, ..").repeated().type_name("TOPIC");
-    exported.add_option("-o,--output", e->options.out, "file, or for tables a folder (it is there, or ends with '/')").type_name("PATH");
+    exported.add_option("-o,--output", e->options.out, "file, or for tables a folder (an existing one, or a path that ends with '/')")
+        .type_name("PATH");
     add_span(exported, e->options.span);
 
     auto r = std::make_shared<RecoverArguments>();
     const Command recover = add_command(app, context,
-                                        {"recover", "save what is good of a recording that was cut or damaged",
+                                        {"recover", "save the intact part of a truncated or damaged recording",
                                          "  plabctl recover run.mcap                  to run.recovered.mcap\n"
                                          "  plabctl recover run.mcap -o good.mcap || echo \"exit code $?\"\n"
-                                         "Exit codes: 0 whole, 5 something is lost, 1 nothing is usable.\n"},
+                                         "Exit codes: 0 complete, 5 something is lost, 1 nothing is usable.\n"},
                                         [r](Context& c) { return run_recover(c, *r); });
     add_file(recover, r->file);
-    recover.add_option("-o,--output", r->out, "new file; must not be there yet").type_name("FILE");
+    recover.add_option("-o,--output", r->out, "new file; must not exist yet").type_name("FILE");
 }
 
 }  // namespace plab::cli

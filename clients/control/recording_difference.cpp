@@ -37,7 +37,7 @@ void print_first(const Console& console, const Difference& d)
     if (d.hashes_compared == 0)
         lines.add("hashes", "none to compare (" + std::to_string(d.hashes_a) + " and " + std::to_string(d.hashes_b) + ")");
     else if (d.first_hash)
-        lines.add("hashes", "differ first at step " + std::to_string(d.first_hash->step) + in_run(d.first_hash->run) + ": " +
+        lines.add("hashes", "first differ at step " + std::to_string(d.first_hash->step) + in_run(d.first_hash->run) + ": " +
                                 hash_text(d.first_hash->a) + " and " + hash_text(d.first_hash->b));
     else
         lines.add("hashes", "equal at all " + std::to_string(d.hashes_compared) + " steps that both have");
@@ -46,7 +46,7 @@ void print_first(const Console& console, const Difference& d)
     if (d.first_state)
     {
         const recordings::StateDifference& s = *d.first_state;
-        lines.add("states", "differ first at step " + std::to_string(s.step) + in_run(s.run) + " (" + exact_number(s.time) +
+        lines.add("states", "first differ at step " + std::to_string(s.step) + in_run(s.run) + " (" + exact_number(s.time) +
                                 " s): " + s.object + " " + s.quantity);
         lines.add("", "A " + link::number_text(s.a));
         lines.add("", "B " + link::number_text(s.b) + "  (" + size(std::fabs(s.a - s.b)) + ")");
@@ -72,7 +72,7 @@ void print_first(const Console& console, const Difference& d)
 void print_growth(const Console& console, const Difference& d)
 {
     if (d.objects.empty() || d.objects.front().largest == 0) return;
-    console.out("\n" + console.styled(Style::Bold, "Growth of the difference") + "  time in s when it first was larger than ..\n");
+    console.out("\n" + console.styled(Style::Bold, "Growth of the difference") + "  time in s when the difference first exceeded ..\n");
     Table table({{"object", Align::Left, Shrink::Middle},
                  {"1e-12", Align::Right, Shrink::Never, 4},
                  {"1e-9", Align::Right, Shrink::Never, 3},

@@ -1,4 +1,4 @@
-/// What the commands that read recordings have in common.
+/// Shared by the commands that read recordings.
 #pragma once
 
 #include "control/context.h"
@@ -10,7 +10,7 @@ namespace plab::cli
 void add_file(const Command& command, std::string& file);
 /// --from and --to.
 void add_span(const Command& command, recordings::Span& span);
-/// Says what could not be read. Failed if there is anything: what was asked for is not complete.
+/// Reports what could not be read. Failed if there is anything: the result is incomplete.
 Exit warn(const Context& context, const recordings::Troubles& troubles);
 
 }  // namespace plab::cli

@@ -18,7 +18,7 @@ using recordings::seconds;
 using recordings::Summary;
 using recordings::text_at;
 
-constexpr std::size_t kMostListed = 20;
+constexpr std::size_t kMostPrinted = 20;
 
 std::string seconds_text(std::uint64_t nanoseconds) { return exact_number(seconds(nanoseconds)) + " s"; }
 
@@ -36,17 +36,17 @@ void heading(const Console& console, const std::string& text) { console.out("\n"
 template <class T, class Add>
 void add_some(const Console& console, const std::vector<T>& items, Table& table, Add add)
 {
-    for (std::size_t i = 0; i < std::min(items.size(), kMostListed); ++i) add(items[i]);
+    for (std::size_t i = 0; i < std::min(items.size(), kMostPrinted); ++i) add(items[i]);
     table.print(console);
-    if (items.size() > kMostListed) console.out("  ... and " + std::to_string(items.size() - kMostListed) + " more (--json has all)\n");
+    if (items.size() > kMostPrinted) console.out("  ... and " + std::to_string(items.size() - kMostPrinted) + " more (--json has all)\n");
 }
 
 std::string state_of(const Summary& s)
 {
     if (s.is_whole()) return "whole";
-    if (!s.is_closed) return "cut: it was not closed; plabctl recover FILE makes a whole one of what is there";
-    if (s.troubles.count == 0) return "recovered: something is lost (below)";
-    return "damaged: " + counted(s.troubles.count, "place") + " cannot be read; plabctl recover FILE tells what is lost";
+    if (!s.is_closed) return "truncated: it was not closed; plabctl recover FILE makes a complete file of what is left";
+    if (s.troubles.count == 0) return "recovered: something is lost (see below)";
+    return "damaged: " + counted(s.troubles.count, "place") + " cannot be read; plabctl recover FILE reports what is lost";
 }
 
 void print_head(const Console& console, const Summary& s)

@@ -1,4 +1,4 @@
-// diff, plot, report, log: recordings as people look at them.
+// diff, plot, report, log: views of recordings for people.
 #include <memory>
 
 #include "control/commands.h"
@@ -33,11 +33,11 @@ struct DiffArguments
 Exit run_diff(Context& c, const DiffArguments& o)
 {
     Work work(c, "diff " + o.a + " " + o.b);
-    const std::string consequence = "whether they differ is not known";
+    const std::string consequence = "it is not known whether they differ";
     auto a = Log::open(o.a, work.watch());
     if (c.stopped()) return work.interrupted(consequence);
     if (!a) return c.fail(Exit::Failed, a.errors());
-    // The other one is read beside it, step by step: its place is that of the first.
+    // The other recording is read in parallel, step by step, so the position in the first one measures the progress.
     auto b = Log::open(o.b, [&c](double) { return !c.stopped(); });
     if (c.stopped()) return work.interrupted(consequence);
     if (!b) return c.fail(Exit::Failed, b.errors());
@@ -45,7 +45,8 @@ Exit run_diff(Context& c, const DiffArguments& o)
     if (c.stopped()) return work.interrupted(consequence);
     work.end();
     if (difference.is_unknown())
-        return c.fail(Exit::Failed, "nothing to compare: " + o.a + " and " + o.b + " have no step in common, neither hashes nor states");
+        return c.fail(Exit::Failed,
+                      "nothing to compare: " + o.a + " and " + o.b + " have no step in common, neither in hashes nor in states");
     if (c.settings.json)
         print(c.console, json_of(difference));
     else
@@ -97,7 +98,7 @@ Result<figures::Chart> chart_of(const Log& log, const PlotArguments& o)
 Exit run_plot(Context& c, const PlotArguments& o)
 {
     if (!o.out.ends_with(".svg") && !o.out.ends_with(".png"))
-        return c.fail(Exit::Usage, "-o " + o.out + ": a picture's name ends with .svg or .png");
+        return c.fail(Exit::Usage, "-o " + o.out + ": the name of a picture must end with .svg or .png");
     if (o.span.from && o.span.to && *o.span.to < *o.span.from) return c.fail(Exit::Usage, "--to is before --from");
     Work work(c, "plot " + o.file);
     auto log = Log::open(o.file, work.watch());
@@ -141,7 +142,7 @@ struct LogArguments
 
 Exit log_live(const Context& c, const LogArguments& o)
 {
-    if (o.lines.span.from || o.lines.span.to) return c.fail(Exit::Usage, "--from and --to are for files: name one");
+    if (o.lines.span.from || o.lines.span.to) return c.fail(Exit::Usage, "--from and --to apply to recordings only: give a file");
     logger::LoggerOptions options;
     options.link = c.settings.link, options.filter = o.lines.filter, options.json = c.settings.json;
     options.count = c.settings.count, options.duration = c.settings.duration;
@@ -154,7 +155,7 @@ Exit log_live(const Context& c, const LogArguments& o)
 Exit run_log(const Context& c, LogArguments o)
 {
     logger::Filter& filter = o.lines.filter;
-    // Either alone means only these; both or none mean all.
+    // Either option alone selects only these; both or none select all.
     if (!filter.events && !filter.collisions) filter.events = filter.collisions = true;
     filter.severity = logger::severity_of(o.severity);
     if (o.file.empty()) return log_live(c, o);
@@ -169,7 +170,7 @@ Exit run_log(const Context& c, LogArguments o)
     if (!out) return c.fail(Exit::Failed, out.errors());
     work.end();
     auto written = recordings::write_lines(*log, o.lines, *out);
-    if (c.stopped()) return work.interrupted("what was printed is not all");
+    if (c.stopped()) return work.interrupted("the output is incomplete");
     work.end();
     return written ? warn(c, *written) : c.fail(Exit::Failed, written.errors());
 }
@@ -179,14 +180,14 @@ void add_diff(const Command& app, Context& context)
     auto o = std::make_shared<DiffArguments>();
     const Command command =
         add_command(app, context,
-                    {"diff", "where two recordings differ first, and how the difference grows",
+                    {"diff", "find where two recordings first differ, and how the difference grows",
                      "  plabctl diff a.mcap b.mcap\n  plabctl diff a.mcap b.mcap --plot growth.svg\n"
-                     "Steps that both have are compared: state hashes, then states. Exit code 0: no difference, 1: there is one, or one\n"
+                     "Steps that both have are compared: state hashes, then states. Exit code 0: no difference; 1: a difference, or one\n"
                      "of them has more runs.\n"},
                     [o](Context& c) { return run_diff(c, *o); });
     command.add_option("a", o->a, "recording").required().type_name("FILE");
-    command.add_option("b", o->b, "recording that it is compared with").required().type_name("FILE");
-    command.add_option("--plot", o->plot, "draw the growth of the difference into this .svg or .png").type_name("FILE");
+    command.add_option("b", o->b, "recording to compare with").required().type_name("FILE");
+    command.add_option("--plot", o->plot, "draw the growth of the difference to this .svg or .png file").type_name("FILE");
 }
 
 void add_plot(const Command& app, Context& context)
@@ -194,7 +195,7 @@ void add_plot(const Command& app, Context& context)
     auto o = std::make_shared<PlotArguments>();
     const Command command =
         add_command(app, context,
-                    {"plot", "draw quantities of a recording over time, with its swaps and events",
+                    {"plot", "plot quantities of a recording over time, with its swaps and events",
                      "  plabctl plot run.mcap --quantity red.position.z -o height.svg\n"
                      "  plabctl plot run.mcap --quantity red.speed --quantity fan.speed --from 1 --to 2 -o speeds.png\n"
                      "  plabctl plot run.mcap --quantity contact.response.cost --quantity energy.kinetic -o cost.svg\n"
@@ -203,13 +204,13 @@ void add_plot(const Command& app, Context& context)
                      ".unexplained, momentum, angular_momentum, real_time_factor, step_cost, contacts, deepest, residual.\n"},
                     [o](Context& c) { return run_plot(c, *o); });
     add_file(command, o->file);
-    command.add_option("-q,--quantity", o->quantities, "ID.QUANTITY (may be repeated); a panel for each unit")
+    command.add_option("-q,--quantity", o->quantities, "ID.QUANTITY (may be repeated); one panel per unit")
         .required()
         .repeated()
         .type_name("NAME");
     command.add_option("-o,--output", o->out, "picture: .svg or .png").required().type_name("FILE");
     command.add_flag("--no-events{false}", o->has_events, "mark warnings and failures only, not every event");
-    command.add_flag("--log", o->has_log_scale, "logarithmic values; what is not positive is left out");
+    command.add_flag("--log", o->has_log_scale, "logarithmic value axis; values that are not positive are left out");
     add_span(command, o->span);
 }
 
@@ -217,7 +218,7 @@ void add_report(const Command& app, Context& context)
 {
     auto o = std::make_shared<ReportArguments>();
     const Command command = add_command(app, context,
-                                        {"report", "a recording as one HTML page: energy, momentum, cost and error, swaps, events",
+                                        {"report", "write a recording as one HTML page: energy, momentum, cost and error, swaps, events",
                                          "  plabctl report run.mcap -o report.html\n"},
                                         [o](Context& c) { return run_report(c, *o); });
     add_file(command, o->file);
@@ -230,19 +231,21 @@ void add_log(const Command& app, Context& context)
     o->lines.filter.events = o->lines.filter.collisions = false;  // flags
     const Command command =
         add_command(app, context,
-                    {"log", "events and collisions as lines, of a recording or as they happen",
+                    {"log", "print events and collisions as lines, from a recording or live",
                      "  plabctl log run.mcap --severity warning\n  plabctl log run.mcap --collisions --object red --from 2 --to 3\n"
                      "  plabctl log run.mcap --json | jq 'select(.kind == \"script.print\")'\n"
-                     "  plabctl log                               what happens in a server, until Ctrl-C (as plab-log)\n"},
+                     "  plabctl log                               follow a server live, until Ctrl-C (like plab-log)\n"},
                     [o](Context& c) { return run_log(c, *o); });
-    command.add_option("file", o->file, "recording (MCAP); without it a server is followed").type_name("FILE");
+    command.add_option("file", o->file, "recording (MCAP); without it, follow a server").type_name("FILE");
     command.add_flag("--events", o->lines.filter.events, "events only");
     command.add_flag("--collisions", o->lines.filter.collisions, "collisions only");
-    command.add_option("--kind", o->lines.filter.kinds, "kinds that begin so (may be repeated): collision.impact, script.")
+    command.add_option("--kind", o->lines.filter.kinds, "only kinds with this prefix (may be repeated): collision.impact, script.")
         .repeated()
         .type_name("KIND");
-    command.add_option("--object", o->lines.filter.objects, "what names this component (may be repeated)").repeated().type_name("ID");
-    command.add_option("--severity", o->severity, "least severity; collisions are info")
+    command.add_option("--object", o->lines.filter.objects, "only entries that refer to this component (may be repeated)")
+        .repeated()
+        .type_name("ID");
+    command.add_option("--severity", o->severity, "minimum severity; collisions are info")
         .one_of({"info", "warning", "failure"})
         .type_name("WORD");
     add_span(command, o->lines.span);

@@ -29,7 +29,7 @@ std::string past_of(const link::Operation& op)
         {"load", "loaded"},
         {"dt", "step length is now"},
         {"shutdown", "shutting down"},
-        {"cancel", "taken back"},
+        {"cancel", "cancelled"},
     }};
     std::string out = op.verb;
     for (const auto& [verb, past] : kWords)
@@ -68,14 +68,13 @@ std::string change_text(const double (&a)[3], const double (&b)[3])
     return number(b[0] - a[0]) + " " + number(b[1] - a[1]) + " " + number(b[2] - a[2]);
 }
 
-/// The server tells the old one's cost only where it differs from the new one's by more than chance.
+/// The server sends the old component's cost only if it differs from the new one's by more than chance.
 void add_cost(Table& table, const link::StepOutcome& old, const link::StepOutcome& now)
 {
     const auto text = [](double ns) { return std::isfinite(ns) ? duration_text(ns) : std::string("-"); };
     if (!std::isfinite(now.cost_ns) && !std::isfinite(old.cost_ns)) return;
     const double more = now.cost_ns - old.cost_ns;
-    table.add(
-        {"cost of the step", text(old.cost_ns), text(now.cost_ns), std::isfinite(more) ? duration_text(more) : "none that can be told"});
+    table.add({"cost of the step", text(old.cost_ns), text(now.cost_ns), std::isfinite(more) ? duration_text(more) : "unknown"});
 }
 
 void print_swap(const Console& console, const link::SwapReport& swap)

@@ -19,21 +19,21 @@ Exit refused(const Context& context, const link::Reply& reply)
     return Exit::Refused;
 }
 
-/// A request outlives a time-out, but not the server: until it is answered it may take effect.
+/// A request outlives a time-out, but not the server: until it is answered, it may take effect.
 std::string outcome_of_unanswered(const Context& context, const link::Caller& caller, const Timing& timing)
 {
     const std::string step = timing.at ? "step " + std::to_string(*timing.at) : "its next step";
     const std::string name = caller.last_request();
     if (name.empty()) return "it was not sent";
-    const std::string back = "'plabctl --server " + context.session().server() + " cancel " + name + "' takes it back";
+    const std::string back = "'plabctl --server " + context.session().server() + " cancel " + name + "' cancels it";
     switch (caller.presence())
     {
         case link::Presence::There:
-            return (timing.at ? step + " may still be ahead: the request stands, "
-                              : "the request stands, and can take effect before " + step + ": ") +
+            return (timing.at ? step + " may still be to come: the request remains valid, "
+                              : "the request remains valid, and can take effect before " + step + ": ") +
                    std::string("--timeout waits longer, ") + back;
         case link::Presence::Silent:
-            return "the server shows no sign of life: if it comes back, the request can still take effect before " + step + "; " + back;
+            return "the server does not respond: if it comes back, the request can still take effect before " + step + "; " + back;
         case link::Presence::Gone:
             break;
     }
@@ -44,7 +44,9 @@ std::string outcome_of_unanswered(const Context& context, const link::Caller& ca
 
 void add_timing(const Command& command, Timing& timing)
 {
-    command.add_option("--at", timing.at, "take effect before this step; too late: refused").check(link::check_whole).type_name("STEP");
+    command.add_option("--at", timing.at, "take effect before this step; refused if the step is past")
+        .check(link::check_whole)
+        .type_name("STEP");
     command.add_option("--revision", timing.revision, "refuse unless the scene is at this revision")
         .check(link::check_whole)
         .type_name("N");
@@ -82,7 +84,7 @@ Result<std::string> read_text(const std::string& file)
     text.resize(static_cast<std::size_t>(in.gcount()));
     if (in.bad() || (!in.eof() && in.fail())) return reason("cannot read '" + file + "'");
     if (text.size() > wire::kMostRequestBytes)
-        return reason("'" + file + "' is larger than a request may be: " + std::to_string(wire::kMostRequestBytes) + " bytes");
+        return reason("'" + file + "' is larger than a request can be: " + std::to_string(wire::kMostRequestBytes) + " bytes");
     if (text.empty()) return reason("'" + file + "' is empty");
     return text;
 }

@@ -55,16 +55,16 @@ void add_remove(const Command& app, Context& context)
         Timing timing;
     };
     auto o = std::make_shared<Options>();
-    const Command command = add_command(
-        app, context,
-        {"remove", "remove components; several go together or not at all", "  plabctl remove wind\n  plabctl remove contact red\n"},
-        [o](Context& c)
-        {
-            std::vector<link::Operation> operations;
-            for (const std::string& id : o->ids) operations.push_back({"remove", id});
-            return send(c, std::move(operations), o->timing);
-        });
-    command.add_option("id", o->ids, "components; no other may refer to them").required().type_name("ID");
+    const Command command = add_command(app, context,
+                                        {"remove", "remove components; several are removed together or not at all",
+                                         "  plabctl remove wind\n  plabctl remove contact red\n"},
+                                        [o](Context& c)
+                                        {
+                                            std::vector<link::Operation> operations;
+                                            for (const std::string& id : o->ids) operations.push_back({"remove", id});
+                                            return send(c, std::move(operations), o->timing);
+                                        });
+    command.add_option("id", o->ids, "components; no other component may refer to them").required().type_name("ID");
     add_timing(command, o->timing);
 }
 
@@ -104,24 +104,24 @@ void add_swap(const Command& app, Context& context)
 {
     auto o = std::make_shared<SwapOptions>();
     const Command command = add_command(app, context,
-                                        {"swap", "exchange components for others of their family, all or none",
+                                        {"swap", "exchange components for others of the same family, all or none",
                                          "  plabctl swap contact.response --to Response/None\n"
                                          "  plabctl swap contact.response --to Response/Impulse --param restitution=0.5\n"
                                          "  plabctl swap gears --to Constraint/AngularVelocity/Impulse --at 2400 --json\n"
                                          "  plabctl swap 'gears.*' clutch --to Constraint/AngularVelocity/Graph --trial 20 --or-refuse\n"
                                          "What can be swapped in: plabctl types --for ID\n"},
                                         [o](Context& c) { return run_swap(c, *o); });
-    command.add_option("id", o->ids, "components; * and ? stand for any text and any character: all of the new type's family that match")
+    command.add_option("id", o->ids, "components; * matches any text, ? any character: all matching components of the new type's family")
         .required()
         .type_name("ID");
     command
-        .add_option(
-            "--trial", o->trial,
-            "how long the first step may be tried, in ms, or none; default: ten steps' mean cost, at least 5 ms. Beyond it the swap is "
-            "carried out without the proof")
+        .add_option("--trial", o->trial,
+                    "time budget for the trial of the first step, in ms, or none; default: ten steps' mean cost, at least 5 ms. Beyond it "
+                    "the swap is "
+                    "carried out untested")
         .type_name("MS");
     command.add_flag("--or-refuse", o->or_refuse, "refuse the swap if its trial takes longer");
-    command.add_option("--allow-energy", o->energy, "by how much the first step may multiply the energy, or any; default: 100")
+    command.add_option("--allow-energy", o->energy, "largest factor by which the first step may multiply the energy, or any; default: 100")
         .type_name("FACTOR");
     command.add_option("--to", o->to, "the new type").required().type_name("TYPE");
     command.add_option("--param", o->parameters, "a value of the new component (may be repeated)").repeated().type_name("NAME=VALUE");
@@ -130,8 +130,8 @@ void add_swap(const Command& app, Context& context)
 
 // ---- set ------------------------------------------------------------------------------------------------------------
 
-/// Ids and names may both hold dots ("contact.response.restitution", "wind.state.count"): the longest id that exists
-/// counts. Only then the server is asked.
+/// Both ids and names may contain dots ("contact.response.restitution", "wind.state.count"): the longest existing id counts.
+/// The server is asked only if there are several possibilities.
 Result<std::set<std::string>> known_ids(Context& c)
 {
     auto catalogue = link::Catalogue::open(c.session(), link::Part::Objects | link::Part::Shapes | link::Part::Interactions);
@@ -194,7 +194,7 @@ void add_set(const Command& app, Context& context)
 {
     auto o = std::make_shared<SetOptions>();
     const Command command = add_command(app, context,
-                                        {"set", "set parameters and states; all at one step boundary",
+                                        {"set", "set parameters and states, all at one step boundary",
                                          "  plabctl set red.mass=0.03\n"
                                          "  plabctl set contact.response.restitution=0.5 motor.angular_velocity=20\n"
                                          "  plabctl set 'red.position=1.4 0.3 1' --at 600\n"},
@@ -215,7 +215,7 @@ void add_push(const Command& app, Context& context)
     };
     auto o = std::make_shared<Options>();
     const Command command = add_command(app, context,
-                                        {"push", "give an object an impulse",
+                                        {"push", "apply an impulse to an object",
                                          "  plabctl push red --impulse \"0.01 0 0\"\n"
                                          "  plabctl push red --impulse \"0 0 0.02\" --point \"1.4 0.35 1\"\n"
                                          "  plabctl push fan --impulse 0.1\n"},
@@ -227,7 +227,7 @@ void add_push(const Command& app, Context& context)
                                             return send(c, {std::move(push)}, o->timing);
                                         });
     command.add_option("id", o->id, "a body or a shaft").required().type_name("ID");
-    command.add_option("--impulse", o->impulse, "\"x y z\" in N s; of a shaft one number in N m s").required().type_name("IMPULSE");
+    command.add_option("--impulse", o->impulse, "\"x y z\" in N s; for a shaft one number in N m s").required().type_name("IMPULSE");
     command.add_option("--point", o->point, "\"x y z\" in the world, m; default: the centre of mass").type_name("POINT");
     add_timing(command, o->timing);
 }

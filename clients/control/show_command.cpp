@@ -13,7 +13,7 @@ namespace plab::cli
 namespace
 {
 
-constexpr link::Seconds kForFrame(0.3);
+constexpr link::Seconds kWaitForFrame(0.3);
 
 std::string text_of(const Vec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
 std::string text_of(const Quat& q) { return number(q.w) + " " + number(q.x) + " " + number(q.y) + " " + number(q.z) + " (w x y z)"; }
@@ -40,7 +40,7 @@ const link::FieldInfo* find_field(const link::Type* type, const std::string& nam
 
 bool is_block(const std::string& text) { return text.find('\n') != std::string::npos; }
 
-/// Values with what the type says of them; texts of several lines (scripts) follow below the table.
+/// Values with their description from the type; texts of several lines (scripts) follow below the table.
 void print_parameters(const Console& console, const std::vector<link::Parameter>& parameters, const link::Type* type)
 {
     Table table({{"field"},
@@ -183,7 +183,7 @@ Json with_type(const char* kind, Json json, const link::Type* type)
 Exit show_object(Context& c, const link::CatalogueContents& now, const link::Object& o)
 {
     std::optional<Frame> frame;
-    if (!now.server->paused && o.motion != "static") frame = next_frame(c.session(), kForFrame);
+    if (!now.server->paused && o.motion != "static") frame = next_frame(c.session(), kWaitForFrame);
     const Motion* motion = nullptr;
     if (frame && frame->run == o.run)
         if (const auto at = frame->motions.find(o.handle); at != frame->motions.end()) motion = &at->second;
@@ -259,7 +259,7 @@ void add_show_command(const Command& app, Context& context)
 {
     auto id = std::make_shared<std::string>();
     const Command command = add_command(app, context,
-                                        {"show", "print everything known of an object, shape, interaction or type",
+                                        {"show", "print everything known about an object, shape, interaction or type",
                                          "  plabctl show red\n  plabctl show contact.response\n  plabctl show Response/Impulse\n"},
                                         [id](Context& c) { return run_show(c, *id); });
     command.add_option("id", *id, "component or type").required().type_name("ID");

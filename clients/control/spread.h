@@ -1,4 +1,4 @@
-/// Least, most, mean and standard deviation of numbers that come one by one.
+/// Minimum, maximum, mean and standard deviation of numbers that arrive one by one.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ public:
         least_ = count_ == 0 ? x : std::min(least_, x);
         most_ = count_ == 0 ? x : std::max(most_, x);
         ++count_;
-        // Welford: no difference of large sums.
+        // Welford's algorithm: avoids the difference of large sums.
         const double off = x - mean_;
         mean_ += off / static_cast<double>(count_);
         squares_ += off * (x - mean_);

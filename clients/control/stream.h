@@ -1,4 +1,4 @@
-/// What `watch` and every other stream share: when it ends, and which numbers were missed.
+/// Shared by `watch` and the other streams: when they end, and which numbers were missed.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@ public:
     void count() { ++seen_; }
     bool is_reached() const { return (most_ && seen_ >= *most_) || is_over(); }
     bool is_over() const { return end_ && std::chrono::steady_clock::now() >= *end_; }
-    /// How long to wait for the next sample: short, so that Ctrl-C is seen.
+    /// How long to wait for the next sample: short, so that Ctrl-C is noticed.
     link::Seconds slice() const;
 
 private:
@@ -26,12 +26,12 @@ private:
     std::uint64_t seen_ = 0;
 };
 
-/// Watches sequence numbers that have no gaps by promise.
+/// Checks sequence numbers, which the server assigns without gaps.
 class Numbers
 {
 public:
-    /// Takes `count` samples from `first` on; how many are missing before them. The first call starts; a number that
-    /// is too small means that the server started anew.
+    /// Takes `count` samples from `first` on; returns how many are missing before them. The first call only starts; a smaller
+    /// number means that the server was restarted.
     std::uint64_t missed_before(std::uint64_t first, std::uint64_t count);
     std::uint64_t missed() const { return missed_; }
 

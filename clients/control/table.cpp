@@ -11,7 +11,7 @@ namespace
 {
 
 constexpr std::size_t kGap = 2;
-// What columns keep when they shrink. Ids give way further only when there is no prose left to give way.
+// Minimum widths of columns when they shrink. Ids shrink further only when no prose is left to shrink.
 constexpr std::size_t kLeastProse = 16, kLeastId = 20, kLeastShortId = 12, kLeastAtAll = 8;
 
 std::size_t total(const std::vector<std::size_t>& widths)
@@ -21,7 +21,7 @@ std::size_t total(const std::vector<std::size_t>& widths)
     return sum > 0 ? sum - kGap : 0;
 }
 
-/// Takes as many words off the front of `text` as go into `most` columns; a word that is too long is cut.
+/// Takes as many words off the front of `text` as fit in `most` columns; a word that is too long is split.
 std::string take_line(std::string& text, std::size_t most)
 {
     if (columns_of(text) <= most) return std::exchange(text, {});
@@ -72,7 +72,7 @@ bool Table::shrink_to(std::size_t most, Least kept, std::vector<std::size_t>& wi
     return total(widths) <= most;
 }
 
-/// Columns that may go: prose from the last, then what is expendable, then all but the first from the last.
+/// Columns that may be dropped: prose from the last, then expendable ones, then all but the first from the last.
 std::vector<std::size_t> Table::in_order_of_leaving() const
 {
     std::vector<std::size_t> out(columns_.size());
@@ -88,7 +88,7 @@ std::vector<std::size_t> Table::widths(const Console& console) const
 {
     std::vector<std::size_t> natural = natural_widths(), out = natural;
     if (console.width() == 0 || shrink_to(console.width(), {kLeastProse, kLeastId}, out)) return out;
-    // Prose that is printed in full leaves nothing out: better a line that is too long.
+    // Prose that is printed in full is never shortened: a line that is too long is better.
     const bool wraps = std::any_of(columns_.begin(), columns_.end(), [](const Column& c) { return c.shrink == Shrink::Wrap; });
     for (const std::size_t i : in_order_of_leaving())
     {

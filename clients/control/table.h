@@ -14,12 +14,13 @@ enum class Align : unsigned char
     Left,
     Right,  ///< numbers
 };
-/// How a column gives way on a terminal that is too narrow. Elsewhere nothing is shortened: a program may read it.
+/// How a column is shortened on a terminal that is too narrow. Otherwise nothing is shortened, since a program may read the
+/// output.
 enum class Shrink : unsigned char
 {
     Never,
-    Middle,  ///< ids, type names: both ends tell them apart
-    End,     ///< prose; on a narrow terminal the last of these columns go altogether
+    Middle,  ///< ids, type names: both ends are significant
+    End,     ///< prose; on a narrow terminal, the last of these columns are dropped
     Wrap,    ///< prose that is printed in full, over several lines
 };
 
@@ -28,17 +29,17 @@ struct Column
     std::string title;
     Align align = Align::Left;
     Shrink shrink = Shrink::Never;
-    unsigned expendable = 0;  ///< where even shortened columns do not fit, the largest goes first; 0: as late as can be
+    unsigned expendable = 0;  ///< if even shortened columns do not fit, the column with the largest number is dropped first; 0: last
 };
 
 class Table
 {
 public:
     explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
-    /// One cell per column; they go through printable().
+    /// One cell per column; cells go through printable().
     void add(std::vector<std::string> cells, Style style = Style::Plain);
     bool empty() const { return rows_.empty(); }
-    /// Columns that are empty in all rows are left out. `title` false: rows only, for a stream.
+    /// Columns that are empty in all rows are omitted. `title` false: rows only, for a stream.
     void print(const Console& console, bool title = true) const;
 
 private:
@@ -63,7 +64,7 @@ private:
     std::vector<Row> rows_;
 };
 
-/// Names with their texts below one another, "  name   text": what `show` and a reply print.
+/// Names with their texts in lines, "  name   text": as printed by `show` and for replies.
 class Lines
 {
 public:

@@ -10,12 +10,12 @@ namespace
 
 constexpr double kQuiet = 0.3;  ///< s without news: what is there has shown itself
 
-constexpr const char* kExamples =
-    "  plabctl topics                                what is in the domain, pLab's or not\n"
-    "  plabctl topics rate plab/states -d 5          samples per second and their periods, a line each second\n"
+constexpr const char* kTopicExamples =
+    "  plabctl topics                                list all topics in the domain, pLab's or not\n"
+    "  plabctl topics rate plab/states -d 5          samples per second and their periods, one line per second\n"
     "  plabctl topics bandwidth plab/states -n 3     bytes per second and sizes, three lines\n"
     "  plabctl topics print plab/events --json       samples as lines of JSON\n"
-    "  plabctl topics print rt/chatter -n 1          a type of somebody else, fetched from its writer";
+    "  plabctl topics print rt/chatter -n 1          a foreign type, fetched from its writer";
 
 std::string joined(const std::set<std::string>& words, const char* for_empty)
 {
@@ -113,14 +113,14 @@ void add_topics_command(const Command& app, Context& context)
 {
     const auto arguments = std::make_shared<TopicsArguments>();
     const Command command =
-        add_command(app, context, {"topics", "what is on the bus, pLab's or not: list, rate, bandwidth, print", kExamples},
+        add_command(app, context, {"topics", "inspect the topics on the bus, pLab's or not: list, rate, bandwidth, print", kTopicExamples},
                     [arguments](Context& c) { return run_topics(c, *arguments); });
     command.add_option("what", arguments->what, "list, rate, bandwidth or print")
         .one_of({"list", "rate", "bandwidth", "print"})
         .show_default();
-    command.add_option("topic", arguments->topic, "name of the topic, as list shows it");
-    command.add_option("--partition", arguments->partition, "only what is in this partition (of a server: its name)");
-    command.add_flag("--full", arguments->full, "print: do not cut long lists short");
+    command.add_option("topic", arguments->topic, "name of the topic, as shown by list");
+    command.add_option("--partition", arguments->partition, "only topics in this partition (a server's partition is its name)");
+    command.add_flag("--full", arguments->full, "print: do not shorten long lists");
 }
 
 }  // namespace plab::cli

@@ -20,7 +20,7 @@ constexpr std::size_t kListMost = 16;  ///< elements of a list that print shows
 
 double seconds_since(Clock::time_point begin) { return Seconds(Clock::now() - begin).count(); }
 
-/// The server's name means the partition of pLab's topics; others it does not concern.
+/// For pLab's topics the server's name selects the partition; other topics ignore it.
 std::string partition_of(const Context& context, const TopicsArguments& arguments)
 {
     if (!arguments.partition.empty()) return arguments.partition;
@@ -56,13 +56,13 @@ struct Interval
     double bytes() const { return sizes.mean() * static_cast<double>(sizes.count()); }
 };
 
-/// Feeds intervals of a second with what comes; tells the periods of each writer apart.
+/// Collects samples in intervals of one second, with separate periods for each writer.
 class Meter
 {
 public:
     void add(const RawSample& sample, std::int64_t arrived_ns)
     {
-        // The writer's clock is not disturbed by when this process is woken. Some writers send no time.
+        // The writer's time stamps are independent of when this process wakes up. Some writers send none.
         const std::int64_t at = sample.written_ns > 0 ? sample.written_ns : arrived_ns;
         const auto [last, is_first] = last_.try_emplace(sample.writer, at);
         if (!is_first) now_.periods.add(static_cast<double>(at - last->second) * 1e-9);
@@ -82,7 +82,7 @@ private:
 
 using Report = std::function<std::string(const Interval&)>;
 
-/// One report a second, and one for what is left at the end.
+/// One report per second, and one for the remainder at the end.
 Exit measure(Context& context, const TopicsArguments& arguments, const Report& report)
 {
     Opened opened = open(context, arguments, false);
@@ -102,7 +102,7 @@ Exit measure(Context& context, const TopicsArguments& arguments, const Report& r
         is_over = context.stopped() || (duration && seconds_since(begin) >= *duration);
         if (!is_over && seconds_since(since) < 1) continue;
         const Interval interval = meter.take(seconds_since(since));
-        // A rest of a few milliseconds tells no rate.
+        // A remainder of a few milliseconds gives no meaningful rate.
         if (is_over && reports > 0 && interval.length < 0.5) break;
         since = Clock::now();
         ++reports;
@@ -230,7 +230,7 @@ Exit print_samples(Context& context, const TopicsArguments& arguments)
     if (opened.exit != Exit::Done) return opened.exit;
     if (opened.reader.type() == nullptr)
         return context.fail(Exit::Failed, "samples of " + opened.reader.type_name() + " cannot be shown: " + opened.reader.why_opaque() +
-                                              "; rate and bandwidth work without");
+                                              "; rate and bandwidth still work");
     const SamplePrinter printer(context, arguments, opened.reader);
     const std::optional<double>& duration = context.settings.duration;
     const std::uint64_t most = context.settings.count.value_or(~std::uint64_t{0});

@@ -30,7 +30,7 @@ struct Place
     double time = 0;
 };
 
-/// The server's state tells the time once a second and at every change, frames in between.
+/// The server's state gives the time once per second and at every change, frames in between.
 std::optional<Place> wait_for_place(Context& c, link::Catalogue& catalogue, const WaitOptions& o, Place place, Clock::time_point end)
 {
     auto frames = c.session().reader<plab_v2_Frame>();
@@ -60,7 +60,7 @@ Exit run_wait(Context& c, const WaitOptions& o)
     const auto end = link::moment_after(c.timeout(kWait), start);
     const auto left = [&] { return std::max(link::Seconds(0), link::Seconds(end - Clock::now())); };
     if (const Exit e = c.connect(kWait); e != Exit::Done) return e;
-    // Ready means: a request would be answered, and all there is to know is known.
+    // Ready means: the server answers requests, and its complete catalogue is known.
     auto caller = link::Caller::make(c.session(), left(), c.stop());
     if (!caller) return c.fail(Exit::NoServer, caller.errors());
     auto catalogue = link::Catalogue::open(c.session());
@@ -72,7 +72,7 @@ Exit run_wait(Context& c, const WaitOptions& o)
         const auto reached = wait_for_place(c, *catalogue, o, place, end);
         if (!reached && catalogue->server_is_gone()) return c.fail(Exit::NoServer, "server '" + c.session().server() + "' has gone");
         if (!reached)
-            return c.fail(Exit::NoServer, "server '" + c.session().server() + "' did not get there within the time-out" +
+            return c.fail(Exit::NoServer, "server '" + c.session().server() + "' did not reach it within the time-out" +
                                               (catalogue->now().server && catalogue->now().server->paused ? ": it is paused" : ""));
         place = *reached;
     }
@@ -92,7 +92,7 @@ void add_wait_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<WaitOptions>();
     const Command command = add_command(app, context,
-                                        {"wait", "wait until the server is ready, or has come to a step or time",
+                                        {"wait", "wait until the server is ready, or has reached a step or time",
                                          "  plabd scene.xml --name lab & plabctl wait --server lab\n"
                                          "  plabctl wait --step 1200\n  plabctl wait --time 5 --timeout 60\n"},
                                         [o](Context& c) { return run_wait(c, *o); });

@@ -51,7 +51,7 @@ struct Watch
     Numbers numbers;
 };
 
-/// Until a limit is reached, the server is gone or Ctrl-C: hands samples of T to `handle`.
+/// Passes samples of T to `handle` until a limit is reached, the server is gone, or Ctrl-C.
 template <class T, class Handle>
 Exit stream(Watch& w, Handle handle)
 {
@@ -66,7 +66,7 @@ Exit stream(Watch& w, Handle handle)
             {
                 if (info.valid_data && !w.limit.is_reached()) handle(sample);
             });
-        if (!w.context.console.flush()) return Exit::Done;  // nobody reads on: `| head` has what it wanted
+        if (!w.context.console.flush()) return Exit::Done;  // the reader is gone: `| head` has enough
         if (w.limit.is_reached()) break;
         if (w.catalogue.server_is_gone()) return w.context.fail(Exit::NoServer, "server '" + w.context.session().server() + "' has gone");
         (void)w.context.session().wait(*reader, w.limit.slice());
@@ -84,7 +84,7 @@ Exit watch_states(Watch& w)
                                              w.printer.frame(frame_of(sample), w.catalogue);
                                              w.limit.count();
                                          });
-    // Who is slow misses frames; that is how states are delivered, and no failure.
+    // A slow reader misses frames: states are delivered that way, so this is not a failure.
     if (w.numbers.missed() > 0) w.context.console.say("plabctl: " + std::to_string(w.numbers.missed()) + " frames were not delivered");
     return e;
 }
@@ -120,7 +120,7 @@ void add_ids(const std::map<std::string, T>& things, std::vector<std::string>& o
     for (const auto& [id, thing] : things) out.push_back(id);
 }
 
-/// Whom the samples of a stream are about, as far as the scene has them now.
+/// The objects that a stream concerns, as far as the scene has them now.
 std::vector<std::string> known_to(const std::string& stream, const link::CatalogueContents& now)
 {
     std::vector<std::string> out;
@@ -136,8 +136,8 @@ link::Parts parts_for(const WatchOptions& o)
     return link::Part::Objects | link::Part::Interactions | link::Part::Shapes;
 }
 
-/// States and metrics of nobody would be empty for ever: that is an error. What collides or happens may be of a component that is
-/// added later: that is told, and waited for.
+/// States and metrics of an unknown object would stay empty: that is an error. Collisions and events may concern a component
+/// that is added later: then a note is printed, and the command waits.
 Exit check_names(const Context& c, const WatchOptions& o, const link::CatalogueContents& now)
 {
     const std::vector<std::string> known = known_to(o.stream, now);
@@ -150,7 +150,7 @@ Exit check_names(const Context& c, const WatchOptions& o, const link::CatalogueC
         const std::string head = what + id + "'" + link::did_you_mean(id, known);
         if (!is_error)
         {
-            c.console.say("plabctl: " + printable(head) + "; it is watched for, should it be added");
+            c.console.say("plabctl: " + printable(head) + "; it will be shown if it is added later");
             continue;
         }
         std::string list;
@@ -190,14 +190,14 @@ void add_watch_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<WatchOptions>();
     const Command command = add_command(app, context,
-                                        {"watch", "print states, collisions, events or metrics as they come",
+                                        {"watch", "print states, collisions, events or metrics as they arrive",
                                          "  plabctl watch events\n"
                                          "  plabctl watch states --every 0.5 --only red -n 20\n"
                                          "  plabctl watch collisions -d 60 --json > collisions.ndjson\n"},
                                         [o](Context& c) { return run_watch(c, *o); });
     command.add_option("stream", o->stream, "states, collisions, events or metrics").required().type_name("STREAM").check(check_stream);
     command.add_option("--only", o->only, "only what concerns this component (may be repeated)").repeated().type_name("ID");
-    command.add_option("--every", o->every, "of states and metrics: one in so much simulated time")
+    command.add_option("--every", o->every, "of states and metrics: one sample per this much simulated time")
         .check(link::check_positive)
         .type_name("SECONDS");
 }

@@ -8,7 +8,7 @@ namespace plab::cli
 namespace
 {
 
-std::string fixed(double value)
+std::string four_decimals(double value)
 {
     char buffer[64];
     return {buffer, static_cast<std::size_t>(std::snprintf(buffer, sizeof buffer, "%.4f", value))};
@@ -49,16 +49,17 @@ Table motion_table(const std::map<std::string, const Motion*>& motions)
                  {"speed", Align::Right, Shrink::Never, 1}});
     for (const auto& [id, m] : motions)
         if (m->is_shaft)
-            table.add({id, "", "", "", "", "", "", fixed(m->angle), fixed(m->speed)});
+            table.add({id, "", "", "", "", "", "", four_decimals(m->angle), four_decimals(m->speed)});
         else
-            table.add({id, fixed(m->position.x), fixed(m->position.y), fixed(m->position.z), fixed(m->linear_velocity.x),
-                       fixed(m->linear_velocity.y), fixed(m->linear_velocity.z), "", ""});
+            table.add({id, four_decimals(m->position.x), four_decimals(m->position.y), four_decimals(m->position.z),
+                       four_decimals(m->linear_velocity.x), four_decimals(m->linear_velocity.y), four_decimals(m->linear_velocity.z), "",
+                       ""});
     return table;
 }
 
-std::string when(std::int64_t step, double time) { return "step " + std::to_string(step) + "  " + fixed(time) + " s"; }
+std::string when(std::int64_t step, double time) { return "step " + std::to_string(step) + "  " + four_decimals(time) + " s"; }
 
-/// The algorithm that does the work; what the server has to say about it is in `interactions` and in JSON.
+/// The algorithm that does the work; the server's explanation is shown by `interactions` and in JSON.
 std::string algorithm_of(const link::InteractionMetrics& i)
 {
     return i.resolved.empty() || i.resolved.starts_with(i.requested) ? i.requested : i.resolved;
@@ -129,7 +130,7 @@ bool WatchPrinter::collision(const plab_v2_Collisions& sample, std::uint32_t ent
     }
     std::string text = when(sample.step, c.time) + "  " + console_.styled(Style::Cyan, padded(printable(c.kind), 6)) + "  " +
                        printable(c.a) + " - " + printable(c.b);
-    // A contact that ended has no place any more, and no normal.
+    // A contact that ended has no position and no normal any more.
     if (length(vector(c.normal)) > 0) text += "  at " + number(position.x) + " " + number(position.y) + " " + number(position.z);
     if (const double j = length(impulse); j > 0) text += "  impulse " + number(j) + " N s";
     if (c.depth > 0) text += "  depth " + number(c.depth) + " m";

@@ -1,4 +1,4 @@
-/// How `watch` prints samples: lines for people, or one JSON object on each line.
+/// How `watch` prints samples: lines for people, or one JSON object per line.
 #pragma once
 
 #include <set>
@@ -9,7 +9,7 @@
 namespace plab::cli
 {
 
-/// What `watch` leaves out.
+/// What `watch` omits.
 struct Selection
 {
     std::set<std::string> ids;  ///< empty: all
@@ -23,10 +23,10 @@ public:
 
     void frame(const Frame& frame, const link::Catalogue& catalogue);
     void metrics(const link::Metrics& metrics);
-    /// Prints the entry, if it is selected; true if so.
+    /// Prints the entry if it is selected; returns whether it was.
     bool collision(const plab_v2_Collisions& sample, std::uint32_t entry);
     bool event(const plab_v2_Events& sample, std::uint32_t entry);
-    /// Numbers are missing: says so where it happened.
+    /// Numbers are missing: reports it at that place.
     void gap(const char* what, std::uint64_t missed, std::uint64_t before);
 
 private:

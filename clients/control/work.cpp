@@ -7,7 +7,7 @@ namespace plab::cli
 namespace
 {
 
-/// A reader goes a little back and forth; a new pass begins at the front.
+/// A reader moves back and forth a little; a new pass starts at the beginning.
 constexpr double kNewPass = 0.5;
 
 }  // namespace
@@ -25,7 +25,7 @@ recording::Watch Work::watch()
     {
         if (share < share_ - kNewPass) ++pass_;
         share_ = share;
-        // Of several passes nobody knows how many: their time is not told.
+        // The number of passes is not known in advance, so no remaining time is shown.
         if (progress_.is_due())
             progress_.show(what_ + (pass_ > 1 ? ", pass " + std::to_string(pass_) : "") + "  " + program::bar(share, 30) +
                            "  (Ctrl-C ends)");

@@ -16,14 +16,14 @@ namespace plab::cli
 class Work
 {
 public:
-    /// `streams`: it prints while it reads; on a terminal a line of progress would stand among that.
+    /// `streams`: it prints while it reads, so that a progress line on a terminal would get in between.
     Work(const Context& context, std::string what, bool streams = false);
 
-    /// For whatever reads a recording; the work must outlive it.
+    /// For the code that reads a recording; the work must outlive it.
     recording::Watch watch();
-    /// Before anything is printed.
+    /// Call before anything is printed.
     void end() { progress_.clear(); }
-    /// Says how far it came and what that means; Exit::Interrupted.
+    /// Reports how far it got and what that means; returns Exit::Interrupted.
     Exit interrupted(const std::string& consequence);
 
 private:
@@ -31,7 +31,7 @@ private:
     program::Progress progress_;
     std::string what_;
     double share_ = 0;
-    int pass_ = 1;  ///< over the file: some work reads it more than once
+    int pass_ = 1;  ///< number of the pass over the file: some work reads it more than once
 };
 
 }  // namespace plab::cli

@@ -40,7 +40,7 @@ Reply reply_of(const plab_v2_Reply& r)
 using Guid = std::array<std::uint8_t, sizeof(dds_guid_t)>;
 using Endpoint = dds_builtintopic_endpoint_t* (*)(dds_entity_t, dds_instance_handle_t);
 
-/// The participants behind what an entity is matched with.
+/// The participants of the entities that an entity is matched with.
 std::vector<Guid> participants_of(const wire::Entity& entity, dds_return_t (*matched)(dds_entity_t, dds_instance_handle_t*, std::size_t),
                                   Endpoint data)
 {
@@ -51,24 +51,21 @@ std::vector<Guid> participants_of(const wire::Entity& entity, dds_return_t (*mat
     for (const dds_instance_handle_t handle : handles)
     {
         dds_builtintopic_endpoint_t* const endpoint = data(entity.get(), handle);
-        if (endpoint == nullptr) continue;  // gone meanwhile
+        if (endpoint == nullptr) continue;  // gone in the meantime
         std::memcpy(out.emplace_back().data(), &endpoint->participant_key, sizeof(Guid));
         dds_builtintopic_free_endpoint(endpoint);
     }
     return out;
 }
 
-/// Whether one who answers requests also reads them. Others read them too (a recorder), and one of those may be found first:
-/// what is sent before the server is there does not reach it.
+/// Whether a participant that answers requests also reads them. Other participants read them too (a recorder), and one of those
+/// may be found first: a request sent before the server is matched does not reach it.
 bool reaches_server(const wire::Entity& requests, const wire::Entity& replies)
 {
     const auto readers = participants_of(requests, &dds_get_matched_subscriptions, &dds_get_matched_subscription_data);
     const auto servers = participants_of(replies, &dds_get_matched_publications, &dds_get_matched_publication_data);
     return std::find_first_of(readers.begin(), readers.end(), servers.begin(), servers.end()) != readers.end();
 }
-
-/// DDS only reads what it is given, though its types have no const.
-char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
 
 }  // namespace
 
@@ -125,9 +122,13 @@ Result<void> Caller::send_again(const Request& request, std::uint64_t number)
     for (const Operation& op : request.operations)
     {
         std::vector<plab_v2_NamedText>& named = values.emplace_back();
-        for (const auto& [name, value] : op.values) named.push_back({text(name), text(value)});
+        for (const auto& [name, value] : op.values) named.push_back({wire::text(name), wire::text(value)});
         const auto count = static_cast<std::uint32_t>(named.size());
-        operations.push_back({text(op.verb), text(op.target), text(op.argument), text(op.blueprint), {count, count, named.data(), false}});
+        operations.push_back({wire::text(op.verb),
+                              wire::text(op.target),
+                              wire::text(op.argument),
+                              wire::text(op.blueprint),
+                              {count, count, named.data(), false}});
     }
     plab_v2_Request sample{};
     std::memcpy(sample.client, state_->id, sizeof sample.client);
@@ -160,7 +161,7 @@ std::string Caller::last_request() const
 
 Presence Caller::presence() const
 {
-    // The server's state comes at once to a new reader, and once a second to all.
+    // A new reader gets the server's state at once, and all readers get it once per second.
     constexpr Seconds kState(1.5);
     if (state_->replies.writers() == 0) return Presence::Gone;
     if (!state_->session->servers(kState, 1).empty()) return Presence::There;
@@ -170,7 +171,8 @@ Presence Caller::presence() const
 Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& stop)
 {
     constexpr Seconds kMostBetween(1.0), kSlice(0.1), kGone(0.5);
-    // The server's reader may know this writer a little later than the other way round, and what comes before is not kept for it.
+    // The server's reader may discover this writer slightly later than this side discovers the reader, and earlier samples are
+    // not kept for it.
     Seconds between(0.02);
     const auto end = moment_after(timeout);
     auto number = send(request);
@@ -180,7 +182,7 @@ Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& 
     while (!answer)
     {
         if (state_->replies.writers() > 0) seen_at = Clock::now();
-        // Its last reply may overtake, or be overtaken by, the news of its end.
+        // Its last reply may arrive before or after the notice of its end.
         if (Clock::now() - seen_at >= kGone) return reason("server '" + state_->session->server() + "' has gone without a reply");
         const Seconds left = Seconds(end - Clock::now());
         if (left <= Seconds(0)) return reason("no reply from server '" + state_->session->server() + "' within the time-out");
@@ -192,11 +194,12 @@ Result<Reply> Caller::call(const Request& request, Seconds timeout, const Stop& 
             {
                 if (of != *number || answer) return;
                 answer = std::move(reply);
-                // Whoever calls asked once. That this function sent it again, and that another copy was answered first, is its own affair.
+                // The caller made one request. That this function repeated it, and that another copy was answered first, is an
+                // internal detail.
                 answer->repeated = false;
             });
         if (answer || Clock::now() - sent_at < between) continue;
-        // A request for a later step is answered when that step is there: repeating it does no harm, it has its number.
+        // A request for a later step is answered at that step: repeating it is harmless because of its number.
         if (auto sent = send_again(request, *number); !sent) return sent.errors();
         sent_at = Clock::now(), between = std::min(2 * between, kMostBetween);
     }

@@ -1,4 +1,4 @@
-/// Requests and their replies. A request is sent again until its reply is there: the server carries it out once.
+/// Requests and their replies. A request is repeated until its reply arrives: the server carries it out only once.
 #pragma once
 
 #include <functional>
@@ -49,16 +49,16 @@ struct Reply
     std::int64_t step = 0;
     double time = 0, pause_ns = 0, waited_ns = 0;
     std::vector<SwapReport> swaps;
-    std::string trial;  ///< how it was proved, in the server's words
+    std::string trial;  ///< how it was tested, in the server's words
 
     bool done() const { return outcome == "done"; }
 };
 
-/// Of a server that did not reply.
+/// State of a server that did not reply.
 enum class Presence : std::uint8_t
 {
     There,
-    Silent,  ///< known, but it says nothing: stopped, or its host is out of reach
+    Silent,  ///< known, but silent: stopped, or its host is unreachable
     Gone,    ///< ended, or silent for so long that it counts as ended
 };
 
@@ -66,22 +66,22 @@ enum class Presence : std::uint8_t
 class Caller
 {
 public:
-    /// Waits until the server's ends are matched both ways: a reply cannot be missed.
+    /// Waits until the server's endpoints are matched in both directions, so that a reply cannot be missed.
     static Result<Caller> make(const Session& session, Seconds timeout, const Stop& stop = {});
-    /// Waits for the reply until `timeout`, or until the server has gone; an error means that there was none (whether it
-    /// was carried out is unknown).
+    /// Waits for the reply until `timeout`, or until the server has gone; an error means that there was no reply (it is unknown
+    /// whether the request was carried out).
     Result<Reply> call(const Request& request, Seconds timeout, const Stop& stop = {});
 
-    /// How the last request is named to `cancel`: "3f..00:7". "" before the first.
+    /// The name of the last request, for `cancel`: "3f..00:7". "" before the first.
     std::string last_request() const;
     /// Whether the server is still there; takes a moment if it is silent.
     Presence presence() const;
 
-    /// For those who wait themselves: sends, and gives the request's number.
+    /// For callers that do the waiting themselves: sends, and returns the request's number.
     Result<std::uint64_t> send(const Request& request);
     /// Sends the same request, with the same number, once more.
     Result<void> send_again(const Request& request, std::uint64_t number);
-    /// Replies that have come, each with the number of its request.
+    /// Replies that have arrived, each with the number of its request.
     void take(const std::function<void(std::uint64_t number, Reply)>& handle);
 
 private:

@@ -11,8 +11,8 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-// Types have no count on the bus: they come in one burst, and when no more have come for this long, they are all
-// there. Metrics may be there or not.
+// The bus gives no count of types: they arrive in one burst, and are considered complete when no more have arrived for this
+// long. Metrics are optional.
 constexpr Seconds kQuiet(0.05);
 constexpr Seconds kSlice(0.05);
 
@@ -26,7 +26,7 @@ Result<void> open_reader(const Session& session, bool wanted, wire::Reader<T>& r
     return {};
 }
 
-/// Brings `things` up to date with what the reader holds; true if something came.
+/// Updates `things` with the reader's samples; true if there were any.
 template <class T, class Thing, class KeyOf, class Convert>
 bool take_into(wire::Reader<T>& reader, std::map<std::string, Thing>& things, KeyOf key_of, Convert convert)
 {
@@ -108,14 +108,14 @@ Result<void> Catalogue::fetch(Seconds timeout, const Stop& stop)
     auto last = Clock::now();
     while (true)
     {
-        // The server's state and metrics go on changing for ever: they do not count as a part of the burst.
+        // The server's state and metrics change continuously: they do not count as a part of the burst.
         const std::uint64_t before = version_;
         (void)update();
         if (version_ != before) last = Clock::now();
         const std::string gap = missing();
         const bool is_counted = !has(parts_, Part::Types) && (!has(parts_, Part::Metrics) || now_.metrics);
         if (gap.empty() && (is_counted || Clock::now() - last >= kQuiet)) return {};
-        if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not tell everything; missing: " + gap);
+        if (Clock::now() >= end) return reason("server '" + session_->server() + "' did not send its complete catalogue; missing: " + gap);
         if (stop && stop()) return reason("interrupted");
         const Seconds left = std::min(kSlice, Seconds(end - Clock::now()));
         (void)dds_waitset_wait(waitset_.get(), nullptr, 0, duration_of(left));

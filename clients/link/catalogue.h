@@ -17,10 +17,10 @@
 namespace plab::link
 {
 
-/// The sample as a plain struct, for those who read the topic themselves.
+/// The sample as a plain struct, for code that reads the topic itself.
 Metrics metrics_of(const plab_v2_Metrics& sample);
 
-/// The topics that a catalogue reads. What is left out costs nothing.
+/// The topics that a catalogue reads. Omitted topics cost nothing.
 enum class Part : unsigned
 {
     Server = 1,
@@ -52,22 +52,24 @@ struct CatalogueContents
 class Catalogue
 {
 public:
-    /// Subscribes; nothing is there before fetch() or update(). The scene is always read: it says how much there is.
+    /// Subscribes; the contents arrive with fetch() or update(). The scene is always read, because it contains the counts of
+    /// the rest.
     static Result<Catalogue> open(const Session& session, Parts parts = kEverything);
 
-    /// Waits until all that the server keeps for late joiners is there. An error names what is missing at the time-out.
+    /// Waits until everything that the server keeps for late joiners has arrived. An error names what is missing at the
+    /// time-out.
     Result<void> fetch(Seconds timeout, const Stop& stop = {});
-    /// Takes what has come, without waiting; true if something changed.
+    /// Takes what has arrived, without waiting; true if something changed.
     bool update();
-    /// Waits for a change until `timeout`; takes it.
+    /// Waits for a change until `timeout`, and takes it.
     bool wait(Seconds timeout);
 
     const CatalogueContents& now() const { return now_; }
-    /// Counts changes of what there is (the server's state and metrics left out): for caches of who draws or prints.
+    /// Counts changes of the contents (except the server's state and metrics): for caches of code that draws or prints.
     std::uint64_t version() const { return version_; }
-    /// The server showed itself and has gone since: ended, or silent for longer than its lease.
+    /// The server was there and has gone since: ended, or silent for longer than its lease.
     bool server_is_gone() const { return was_there_ && !now_.server; }
-    /// The object that frames call `handle`; null if there is none.
+    /// The object with this `handle` in frames; null if there is none.
     const Object* find_object(std::uint32_t handle) const;
 
 private:

@@ -9,7 +9,7 @@ namespace plab::link
 
 Scene scene_of(const plab_v2_Scene& sample);
 Object object_of(const plab_v2_SceneObject& sample);
-/// Index triples that point outside the vertices are left out.
+/// Index triples that refer to nonexistent vertices are left out.
 Shape shape_of(const plab_v2_Shape& sample);
 Interaction interaction_of(const plab_v2_Interaction& sample);
 Type type_of(const plab_v2_Type& sample);

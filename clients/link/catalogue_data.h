@@ -1,4 +1,4 @@
-/// What a server says of its scene, as plain structs. Units and meanings of the fields stand in idl/plab.idl.
+/// A server's description of its scene, as plain structs. Units and meanings of the fields are documented in idl/plab.idl.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ struct Scene
 struct Object
 {
     std::string id, name, type;
-    std::uint32_t handle = 0;  ///< what frames call it
+    std::uint32_t handle = 0;  ///< identifies it in frames
     std::uint64_t run = 0;
     bool is_shaft = false;
     std::string motion;  ///< "static", "kinematic", "dynamic"
@@ -72,7 +72,7 @@ struct Interaction
 {
     std::string id, name, type, family;
     std::uint64_t run = 0;
-    std::int64_t since = 0;  ///< step at which this algorithm took its place
+    std::int64_t since = 0;  ///< step at which this algorithm became active
     std::vector<Participants> roles;
     bool quarantined = false;
     std::vector<Parameter> parameters;
@@ -108,7 +108,7 @@ struct InteractionMetrics
     bool quarantined = false;
     std::vector<Parameter> outputs;  ///< and accounts: what the figures above are
 
-    /// What the server says of a figure; null if it says nothing.
+    /// The server's explanation of a figure; null if there is none.
     const Parameter* account(std::string_view name) const;
 };
 

@@ -37,7 +37,7 @@ constexpr Primitive kPrimitives[]{
     {DDS_XTypes_TK_FLOAT64, Kind::Float64}, {DDS_XTypes_TK_CHAR8, Kind::Char},
 };
 
-/// What is in IDL but not understood here, in words.
+/// The name of an IDL construct that is not supported here.
 std::string words_for(std::uint8_t kind)
 {
     switch (kind)
@@ -73,7 +73,7 @@ class Describer
 public:
     explicit Describer(dds_entity_t participant) : participant_(participant) {}
 
-    /// `path` is where it was met, for the message.
+    /// `path` is its location, for the message.
     Described identified(const Identifier& id, const std::string& path, int depth)
     {
         if (depth > kMostDepth) return refuse(path, "deeper than " + std::to_string(kMostDepth) + " levels");
@@ -103,7 +103,7 @@ public:
 private:
     static Error refuse(const std::string& path, const std::string& what)
     {
-        return reason((path.empty() ? "it" : "'" + path + "'") + " is " + what + ", which is not understood");
+        return reason((path.empty() ? "it" : "'" + path + "'") + " is " + what + ", which is not supported");
     }
 
     static Described string(std::uint32_t bound)
@@ -137,7 +137,7 @@ private:
         return DynamicTypePtr(type);
     }
 
-    /// A type with an object of its own; each is described once.
+    /// A type with a type object of its own; each is described once.
     Described looked_up(const Identifier& id, const std::string& path, int depth)
     {
         const std::string hash(reinterpret_cast<const char*>(id._u.equivalence_hash), sizeof id._u.equivalence_hash);

@@ -11,15 +11,16 @@
 
 namespace plab::link
 {
-namespace
-{
-
-using Clock = std::chrono::steady_clock;
 
 struct TypeInfoDeleter
 {
     void operator()(dds_typeinfo_t* info) const { (void)dds_free_typeinfo(info); }
 };
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
 struct DescriptorDeleter
 {
     void operator()(dds_topic_descriptor_t* descriptor) const { (void)dds_delete_topic_descriptor(descriptor); }
@@ -62,8 +63,8 @@ std::string qos_text(const dds_qos_t* qos)
     return text;
 }
 
-/// Cyclone DDS 0.10 calls the keys of rebuilt types short and of fixed length, strings as well: one of more than 11
-/// characters then overruns its place in the sample. Without those flags it sets aside what a key needs.
+/// Cyclone DDS 0.10 treats the keys of types built at run time as short and of fixed length, even strings: one of more than 11
+/// characters then overruns its place in the sample. Without those flags it reserves enough space for a key.
 dds_topic_descriptor_t with_keys_of_any_length(const dds_topic_descriptor_t& d)
 {
     constexpr std::uint32_t kFixed = DDS_TOPIC_FIXED_KEY | DDS_TOPIC_FIXED_KEY_XCDR2;
@@ -92,7 +93,7 @@ struct Discovery::Endpoint
 
 struct Discovery::Known
 {
-    Guid self{};  ///< the participant, whose own readers are not worth telling
+    Guid self{};  ///< the participant, whose own readers are not shown
     std::map<Guid, Discovery::Endpoint> endpoints;
     std::uint64_t changes = 0;
 
@@ -141,7 +142,7 @@ Result<Discovery> Discovery::make(const wire::Entity& participant)
     out.participant_ = participant.get();
     out.known_.reset(new Known);
     dds_guid_t self{};
-    if (const auto code = dds_get_guid(participant.get(), &self); code < 0) return wire::failed("cannot look at the bus", code);
+    if (const auto code = dds_get_guid(participant.get(), &self); code < 0) return wire::failed("cannot inspect the bus", code);
     out.known_->self = guid_of(self);
     out.waitset_ = wire::Entity(dds_create_waitset(participant.get()));
     const auto listen = [&](dds_entity_t topic, wire::Entity& reader) -> dds_return_t
@@ -153,9 +154,9 @@ Result<Discovery> Discovery::make(const wire::Entity& participant)
         return dds_waitset_attach(out.waitset_.get(), e, 0);
     };
     if (const auto code = listen(DDS_BUILTIN_TOPIC_DCPSPUBLICATION, out.writers_); code < 0)
-        return wire::failed("cannot look at the writers on the bus", code);
+        return wire::failed("cannot inspect the writers on the bus", code);
     if (const auto code = listen(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, out.readers_); code < 0)
-        return wire::failed("cannot look at the readers on the bus", code);
+        return wire::failed("cannot inspect the readers on the bus", code);
     return out;
 }
 
@@ -167,7 +168,7 @@ void Discovery::update()
 
 std::vector<TopicInfo> Discovery::topics(Seconds quiet, Seconds longest, const Stop& stop)
 {
-    // Under load the first answer may take longer than those that follow it.
+    // Under load, the first answer may take longer than the later ones.
     constexpr Seconds kFirst(1);
     const auto begin = Clock::now();
     update();
@@ -220,7 +221,7 @@ bool Discovery::wait_for_writer(const std::string& topic, const RawOptions& opti
         update();
     }
     if (writers_of(topic, options).empty()) return false;
-    // One more look: the other writers of a program that was just found come within milliseconds.
+    // One more pass: the other writers of a newly found program appear within milliseconds.
     (void)topics(Seconds(0.05), Seconds(0.3), stop);
     return true;
 }
@@ -228,7 +229,7 @@ bool Discovery::wait_for_writer(const std::string& topic, const RawOptions& opti
 namespace
 {
 
-/// What a reader may ask for so that all of these writers match it.
+/// The strictest QoS that a reader may request so that all of these writers match it.
 struct Offer
 {
     bool is_reliable = true, is_kept = true, is_exclusive = false;
@@ -255,7 +256,7 @@ struct Offer
         dds_qset_durability(qos.get(), is_kept && wants_history ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
         dds_qset_ownership(qos.get(), is_exclusive ? DDS_OWNERSHIP_EXCLUSIVE : DDS_OWNERSHIP_SHARED);
         dds_qset_latency_budget(qos.get(), DDS_INFINITY);
-        // Whoever looks on may be slow: it must not hold up the writer, nor grow without bound.
+        // This reader may be slow: it must neither block the writer nor use unbounded memory.
         dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1024);
         return qos;
     }
@@ -278,8 +279,9 @@ Result<RawReader> Discovery::read(const std::vector<const Endpoint*>& writers, c
     dds_topic_descriptor_t* made = nullptr;
     auto code = dds_create_topic_descriptor(DDS_FIND_SCOPE_GLOBAL, participant_, described.info.get(), DDS_SECS(2), &made);
     if (code == DDS_RETCODE_UNSUPPORTED)
-        return reason(described.type +
-                      " has what this Cyclone DDS cannot put together from a description, a bounded string in its key maybe");
+        return reason(
+            described.type +
+            " cannot be built by this version of Cyclone DDS from its description, perhaps because of a bounded string in its key");
     if (code < 0) return wire::failed("cannot fetch the type of '" + name + "' from its writer", code);
     const std::unique_ptr<dds_topic_descriptor_t, DescriptorDeleter> descriptor(made);
     RawReader out;
@@ -316,11 +318,11 @@ Result<RawReader> Discovery::open(const std::string& topic, const RawOptions& op
     if (writers.empty())
     {
         const std::string where = options.partition.empty() ? "" : " in partition '" + options.partition + "'";
-        return reason("nobody writes '" + topic + "'" + where + did_you_mean(topic, names));
+        return reason("there is no writer of '" + topic + "'" + where + did_you_mean(topic, names));
     }
     if (types.size() > 1)
         return reason("'" + topic + "' is written with several types, " + *types.begin() + " and " + *types.rbegin() +
-                      " among them: name a partition that has one");
+                      " among them: name a partition with only one type");
     const auto described = std::find_if(writers.begin(), writers.end(), [](const Endpoint* e) { return e->info != nullptr; });
     if (described == writers.end())
         return reason("the writers of '" + topic + "' do not describe its type: it cannot be read without its IDL");

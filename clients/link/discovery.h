@@ -1,5 +1,4 @@
-/// What is on the bus, pLab's or not: topics with their writers, readers and types, and samples of any of them.
-///
+/// All topics on the bus, pLab's or not, with their writers, readers and types, and samples of any of them.
 /// A type that is not compiled in is fetched from the program that writes it (XTypes type discovery).
 #pragma once
 
@@ -16,7 +15,7 @@ enum class Origin : std::uint8_t
 {
     Foreign,
     Plab,
-    OtherVersion,  ///< a name of pLab's with a type that is not of this version
+    OtherVersion,  ///< a pLab topic name with a type of another version
 };
 
 /// All writers and readers of one topic that agree on the type's name.
@@ -25,35 +24,35 @@ struct TopicInfo
     std::string name, type;
     std::set<std::string> partitions;  ///< "": the default one
     std::size_t writers = 0, readers = 0;
-    std::set<std::string> qos;  ///< of its writers; of its readers if it has no writers
+    std::set<std::string> qos;  ///< QoS of its writers, or of its readers if it has no writers
     Origin origin = Origin::Foreign;
 };
 
-/// One sample as it was on the wire.
+/// One sample in wire format.
 struct RawSample
 {
-    std::span<const std::byte> bytes;  ///< encoding first; a sample that only says that an instance is gone has the key
+    std::span<const std::byte> bytes;  ///< starts with the encoding; a sample that only reports that an instance is gone has the key
     bool has_value = true;
-    bool is_gone = false;  ///< the instance was disposed of, or nobody writes it any more
+    bool is_gone = false;  ///< the instance was disposed of, or has no writer any more
     std::int64_t written_ns = 0;
     std::uint64_t writer = 0;
 };
 
-/// Reads one topic without knowing its type.
+/// Reads one topic without knowing its type at compile time.
 class RawReader
 {
 public:
-    /// One of our own topics, of the session's server. Holds nobody up: requests are read without being acknowledged, and
-    /// who takes too late misses samples. `depth`: how many wait here, of each instance.
+    /// One of our own topics, of the session's server. Blocks no writer: requests are read without being acknowledged, and a
+    /// slow reader misses samples. `depth`: number of samples that may wait here, per instance.
     static Result<RawReader> open(const Session& session, const wire::Topic& topic, std::int32_t depth);
 
-    /// What it is made of; null if that cannot be shown, and why_opaque() says why.
+    /// Its type; null if it cannot be shown, and then why_opaque() returns the reason.
     const DynamicTypePtr& type() const { return type_; }
     const std::string& why_opaque() const { return why_opaque_; }
     const std::string& type_name() const { return type_name_; }
 
     bool wait(Seconds timeout) const;
-    /// Hands over what waits, a batch of it at the most; how many there were.
+    /// Passes on the waiting samples, at most one batch; returns their number.
     std::size_t take(const std::function<void(const RawSample&)>& handle);
     std::uint32_t writers() const;
     const wire::Entity& entity() const { return reader_; }
@@ -69,8 +68,8 @@ private:
 
 struct RawOptions
 {
-    std::string partition;      ///< "": all that the topic has writers in
-    bool wants_history = true;  ///< what writers keep for late joiners
+    std::string partition;      ///< "": all partitions in which the topic has writers
+    bool wants_history = true;  ///< also what writers keep for late joiners
 };
 
 /// Not thread-safe; must not outlive the participant.
@@ -79,11 +78,12 @@ class Discovery
 public:
     static Result<Discovery> make(const wire::Entity& participant);
 
-    /// What shows itself until nothing new came for `quiet`, at the most for `longest`. On an empty bus that is a second.
+    /// All endpoints that appear, until nothing new has appeared for `quiet`, at most for `longest`. On an empty bus that is
+    /// one second.
     std::vector<TopicInfo> topics(Seconds quiet, Seconds longest, const Stop& stop = {});
-    /// False: nobody writes it (in that partition) until `timeout`.
+    /// False: it has no writer (in that partition) until `timeout`.
     bool wait_for_writer(const std::string& topic, const RawOptions& options, Seconds timeout, const Stop& stop = {});
-    /// Reads what its writers that are known now write, and those that come later with the same type.
+    /// Reads from the currently known writers, and from later ones with the same type.
     Result<RawReader> open(const std::string& topic, const RawOptions& options);
 
 private:
@@ -103,8 +103,8 @@ private:
     std::unique_ptr<Known, KnownDeleter> known_;
 };
 
-/// What a type is made of, from the type objects that `participant` knows. An error names the member that is of a kind
-/// that is not understood.
+/// The structure of a type, from the type objects that `participant` knows. An error names the member whose kind is not
+/// supported.
 Result<DynamicTypePtr> describe_type(dds_entity_t participant, const dds_typeinfo_t* type);
 
 }  // namespace plab::link

@@ -12,11 +12,11 @@ namespace
 
 using Kind = DynamicType::Kind;
 
-// Types come from others too: neither their depth nor lists of elements without bytes may cost more than this.
-constexpr int kMostDepth = 64;
+// Types may be foreign too: neither their depth nor lists of elements without bytes may cost more than this.
+constexpr int kMostSampleDepth = 64;
 constexpr std::size_t kMostValues = std::size_t{1} << 25;
 
-/// Reads one sample. Once something did not fit every further step fails; the path to it is put together on the way out.
+/// Reads one sample. After a failure every further step fails; the path to it is assembled on the way out.
 class Decoder
 {
 public:
@@ -26,7 +26,7 @@ public:
     {
         if (!start() || !value(type, 0)) return reason((path_.empty() ? "" : path_ + ": ") + why_);
         // Up to three bytes fill the last word.
-        if (end_ - at_ > 3) return reason(std::to_string(end_ - at_) + " bytes are left over: the type does not fit the sample");
+        if (end_ - at_ > 3) return reason(std::to_string(end_ - at_) + " bytes are left over: the type does not match the sample");
         return {};
     }
 
@@ -44,11 +44,11 @@ private:
 
     bool start()
     {
-        if (bytes_.size() < 4) return fail("a sample begins with 4 bytes, this one has " + std::to_string(bytes_.size()));
+        if (bytes_.size() < 4) return fail("a sample begins with 4 header bytes, this one has " + std::to_string(bytes_.size()));
         const auto encoding = std::to_integer<unsigned>(bytes_[0]) << 8 | std::to_integer<unsigned>(bytes_[1]);
         constexpr std::array<unsigned, 6> kKnown{0x0000, 0x0001, 0x0006, 0x0007, 0x0008, 0x0009};
         if (std::find(kKnown.begin(), kKnown.end(), encoding) == kKnown.end())
-            return fail("its encoding has number " + std::to_string(encoding) +
+            return fail("its encoding has the number " + std::to_string(encoding) +
                         "; XCDR1 (0, 1) and XCDR2 (6 to 9) are understood, parameter lists are not");
         const bool is_little = (encoding & 1) != 0;
         is_swapped_ = is_little != (std::endian::native == std::endian::little);
@@ -92,7 +92,7 @@ private:
     bool value(const DynamicType& type, int depth)
     {
         if (++values_ > kMostValues) return fail("the sample has more than " + std::to_string(kMostValues) + " values");
-        if (depth > kMostDepth) return fail("the type is deeper than " + std::to_string(kMostDepth) + " levels");
+        if (depth > kMostSampleDepth) return fail("the type is deeper than " + std::to_string(kMostSampleDepth) + " levels");
         switch (type.kind)
         {
             case Kind::Boolean:
@@ -128,7 +128,7 @@ private:
             case Kind::Array:
                 return array(type, depth);
         }
-        return fail("a value of no known kind");
+        return fail("a value of unknown kind");
     }
 
     bool boolean()
@@ -152,12 +152,12 @@ private:
     {
         std::uint32_t n = 0;
         if (!read(n)) return false;
-        if (n == 0) return fail("a string has at least its final zero");
+        if (n == 0) return fail("a string needs at least its terminating zero");
         if (n > end_ - at_) return fail("a string of " + std::to_string(n) + " bytes, but " + std::to_string(end_ - at_) + " are left");
         if (type.bound > 0 && n - 1 > type.bound)
             return fail("a string of " + std::to_string(n - 1) + " bytes, at most " + std::to_string(type.bound));
         const auto* const text = reinterpret_cast<const char*>(bytes_.data() + at_);
-        if (text[n - 1] != 0) return fail("a string without its final zero");
+        if (text[n - 1] != 0) return fail("a string without its terminating zero");
         at_ += n;
         visitor_.scalar(std::string_view(text, n - 1));
         return true;
@@ -184,7 +184,7 @@ private:
         return true;
     }
 
-    /// XCDR2 writes the length in bytes before some values: what follows must stay inside. Hands back the end outside.
+    /// XCDR2 writes the length in bytes before some values: the following data must stay inside. Returns the outer end.
     bool enter(std::size_t& outer_end)
     {
         std::uint32_t n = 0;
@@ -262,7 +262,7 @@ private:
     {
         const std::size_t n = which < type.dimensions.size() ? type.dimensions[which] : 0;
         if (which + 1 >= type.dimensions.size()) return elements(*type.element, n, depth);
-        if (static_cast<int>(which) + depth > kMostDepth) return fail("an array of too many dimensions");
+        if (static_cast<int>(which) + depth > kMostSampleDepth) return fail("an array of too many dimensions");
         visitor_.open_list(type, n);
         for (std::size_t i = 0; i < n; ++i)
         {
@@ -283,10 +283,10 @@ private:
 
 DynamicTypePtr reduce_to_key(const DynamicTypePtr& type, int depth)
 {
-    if (type->kind != Kind::Struct || depth > kMostDepth) return type;
+    if (type->kind != Kind::Struct || depth > kMostSampleDepth) return type;
     auto key = std::make_shared<DynamicType>(*type);
     std::erase_if(key->members, [](const DynamicMember& m) { return !m.is_key; });
-    // A struct that is a key and marks none of its members is one altogether.
+    // A struct that is a key and marks none of its members is a key as a whole.
     if (key->members.empty()) key->members = type->members;
     for (DynamicMember& member : key->members) member.type = reduce_to_key(member.type, depth + 1);
     return key;

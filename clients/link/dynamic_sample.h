@@ -1,7 +1,6 @@
-/// Samples of types that a program was not built with: what a type is made of, and the values in its bytes.
-///
-/// Bytes come from others: every length is checked against what is there, and what does not fit is an error that says
-/// where ("bodies[3].position.y: the sample ends here"). Nothing is guessed.
+/// Samples of types that a program was not built with: the structure of a type, and the values in its bytes.
+/// The bytes are not trusted: every length is checked against the available data, and a mismatch is an error that names its
+/// location ("bodies[3].position.y: the sample ends here"). Nothing is guessed.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +28,8 @@ struct DynamicMember
     bool is_key = false;
 };
 
-/// A type as its XTypes TypeObject tells it. What is not listed here (unions, maps, wide strings, optional members,
-/// bit masks) is refused when the type is read, before any sample.
+/// A type as described by its XTypes TypeObject. Constructs that are not listed here (unions, maps, wide strings, optional
+/// members, bit masks) are refused when the type is read, before any sample.
 struct DynamicType
 {
     enum class Kind : std::uint8_t
@@ -57,7 +56,7 @@ struct DynamicType
     bool is_appendable = false;          ///< struct: XCDR2 writes its length before it
     std::vector<DynamicMember> members;  ///< struct; those of its base come first
     DynamicTypePtr element;              ///< sequence, array
-    std::uint32_t bound = 0;             ///< string, sequence: most; 0: any number
+    std::uint32_t bound = 0;             ///< string, sequence: maximum length; 0: unlimited
     std::vector<std::uint32_t> dimensions;
     std::uint8_t enum_bytes = 4;  ///< 1, 2 or 4
     std::vector<std::pair<std::int32_t, std::string>> literals;
@@ -65,7 +64,7 @@ struct DynamicType
 
 bool is_scalar(const DynamicType& type);
 
-/// An enum's value; the literal is empty where the type has none for it.
+/// An enum's value; the literal is empty if the type has none for it.
 struct EnumValue
 {
     std::int32_t number = 0;
@@ -73,7 +72,7 @@ struct EnumValue
 };
 using Scalar = std::variant<bool, std::int64_t, std::uint64_t, float, double, std::string_view, EnumValue>;
 
-/// Hears the values of a sample, in order.
+/// Receives the values of a sample, in order.
 class SampleVisitor
 {
 public:
@@ -86,17 +85,17 @@ public:
     virtual void scalar(const Scalar& value) = 0;
 };
 
-/// Reads a sample as it was on the wire: 4 bytes that name the encoding (XCDR1, or XCDR2 plain or delimited, of either
-/// byte order), then the values. On an error the visitor has heard a part of it.
+/// Reads a sample in wire format: 4 bytes that name the encoding (XCDR1, or XCDR2 plain or delimited, of either byte order),
+/// then the values. On an error the visitor has received a part of it.
 Result<void> decode(const DynamicType& type, std::span<const std::byte> bytes, SampleVisitor& visitor);
 
-/// The members that make its key, and their own: what a sample holds that only says that its instance is gone.
-/// Null if it has none.
+/// The members that form its key, with their own members: the contents of a sample that only reports that its instance is gone.
+/// Null if it has no key.
 DynamicTypePtr key_of(const DynamicType& type);
 
-/// One JSON value, on one line. Enums are the names of their literals, or numbers where they have none.
+/// One JSON value, on one line. Enums are the names of their literals, or numbers if they have none.
 Result<std::string> json_of(const DynamicType& type, std::span<const std::byte> bytes);
-/// "name: value" lines, members of structs indented below it. Lists longer than `most` elements are cut short, and say so.
+/// "name: value" lines, members of structs indented below it. Lists longer than `most` elements are shortened, with a note.
 Result<std::string> tree_of(const DynamicType& type, std::span<const std::byte> bytes, std::size_t most);
 
 }  // namespace plab::link

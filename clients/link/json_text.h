@@ -1,4 +1,4 @@
-/// Text that came over the bus, made safe to show: as JSON, or on a terminal.
+/// Makes text from the bus safe to show, as JSON or on a terminal.
 #pragma once
 
 #include <string>
@@ -13,14 +13,14 @@ namespace plab::link
 std::string number_text(double value);
 std::string number_text(float value);
 
-/// Bytes that are no UTF-8 become U+FFFD.
+/// Bytes that are not valid UTF-8 become U+FFFD.
 std::string valid_utf8(std::string_view text);
-/// Control characters are written out as "\x1b" and the like, so that no text of others can command the terminal.
+/// Control characters are written as "\x1b" and the like, so that foreign text cannot control the terminal.
 std::string terminal_text(std::string_view text);
 
 /// Quoted and escaped; always valid UTF-8.
 std::string json_text(std::string_view text);
-/// JSON has no infinities: they, and what is no number, become null.
+/// JSON has no infinities or NaN: they become null.
 std::string json_number(double value);
 std::string json_number(float value);
 

@@ -8,13 +8,13 @@ namespace plab::link
 namespace
 {
 
-// Names are short; more is no slip of the keyboard, and the distance costs the product of the lengths.
+// Names are short; a larger distance is not a typing error, and computing it costs the product of the lengths.
 constexpr std::size_t kLongestCompared = 128;
 constexpr std::size_t kFar = 1000;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn a into b; capitals count as small letters.
+/// Insertions, deletions, replacements and swaps of neighbours that turn a into b, ignoring case.
 std::size_t edit_distance(std::string_view a, std::string_view b)
 {
     std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -40,7 +40,7 @@ std::string_view last_part(std::string_view name)
     return at == std::string_view::npos ? name : name.substr(at + 1);
 }
 
-/// How far `known` is from `wanted`; kFar if it is no suggestion. The last parts alone may match: "Bisection" means
+/// Distance from `known` to `wanted`; kFar if it is not a suggestion. The last parts alone may match: "Bisection" means
 /// "Resolution/Bisection".
 std::size_t score(std::string_view wanted, std::string_view known)
 {

@@ -1,4 +1,4 @@
-/// "did you mean": which of the known names is nearest to the one that was asked for.
+/// "did you mean": finds the known names that are most similar to a given one.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 namespace plab::link
 {
 
-/// At most `most` names that a slip of the keyboard could have turned into `wanted`, nearest first.
+/// At most `most` names of which `wanted` may be a misspelling, most similar first.
 std::vector<std::string> nearest_names(std::string_view wanted, const std::vector<std::string>& known, std::size_t most = 3);
 
-/// ", did you mean 'a' or 'b'?", or nothing if no name is near.
+/// ", did you mean 'a' or 'b'?", or an empty text if no name is similar.
 std::string did_you_mean(std::string_view wanted, const std::vector<std::string>& known);
 
 }  // namespace plab::link

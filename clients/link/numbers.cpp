@@ -21,7 +21,7 @@ std::errc read(const std::string& text, T& value)
 std::string check_real(const std::string& text, bool may_be_zero, const char* wanted)
 {
     double value = 0;
-    // A comparison with what is no number is false.
+    // A comparison with NaN is false.
     const bool is_right = read(text, value) == std::errc() && (may_be_zero ? value >= 0 : value > 0) && value <= kLongestWait.count();
     return is_right ? "" : "must be " + std::string(wanted) + ", not '" + text + "'";
 }

@@ -1,4 +1,4 @@
-/// Numbers that people give: what is wrong with one, in words; empty if nothing is. All clients refuse the same ones.
+/// Checks numbers given by users: returns the error in words, or an empty text. All clients use the same checks.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 namespace plab::link
 {
 
-// Real numbers, of seconds and metres: neither endless nor more than kLongestWait.
+// Real numbers, of seconds and metres: finite and at most kLongestWait.
 std::string check_positive(const std::string& text);
 std::string check_not_negative(const std::string& text);
 

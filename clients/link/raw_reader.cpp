@@ -30,7 +30,7 @@ Result<RawReader> RawReader::open(const Session& session, const wire::Topic& top
     if (!subscriber) return subscriber.errors();
     out.subscriber_ = subscriber.take();
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
-    // Clients wait for those who acknowledge their requests: the server, and nobody else.
+    // Clients wait for readers that acknowledge their requests: only the server should.
     if (topic.delivery == wire::Delivery::Request) dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
     const dds_entity_t reader = dds_create_reader(out.subscriber_.get(), made, qos.get(), nullptr);
     if (reader < 0) return wire::failed(std::string("cannot read ") + topic.name, reader);
@@ -57,7 +57,7 @@ std::size_t RawReader::take(const std::function<void(const RawSample&)>& handle)
     std::vector<std::byte> bytes;
     std::array<ddsi_serdata*, kBatch> samples{};
     std::array<dds_sample_info_t, kBatch> infos;
-    // One round for each wake-up: a writer that never pauses must not keep the caller in here.
+    // One batch for each wake-up: a writer that never pauses must not keep the caller in this function.
     const dds_return_t n = dds_takecdr(reader_.get(), samples.data(), kBatch, infos.data(), DDS_ANY_STATE);
     for (std::size_t i = 0; n > 0 && i < static_cast<std::size_t>(n); ++i)
     {

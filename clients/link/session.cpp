@@ -57,7 +57,7 @@ Result<SessionOptions> options_from_environment()
 Result<Session> Session::join(const SessionOptions& options)
 {
     if (!options.server.empty() && !wire::is_server_name(options.server))
-        return reason("'" + options.server + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
+        return reason("'" + options.server + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'");
     auto participant = wire::join(options.domain);
     if (!participant) return participant.errors();
     Session session;
@@ -91,18 +91,19 @@ Result<void> Session::find_server(const SessionOptions& options, Seconds timeout
     std::vector<ServerInfo> seen;
     while (true)
     {
-        // Without a name a second server must have the time to show itself: taking the first would be a guess.
+        // Without a name, wait long enough for a second server to appear: taking the first one would be a guess.
         const Seconds look = std::min(left_until(end), Seconds(options.server.empty() ? 0.3 : 0.1));
         seen = servers(look, options.server.empty() ? static_cast<std::size_t>(-1) : 1);
         const auto is_meant = [&](const ServerInfo& s) { return s.name == options.server; };
         if (!options.server.empty() && std::any_of(seen.begin(), seen.end(), is_meant)) return {};
         if (options.server.empty() && seen.size() == 1) return enter(seen.front().name);
-        if (options.server.empty() && seen.size() > 1) return reason("several servers are there (" + names_of(seen) + "): name one");
+        if (options.server.empty() && seen.size() > 1)
+            return reason("there are several servers (" + names_of(seen) + "): name one of them");
         if (Clock::now() >= end || (stop && stop())) break;
     }
     const std::string where = " in domain " + std::to_string(options.domain.id);
     if (options.server.empty()) return reason("no server was found" + where);
-    // Who else there is helps against a wrong name.
+    // A list of the other servers helps to correct a wrong name.
     const std::vector<ServerInfo> names = all_servers(Seconds(0.2));
     return reason("no server '" + options.server + "' was found" + where + (names.empty() ? "" : "; there are: " + names_of(names)));
 }

@@ -15,19 +15,19 @@
 namespace plab::link
 {
 
-/// Asked several times a second by what waits: true ends the waiting.
+/// Called several times per second while waiting: true ends the wait.
 using Stop = std::function<bool()>;
 
 struct SessionOptions
 {
-    std::string server;  ///< name; empty: the only one that is there
+    std::string server;  ///< name; empty: the only server in the domain
     wire::DomainOptions domain;
 };
 
-/// PLAB_SERVER, PLAB_DOMAIN and PLAB_INTERFACE, where they are set.
+/// From PLAB_SERVER, PLAB_DOMAIN and PLAB_INTERFACE, if set.
 Result<SessionOptions> options_from_environment();
 
-/// What is known of a server without asking it.
+/// What a server publishes about itself.
 struct ServerInfo
 {
     std::string name, version, host, scene_file;
@@ -37,14 +37,14 @@ struct ServerInfo
     double time = 0, dt = 0, rate_asked = 0, rate_reached = 0, slipped = 0;
     bool paused = false;
     std::int64_t started_ns = 0;
-    std::string overload;  ///< "" or what is done about steps that take too long: "slip"
+    std::string overload;  ///< "" or how steps that take too long are handled: "slip"
     double states_per_second = 0;
     std::uint32_t threads = 0;
     std::uint64_t last_event = 0, last_collision = 0;  ///< sequence numbers
     std::uint64_t requests_done = 0, requests_refused = 0;
-    std::vector<std::pair<std::string, std::uint64_t>> dropped = {};  ///< topic, samples that rings in the server gave up
-    std::string playback = {};                                        ///< file that is played; empty: it simulates
-    double rewind_from = -1;                                          ///< s; negative: it cannot be rewound
+    std::vector<std::pair<std::string, std::uint64_t>> dropped = {};  ///< topic, number of samples that rings in the server dropped
+    std::string playback = {};                                        ///< file that is played back; empty: it is a simulation
+    double rewind_from = -1;                                          ///< s; negative: a rewind is not possible
     struct KeptSnapshot
     {
         std::string name;
@@ -67,20 +67,20 @@ ServerInfo server_of(const plab_v2_Server& sample);
 class Session
 {
 public:
-    /// Joins the domain, without regard to servers.
+    /// Joins the domain, independent of servers.
     static Result<Session> join(const SessionOptions& options);
-    /// Joins, and looks for the server (by name, or the only one) until `timeout`. The reason says which ones there are.
+    /// Joins, and looks for the server (by name, or the only one) until `timeout`. The error lists the existing servers.
     static Result<Session> find(const SessionOptions& options, Seconds timeout);
     /// The second half of find(), for a session that has joined.
     Result<void> find_server(const SessionOptions& options, Seconds timeout, const Stop& stop = {});
 
-    /// Servers that have shown themselves until `timeout`, by name: this session's, or all while it belongs to none. Returns
-    /// early once `enough` have.
+    /// Servers that have appeared until `timeout`, by name: this session's, or all if it has none. Returns early once there are
+    /// `enough`.
     std::vector<ServerInfo> servers(Seconds timeout, std::size_t enough = static_cast<std::size_t>(-1)) const
     {
         return servers_in(server_.empty() ? "*" : server_, timeout, enough);
     }
-    /// The domain's, whichever this session belongs to.
+    /// The servers of the domain, whichever one this session uses.
     std::vector<ServerInfo> all_servers(Seconds timeout) const { return servers_in("*", timeout, static_cast<std::size_t>(-1)); }
 
     template <class T>
@@ -93,7 +93,7 @@ public:
     {
         return wire::Writer<T>::make(participant_, publisher_);
     }
-    /// Until the reader has samples (true) or the time is over (false).
+    /// Waits until the reader has samples (true) or the time is over (false).
     template <class T>
     bool wait(const wire::Reader<T>& reader, Seconds timeout) const
     {

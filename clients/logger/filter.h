@@ -17,14 +17,14 @@ enum class Severity : std::uint8_t
     Warning,
     Failure,
 };
-/// Words that are none of the three count as failures: what is not understood is better seen.
+/// Unknown words count as failures: it is safer to show them.
 Severity severity_of(std::string_view word);
 
 struct Filter
 {
     bool events = true, collisions = true;
-    std::vector<std::string> kinds = {};    ///< beginnings: "collision.impact", "script."; none: all
-    std::vector<std::string> objects = {};  ///< ids of which an entry names one, as component or participant; none: all
+    std::vector<std::string> kinds = {};    ///< prefixes: "collision.impact", "script."; empty: all
+    std::vector<std::string> objects = {};  ///< ids, one of which an entry must name as component or participant; empty: all
     Severity severity = Severity::Info;     ///< collisions are info
 
     bool wants(const plab_v2_EventInfo& event) const;

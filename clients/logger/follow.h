@@ -1,4 +1,4 @@
-/// plab-log without its command line: what `plabctl log` does as well.
+/// plab-log without its command line; `plabctl log` uses it too.
 #pragma once
 
 #include "logger/options.h"
@@ -13,7 +13,8 @@ struct End
     Errors errors;
 };
 
-/// Joins, finds the server and writes its lines until `interrupted`, the number of entries or the time of `options`.
+/// Joins, finds the server and writes its lines until `interrupted`, or until the number of entries or the time of `options` is
+/// reached.
 End follow(const LoggerOptions& options, const link::Stop& interrupted);
 
 }  // namespace plab::logger

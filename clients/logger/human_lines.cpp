@@ -84,7 +84,7 @@ public:
     {
         std::string line = head(s.time, "status") + "run " + std::to_string(s.run) + ", step " + std::to_string(s.step) + ", revision " +
                            std::to_string(s.revision) + ", x" + number(s.rate_reached) + (s.paused ? ", paused" : "");
-        if (*s.overload != 0) line += ", overload: " + terminal_text(s.overload) + ", " + number(s.slipped) + " s given up";
+        if (*s.overload != 0) line += ", overload: " + terminal_text(s.overload) + ", " + number(s.slipped) + " s of real time lost";
         for (std::uint32_t i = 0; i < s.dropped._length; ++i)
             line += ", " + std::to_string(s.dropped._buffer[i].samples) + " of " + terminal_text(s.dropped._buffer[i].topic) + " dropped";
         return line;

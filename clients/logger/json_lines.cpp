@@ -1,5 +1,5 @@
-// Each line is an object whose "type" says what it is: event, collision, metrics, status, gap, run, server. The other
-// keys are the names of idl/plab.idl.
+// Each line is an object whose "type" is one of event, collision, metrics, status, gap, run, server. The other keys are the
+// names of idl/plab.idl.
 #include "link/json_text.h"
 #include "logger/lines.h"
 

@@ -9,7 +9,7 @@
 namespace plab::logger
 {
 
-/// Numbers that never came: `missed` entries from `first` on.
+/// Numbers that never arrived: `missed` entries from `first` on.
 struct Gap
 {
     const char* topic = "";

@@ -31,7 +31,7 @@ Result<Logger> Logger::make(const link::Session& session, const LoggerOptions& o
     if (auto done = subscribe(session, out.waitset_, out.collisions_); !done) return done.errors();
     if (options.metrics)
         if (auto done = subscribe(session, out.waitset_, out.metrics_); !done) return done.errors();
-    // Last: once it says that the server is there, the others listen already. Its line is the first.
+    // Last: when the server's state arrives, the other readers exist already. Its line is the first.
     if (auto done = subscribe(session, out.waitset_, out.server_); !done) return done.errors();
     (void)session.wait(out.server_, link::Seconds(2));
     out.take_server();
@@ -66,7 +66,7 @@ void Logger::take_all()
 
 void Logger::say_server(ServerChange change, const link::ServerInfo& info)
 {
-    // What the old one still brought comes before.
+    // Entries of the former server come before.
     if (change != ServerChange::Found)
     {
         take_events();
@@ -74,7 +74,7 @@ void Logger::say_server(ServerChange change, const link::ServerInfo& info)
         write(order_.take_all());
     }
     if (change != ServerChange::Gone) run_ = info.run;
-    // Whoever is there next counts for itself.
+    // The numbers of the next server start independently.
     if (change == ServerChange::Gone) event_numbers_.forget(), collision_numbers_.forget();
     output_.write(lines_->server(change, info));
 }
@@ -92,7 +92,7 @@ void Logger::take_server()
             }
             const link::ServerInfo now = link::server_of(sample);
             const bool is_another = was_there_ && now.started_ns != last_.started_ns;
-            // One that was killed is missed only when its lease is over; its successor may be there before.
+            // A server that was killed counts as gone only when its lease is over; its successor may appear before that.
             if (is_there_ && is_another) say_server(ServerChange::Gone, last_);
             if (!is_there_ || is_another) say_server(was_there_ ? ServerChange::Back : ServerChange::Found, now);
             is_there_ = was_there_ = true;

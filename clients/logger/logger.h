@@ -1,4 +1,4 @@
-/// Follows one server, and writes what happens in it, through its ends and beginnings.
+/// Follows one server, through its ends and restarts, and writes what happens in it.
 #pragma once
 
 #include <vector>
@@ -17,11 +17,11 @@ class Logger
 public:
     static Result<Logger> make(const link::Session& session, const LoggerOptions& options, Output output);
 
-    /// Waits up to `longest`, then writes and flushes the lines whose turn has come (order.h). Good: go on.
+    /// Waits up to `longest`, then writes and flushes the lines that are due (order.h). Good: continue.
     Output::State step(link::Seconds longest);
     /// Writes and flushes what is left.
     Output::State finish();
-    /// As many entries as were asked for are written.
+    /// As many entries as requested have been written.
     bool is_full() const { return options_.count && written_ >= *options_.count; }
     const Output& output() const { return output_; }
 
@@ -50,9 +50,9 @@ private:
 
     link::Sequence event_numbers_, collision_numbers_;
     Order order_;
-    link::ServerInfo last_;  ///< that was seen
+    link::ServerInfo last_;  ///< the server that was seen last
     bool is_there_ = false, was_there_ = false;
-    std::uint64_t run_ = 0;  ///< that the last line was about; 0: none yet
+    std::uint64_t run_ = 0;  ///< run of the last line; 0: none yet
     std::uint64_t written_ = 0;
 };
 

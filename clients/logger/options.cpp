@@ -11,34 +11,34 @@ namespace
 
 constexpr const char* kExamples =
     "Examples:\n"
-    "  plab-log                                what happens, line by line, until Ctrl-C\n"
+    "  plab-log                                print everything that happens, line by line, until Ctrl-C\n"
     "  plab-log --json --out run.jsonl         as lines of JSON, appended to a file\n"
     "  plab-log --kind collision.impact -n 10  the next ten impacts\n"
     "  plab-log --severity warning             trouble only\n"
     "  plab-log --metrics --status             cost, error and energy, and the server's state, as well\n"
     "\n"
     "Kinds are \"collision.begin\", \".impact\", \".rest\", \".end\", and those of events: \"script.print\", \"request.swap\", ...\n"
-    "A server that ends is waited for; what was missed has a line of its own. Exit codes: 0 done, 1 cannot write,\n"
-    "2 wrong use, 3 no server, 130 Ctrl-C, 143 SIGTERM.";
+    "If the server ends, plab-log waits for it to come back; a separate line reports missed entries. Exit codes: 0 done, 1 cannot write,\n"
+    "2 wrong usage, 3 no server, 130 Ctrl-C, 143 SIGTERM.";
 
 void add_options(CLI::App& app, LoggerOptions& options, std::string& severity)
 {
     app.add_option("--server", options.link.server, "name of the server; without it, the only one (PLAB_SERVER)");
     app.add_option("--domain", options.link.domain.id, "DDS domain, 0 to 232 (PLAB_DOMAIN)")->check(CLI::Range(0, 232));
     app.add_option("--interface", options.link.domain.network_interface, "network interface instead of loopback (PLAB_INTERFACE)");
-    app.add_option("--timeout", options.timeout, "seconds to wait for the server; 0: as long as it takes")
+    app.add_option("--timeout", options.timeout, "seconds to wait for the server; 0: wait without limit")
         ->check(link::check_not_negative)
         ->capture_default_str();
     app.add_flag("--json", options.json, "one JSON object per line");
     app.add_option("--out", options.out, "file to append to instead of standard output");
-    app.add_flag("--metrics", options.metrics, "log metrics, too");
-    app.add_flag("--status", options.status, "log the server's state, too");
-    app.add_option("--kind", options.filter.kinds, "only kinds that begin so; \"collision\" for all collisions")->allow_extra_args(false);
-    app.add_option("--object", options.filter.objects, "only what names this component")->allow_extra_args(false);
-    app.add_option("--severity", severity, "least severity: info, warning, failure; collisions are info")
+    app.add_flag("--metrics", options.metrics, "also log metrics");
+    app.add_flag("--status", options.status, "also log the server's state");
+    app.add_option("--kind", options.filter.kinds, "only kinds with this prefix; \"collision\" for all collisions")->allow_extra_args(false);
+    app.add_option("--object", options.filter.objects, "only entries that refer to this component")->allow_extra_args(false);
+    app.add_option("--severity", severity, "minimum severity: info, warning, failure; collisions are info")
         ->check(CLI::IsMember({"info", "warning", "failure"}));
-    app.add_option("-n,--count", options.count, "end after so many entries")->check(link::check_count);
-    app.add_option("-d,--duration", options.duration, "end after so many seconds")->check(link::check_positive);
+    app.add_option("-n,--count", options.count, "end after this many entries")->check(link::check_count);
+    app.add_option("-d,--duration", options.duration, "end after this many seconds")->check(link::check_positive);
 }
 
 }  // namespace

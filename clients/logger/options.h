@@ -1,4 +1,4 @@
-/// What plab-log is asked for, and its command line.
+/// The options of plab-log, and its command line.
 #pragma once
 
 #include <optional>
@@ -12,17 +12,17 @@ namespace plab::logger
 
 struct LoggerOptions
 {
-    link::LoggerOptions link;
-    double timeout = 5;  ///< s to wait for the server at the start; 0: as long as it takes
+    link::SessionOptions link;
+    double timeout = 5;  ///< s to wait for the server at the start; 0: without limit
     std::string out;     ///< file to append to; empty: standard output
     bool json = false;
     bool metrics = false, status = false;
     Filter filter;
-    std::optional<std::uint64_t> count;  ///< end after so many entries
-    std::optional<double> duration;      ///< end after so many s
+    std::optional<std::uint64_t> count;  ///< end after this many entries
+    std::optional<double> duration;      ///< end after this time, s
 };
 
-/// What to print instead of running, and the exit code: 0 after --help and --version, 2 for a wrong use.
+/// What to print instead of running, and the exit code: 0 after --help and --version, 2 for wrong usage.
 struct ParseEnd
 {
     int exit_code = 0;

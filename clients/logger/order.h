@@ -1,4 +1,4 @@
-/// Lines of several topics in the order in which things happened, although each topic arrives for itself.
+/// Sorts lines of several topics by the time of their events, although topics arrive independently.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@ struct Line
 {
     std::uint64_t run = 0;
     std::int64_t step = 0;
-    bool counts = true;  ///< towards -n
+    bool counts = true;  ///< counts for -n
     std::string text;
 };
 
-/// A line waits for kSettling for those that happened before it: what was lost on the way is sent again, and comes late.
+/// A line waits for kSettling for earlier ones, because lost samples are retransmitted and come late.
 class Order
 {
 public:
@@ -27,8 +27,8 @@ public:
 
     void add(Line line, Clock::time_point now) { waiting_.push_back({std::move(line), now + kSettling}); }
 
-    /// In order, the lines that have waited long enough at `now`, and all that happened before one of them. Lines of one
-    /// step keep the order in which they were added.
+    /// In order, the lines that have waited long enough at `now`, and all earlier ones. Lines of one step keep the order in
+    /// which they were added.
     std::vector<Line> take(Clock::time_point now)
     {
         std::stable_sort(waiting_.begin(), waiting_.end(), happened_before);
@@ -40,7 +40,7 @@ public:
     }
     std::vector<Line> take_all() { return take(Clock::time_point::max()); }
 
-    /// When take() will have something; `latest` if nothing waits until then.
+    /// When take() will return something; `latest` if nothing waits until then.
     Clock::time_point due(Clock::time_point latest) const
     {
         for (const Waiting& w : waiting_) latest = std::min(latest, w.due);

@@ -1,4 +1,4 @@
-/// Keys of somebody who watches a playback, and the bar that shows where it is.
+/// The keys of a user who watches a playback, and its progress bar.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ enum class Key : unsigned char
     Quit,     ///< q
 };
 
-/// Bytes from a terminal as keys. A cursor key is three bytes, which may come one by one.
+/// Converts bytes from a terminal to keys. A cursor key has three bytes, which may arrive one by one.
 class KeyParser
 {
 public:
@@ -34,7 +34,7 @@ private:
     State state_ = State::Plain;
 };
 
-/// What the bar shows; seconds of the recording's time line.
+/// Content of the bar; seconds of the recording's time line.
 struct BarState
 {
     double from = 0, to = 0, at = 0;

@@ -1,4 +1,4 @@
-/// Where a playback is on the recording's time line, by a clock that the caller reads.
+/// The position of a playback on the recording's time line, by a clock that the caller reads.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 namespace plab::playback
 {
 
-/// Part of a time line, ns; both ends belong to it.
+/// Part of a time line, ns; both ends are included.
 struct Span
 {
     std::uint64_t from = 0, to = 0;
@@ -23,18 +23,18 @@ public:
     using Clock = std::chrono::steady_clock;
     static constexpr double kSlowest = 1e-3, kFastest = 1e3;
 
-    /// Begins at span.from. `rate`: seconds of the recording in a second, from kSlowest to kFastest.
+    /// Starts at span.from. `rate`: seconds of the recording per second of real time, from kSlowest to kFastest.
     Pace(const Span& span, double rate, bool paused, Clock::time_point now);
 
-    /// ns; never beyond the span.
+    /// ns; always within the span.
     std::uint64_t position(Clock::time_point now) const;
     bool at_end(Clock::time_point now) const { return position(now) == span_.to; }
-    /// When the playback comes to `time`; none: it is paused, and `time` is not reached yet.
+    /// When the playback reaches `time`; empty: it is paused, and `time` is not reached yet.
     std::optional<Clock::time_point> when(std::uint64_t time) const;
 
     void pause(bool paused, Clock::time_point now);
     void set_rate(double rate, Clock::time_point now);
-    /// To the nearest time within the span.
+    /// Moves to the nearest time within the span.
     void seek(std::uint64_t time, Clock::time_point now);
 
     const Span& span() const { return span_; }

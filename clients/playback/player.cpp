@@ -13,7 +13,7 @@ namespace
 
 constexpr std::chrono::seconds kHeartbeat(1);
 constexpr std::chrono::milliseconds kGoodbye(200);
-constexpr int kBurst = 256;  ///< messages that are sent before requests and keys have their turn
+constexpr int kBurst = 256;  ///< messages that are sent before requests and keys get their turn
 
 Span span_of(const recording::FileIndex& index)
 {
@@ -23,7 +23,7 @@ Span span_of(const recording::FileIndex& index)
 
 Result<std::uint64_t> time_of(double seconds, const char* option)
 {
-    constexpr double kLast = 9e9;  // s; as ns it still is a number of 64 bits
+    constexpr double kLast = 9e9;  // s; in ns it still fits 64 bits
     if (!(seconds >= 0) || seconds > kLast) return reason(std::string(option) + " must be from 0 to 9e9 s");
     return static_cast<std::uint64_t>(std::llround(seconds * 1e9));
 }
@@ -34,7 +34,7 @@ std::string seconds_text(std::uint64_t time)
     return out + " s";
 }
 
-/// The part of the recording that is asked for.
+/// The requested part of the recording.
 Result<Span> choose_span(const recording::Reader& reader, const PlaybackOptions& options)
 {
     const Span all = span_of(reader.index());
@@ -47,7 +47,7 @@ Result<Span> choose_span(const recording::Reader& reader, const PlaybackOptions&
         *end = *time;
     }
     if (out.from > all.to || out.to < all.from || out.from > out.to)
-        return reason(reader.name() + ": has nothing from " + seconds_text(out.from) + " to " + seconds_text(out.to) + ": it goes from " +
+        return reason(reader.name() + ": has no messages from " + seconds_text(out.from) + " to " + seconds_text(out.to) + ": it covers " +
                       seconds_text(all.from) + " to " + seconds_text(all.to));
     return Span{all.within(out.from), all.within(out.to)};
 }
@@ -57,7 +57,7 @@ Result<std::string> choose_name(const recording::Reader& reader, const std::stri
     if (!asked.empty()) return asked;
     const auto about = reader.metadata(recording::kAbout);
     if (about && about->values.contains("server")) return about->values.at("server");
-    return reason(reader.name() + ": does not say which server it is of: give the playback a name (--name)");
+    return reason(reader.name() + ": does not contain the name of its server: give the playback a name (--name)");
 }
 
 }  // namespace
@@ -131,7 +131,7 @@ Result<void> Player::make_tracks()
         if (!track) return track.errors();
         tracks_.emplace(channel.topic, track.take());
     }
-    if (tracks_.empty()) return reason(reader_.name() + ": has no topic of pLab's");
+    if (tracks_.empty()) return reason(reader_.name() + ": has no pLab topic");
     return {};
 }
 
@@ -142,7 +142,7 @@ Player::~Player()
     std::set<InstanceKey> all;
     for (const auto& [place, bytes] : retained_.entries()) all.insert(place);
     dispose(all);
-    // What has not arrived by then is lost: a reader that hangs must not hold up the end.
+    // Data that has not arrived by then is lost: a hanging reader must not delay the end.
     for (const auto& [topic, track] : tracks_) track->flush(left());
     facade_.leave(left());
 }
@@ -153,7 +153,7 @@ std::uint32_t Player::readers() const
     return states == tracks_.end() ? 0 : states->second->readers().now;
 }
 
-/// Many look at the catalogue before they read states.
+/// Many clients read the catalogue before they read states.
 void Player::show_scene()
 {
     if (!retained_.entries().empty()) return;
@@ -241,7 +241,7 @@ void Player::seek(std::uint64_t time, Clock::time_point now)
 void Player::jump_back(std::uint64_t time, Clock::time_point now)
 {
     pace_.seek(time, now);
-    // Runs are counted on: whoever watches has seen no run of this number.
+    // Run numbers continue to increase: clients have not seen a run of this number.
     changes_.run_shift = highest_run_ + 1 - std::min(run_at(time), highest_run_ + 1);
     jump(time);
     tell_status(now, true);

@@ -1,8 +1,7 @@
-/// Plays a recording on the bus, as the server that was recorded would send it: same topics, in its partition, the
-/// catalogue before what refers to it, everything at its time.
-///
-/// A jump back begins a new run, as a reset does, so that those who watch start afresh. Numbers of events and frames go
-/// on without gaps, but for those that the recording has itself.
+/// Publishes a recording on the bus as the recorded server would: same topics, in its partition, the catalogue before the
+/// samples that refer to it, everything at its time.
+/// A jump back begins a new run, as a reset does, so that clients start afresh. Numbers of events and frames continue without
+/// gaps, except for those of the recording itself.
 #pragma once
 
 #include <map>
@@ -24,12 +23,12 @@ struct PlaybackOptions
     std::string file;
     std::string name;            ///< of the server; empty: the recorded one's
     std::string version;         ///< of this program
-    std::optional<double> from;  ///< s of the recording's time line; none: its begin
-    std::optional<double> to;    ///< s; none: its end
+    std::optional<double> from;  ///< s of the recording's time line; empty: its start
+    std::optional<double> to;    ///< s; empty: its end
     double rate = 1;
     bool paused = false;
     bool loop = false;
-    std::uint32_t readers = 0;  ///< begins when so many read the states
+    std::uint32_t readers = 0;  ///< starts when this many readers of the states are connected
     wire::DomainOptions domain = {};
 };
 
@@ -38,33 +37,33 @@ class Player
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Opens the file, takes the name and joins the bus. Nothing is sent before the first step().
+    /// Opens the file, reserves the name and joins the bus. Nothing is sent before the first step().
     static Result<std::unique_ptr<Player>> open(const PlaybackOptions& options);
     ~Player();
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
 
-    /// Sends what is due, a part of it if that is much. Nothing: goes on. An error: another server has the name.
+    /// Sends what is due, or a part of it if it is much. Nothing: continue. An error: another server has the name.
     Result<void> step(Clock::time_point now);
-    /// Waits until there is something to do, a request has come, or it is `latest`.
+    /// Waits until there is something to do, a request has arrived, or `latest`.
     void wait(Clock::time_point latest);
-    /// Everything is sent, and it is no loop.
+    /// Everything has been sent, and it does not loop.
     bool is_over() const { return is_over_; }
-    /// Those who read all that this playback sends of the states.
+    /// Number of readers that read the complete states of this playback.
     std::uint32_t readers() const;
 
     void pause(bool paused, Clock::time_point now);
     void set_rate(double rate, Clock::time_point now);
-    /// To a time on the recording's time line, ns.
+    /// Jumps to a time on the recording's time line, ns.
     void seek(std::uint64_t time, Clock::time_point now);
 
     const Pace& pace() const { return pace_; }
     const std::string& name() const { return facade_.name(); }
     PlaybackState state() const { return state_; }
     std::uint64_t sent() const { return sent_; }
-    /// Messages that are damaged, or no samples of their topic.
+    /// Messages that are damaged, or are not samples of their topic.
     std::uint64_t broken() const { return broken_; }
-    /// Topics of the recording that are none of pLab's, and are not sent.
+    /// Topics of the recording that are not pLab topics, and are not sent.
     const std::vector<std::string>& foreign() const { return foreign_; }
 
 private:
@@ -107,15 +106,15 @@ private:
     std::unique_ptr<recording::Peek> frames_, statuses_;
 
     std::optional<recording::Cursor> cursor_;
-    std::optional<recording::Found> next_;  ///< the message that comes next
+    std::optional<recording::Found> next_;  ///< the next message
     std::uint64_t position_ = 0;            ///< log_time of the last one
-    std::uint64_t jumped_to_ = 0;           ///< the catalogue of this time is on the bus already
+    std::uint64_t jumped_to_ = 0;           ///< the catalogue of this time is already on the bus
     std::uint32_t wanted_readers_;
     bool has_begun_ = false, is_over_ = false;
-    RetainedSamples retained_;                   ///< what is on the bus
+    RetainedSamples retained_;                   ///< catalogue samples that are on the bus
     std::uint64_t retained_shift_ = 0;           ///< run_shift with which it was written
-    std::set<InstanceKey> doomed_;               ///< gone in the recording, and disposed of unless it is back in the same moment
-    std::uint64_t highest_run_ = 0;              ///< on the bus
+    std::set<InstanceKey> doomed_;               ///< disposed in the recording, and disposed of unless they return at the same moment
+    std::uint64_t highest_run_ = 0;              ///< highest run number published
     std::map<std::string, std::uint32_t> seen_;  ///< readers so far, of topics that newcomers get at once
 
     PlaybackState state_;

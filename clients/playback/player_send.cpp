@@ -1,4 +1,4 @@
-/// What the player sends: after a jump what stands at that time, then message by message.
+/// What the player sends: after a jump, the state at that time, then message by message.
 #include "idl/recording/whole_frame.h"
 #include "playback/player.h"
 
@@ -50,12 +50,12 @@ void Player::jump(std::uint64_t time)
     position_ = jumped_to_ = time;
     put_status(time);
     if (time == 0) return;
-    // What is of this very moment comes next.
+    // Messages of this very moment come next.
     put_latest(metrics(), time - 1);
     put_frame(time - 1);
 }
 
-/// Makes the bus show what is wanted; what does not change is not sent again, unless a new run begins.
+/// Makes the bus show the wanted instances; unchanged ones are not sent again, unless a new run begins.
 void Player::put_catalogue(RetainedSamples wanted)
 {
     std::set<InstanceKey> leaving;
@@ -63,7 +63,7 @@ void Player::put_catalogue(RetainedSamples wanted)
         if (!wanted.has(place)) leaving.insert(place);
     dispose(leaving);
     const bool is_new_run = retained_shift_ != changes_.run_shift;
-    // The scene comes after what it counts.
+    // The scene comes after the objects that it counts.
     for (const bool wants_scene : {false, true})
         for (const auto& [place, bytes] : wanted.entries())
         {
@@ -80,7 +80,7 @@ void Player::put_status(std::uint64_t until)
     auto last = reader_.last_at(status(), until);
     if (last && !*last)
     {
-        // Before its first word: what it says then is nearest to the truth.
+        // Before its first sample: that sample is the best approximation.
         recording::Cursor cursor = reader_.messages({{status()}, until, pace_.span().to});
         const auto first = cursor.next();
         if (!first || !*first) return;
@@ -108,7 +108,7 @@ void Player::put_frame(std::uint64_t until)
     if (!last || !*last) return;
     if (moved_only_)
     {
-        // Back to the last frame that names everything.
+        // Back to the last full frame.
         constexpr auto kBack = static_cast<std::uint64_t>(1.5e9 * recording::kFullFrameEvery);
         const std::uint64_t end = (*last)->message.log_time;
         recording::Cursor before = reader_.messages({{states()}, end > kBack ? end - kBack : 0, end});
@@ -125,7 +125,7 @@ bool Player::fetch()
         auto found = cursor_->next();
         if (!found)
         {
-            ++broken_;  // a chunk: the cursor goes on behind it
+            ++broken_;  // a damaged chunk: the cursor continues after it
             continue;
         }
         if (!*found) return false;
@@ -162,7 +162,7 @@ void Player::send_next()
 
 void Player::send_entry(const recording::Found& found)
 {
-    if (found.message.log_time == jumped_to_) return;  // the jump brought it
+    if (found.message.log_time == jumped_to_) return;  // the jump sent it already
     const std::string& topic = found.channel->topic;
     const auto place = retained_.put(topic, found.message.data);
     if (!place)
@@ -209,7 +209,7 @@ void Player::note_place(recording::Peek& peek, recording::ByteView bytes)
     highest_run_ = std::max(highest_run_, state_.run);
 }
 
-/// Newcomers get what a server would give them at once: of one that stands still its state, and a snapshot.
+/// New readers get at once what a server would send them: of a paused playback its state, and a snapshot.
 void Player::look_at_readers()
 {
     if (has_newcomers(states()) && pace_.is_paused())

@@ -1,4 +1,4 @@
-/// The catalogue of a recording: what its topics for late joiners hold at a time.
+/// The catalogue of a recording: the samples that its topics for late joiners retain at a given time.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace plab::playback
 /// Topic and key.
 using InstanceKey = std::pair<std::string, std::string>;
 
-/// Whether a topic has instances that come, stay and go: objects, shapes, interactions, types, the scene.
+/// Whether the instances of a topic come and go: objects, shapes, interactions, types, the scene.
 bool is_catalogue(const std::string& topic);
 
 class RetainedSamples
@@ -24,7 +24,7 @@ public:
 
     /// A sample of a catalogue topic.
     Result<InstanceKey> put(const std::string& topic, recording::ByteView bytes);
-    /// Takes what a sample of plab/gone names off the shelf. An error: it is no such sample.
+    /// Removes what a sample of plab/gone names. An error: it is not such a sample.
     Result<std::set<InstanceKey>> remove(recording::ByteView gone);
 
     const std::map<InstanceKey, recording::Bytes>& entries() const { return entries_; }
@@ -35,7 +35,7 @@ private:
     std::map<InstanceKey, recording::Bytes> entries_;
 };
 
-/// What stands there after all that has come until `time`, and at it. What is damaged is left out.
+/// The samples retained after everything up to and including `time`. Damaged ones are skipped.
 RetainedSamples retained_at(const recording::Reader& reader, std::uint64_t time);
 
 }  // namespace plab::playback

@@ -1,4 +1,4 @@
-/// What makes a playback a server to others: its name, its status, and that it answers requests, with a no.
+/// Makes a playback appear as a server: its name, its status, and a refusal for every request.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 namespace plab::playback
 {
 
-/// Where the playback is.
+/// The current position of the playback.
 struct PlaybackState
 {
     std::uint64_t run = 0;
@@ -20,25 +20,25 @@ struct PlaybackState
     double time = 0;  ///< s, simulated
     bool is_paused = false;
     double rate_asked = 1, rate_reached = 0;
-    std::uint64_t run_shift = 0, event_shift = 0, collision_shift = 0;  ///< what numbers of the recording are more here
+    std::uint64_t run_shift = 0, event_shift = 0, collision_shift = 0;  ///< offsets from the recording's numbers to the published ones
 };
 
 class ServerFacade
 {
 public:
-    /// Takes the name. An error: a server of this name runs already on this host.
+    /// Reserves the name. An error: a server of this name is already running on this host.
     static Result<ServerFacade> open(std::uint32_t domain, const std::string& name, const std::string& version, const std::string& file);
-    /// Afterwards it can be seen and asked.
+    /// From now on it is visible and accepts requests.
     Result<void> join(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber);
 
-    /// What the recorded server said of itself last; what is no sample of plab/server is an error.
+    /// The latest status of the recorded server; data that is not a sample of plab/server is an error.
     Result<void> use(recording::ByteView status);
     void send(const PlaybackState& state);
-    /// Refuses the requests that have come.
+    /// Refuses the requests that have arrived.
     void answer(const PlaybackState& state);
-    /// Why this playback has to go, if it has: who was first keeps the name.
+    /// Why this playback has to end, if it must: the server that started first keeps the name.
     std::optional<std::string> look_for_rival();
-    /// Says goodbye, for so long at the most.
+    /// Disposes of its instances; waits at most this long.
     void leave(dds_duration_t longest);
 
     const wire::Entity& requests() const { return requests_.entity(); }

@@ -1,4 +1,4 @@
-/// The terminal, while single keys are read from it. It is given back as it was.
+/// Reads single keys from the terminal, and restores its settings afterwards.
 #pragma once
 
 #include <termios.h>
@@ -19,14 +19,14 @@ public:
     Terminal(const Terminal&) = delete;
     Terminal& operator=(const Terminal&) = delete;
 
-    /// What has been typed, without waiting. A program that was stopped and goes on takes the terminal again.
+    /// The keys typed so far, without waiting. When the program was stopped and continues, it sets up the terminal again.
     std::string read();
     void give_back();
 
 private:
     void look();
 
-    std::optional<termios> before_;  ///< as it was; none: it is not ours
+    std::optional<termios> before_;  ///< the original settings; empty: the terminal is not changed
     bool is_given_back_ = false;
 };
 

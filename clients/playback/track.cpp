@@ -10,10 +10,8 @@ namespace plab::playback
 namespace
 {
 
-/// DDS only reads what it is given, though its types have no const.
-char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
-
-// Where the run stands, and which member is the key.
+/// DDS only reads the sample, although its types have no const.
+// Which member contains the run, and which one is the key.
 template <class T>
 void put_run(T& sample, const Changes& changes)
 {
@@ -24,19 +22,19 @@ void put_run(plab_v2_Type&, const Changes&) {}
 void put_run(plab_v2_Scene& scene, const Changes& changes)
 {
     scene.run += changes.run_shift;
-    scene.server_name = text(changes.server);
+    scene.server_name = wire::text(changes.server);
 }
 
 template <class T>
 void put_key(T&, const std::string&)
 {
 }
-void put_key(plab_v2_Scene& scene, const std::string& key) { scene.server_name = text(key); }
-void put_key(plab_v2_SceneObject& object, const std::string& key) { object.component_id = text(key); }
-void put_key(plab_v2_Shape& shape, const std::string& key) { shape.component_id = text(key); }
-void put_key(plab_v2_Interaction& interaction, const std::string& key) { interaction.component_id = text(key); }
-void put_key(plab_v2_Type& type, const std::string& key) { type.type_name = text(key); }
-void put_key(plab_v2_Image& image, const std::string& key) { image.camera = text(key); }
+void put_key(plab_v2_Scene& scene, const std::string& key) { scene.server_name = wire::text(key); }
+void put_key(plab_v2_SceneObject& object, const std::string& key) { object.component_id = wire::text(key); }
+void put_key(plab_v2_Shape& shape, const std::string& key) { shape.component_id = wire::text(key); }
+void put_key(plab_v2_Interaction& interaction, const std::string& key) { interaction.component_id = wire::text(key); }
+void put_key(plab_v2_Type& type, const std::string& key) { type.type_name = wire::text(key); }
+void put_key(plab_v2_Image& image, const std::string& key) { image.camera = wire::text(key); }
 
 template <class T>
 constexpr bool kHasKey = std::is_same_v<T, plab_v2_Scene> || std::is_same_v<T, plab_v2_SceneObject> || std::is_same_v<T, plab_v2_Shape> ||
@@ -62,7 +60,7 @@ public:
     Result<void> send(recording::ByteView bytes, const Changes& changes) override
     {
         if (auto decoded = decoder_.decode(bytes, sample_); !decoded) return decoded;
-        T out = whole();  // its texts and sequences are still those of sample_
+        T out = whole();  // its texts and sequences still belong to sample_
         put_run(out, changes);
         if constexpr (requires { out.sequence_number; }) out.sequence_number = renumbered(out.sequence_number, entries_of(out));
         const dds_return_t code = writer_.write(out);
@@ -78,7 +76,7 @@ public:
         if constexpr (!kHasKey<T>) return;
         T sample{};
         put_key(sample, key);
-        (void)writer_.dispose(sample);  // an instance that was never written cannot be, and need not
+        (void)writer_.dispose(sample);  // an instance that was never written cannot be disposed of, and need not
     }
     wire::Matched readers() const override { return writer_.matched(); }
     void flush(dds_duration_t longest) override { (void)dds_wait_for_acks(writer_.entity().get(), longest); }
@@ -108,7 +106,7 @@ struct Ends
     bool moved_only;
 };
 
-/// True if T is the topic's type: `out` is its track, or why there is none.
+/// True if T is the topic's type: `out` is then its track, or why there is none.
 template <class T>
 bool make_if(const wire::Topic& topic, const Ends& ends, Result<std::unique_ptr<Track>>& out)
 {
@@ -124,7 +122,7 @@ bool make_if(const wire::Topic& topic, const Ends& ends, Result<std::unique_ptr<
 template <class... Ts>
 Result<std::unique_ptr<Track>> make_one_of(const wire::Topic& topic, const Ends& ends)
 {
-    Result<std::unique_ptr<Track>> out = reason(std::string(topic.name) + " is no topic that a playback writes");
+    Result<std::unique_ptr<Track>> out = reason(std::string(topic.name) + " is not a topic that a playback can write");
     (void)(make_if<Ts>(topic, ends, out) || ...);
     return out;
 }

@@ -9,15 +9,15 @@ namespace
 
 using recording::Clock;
 
-constexpr std::chrono::seconds kPatience(1);  ///< between two trials of a disk that failed
+constexpr std::chrono::seconds kPatience(1);  ///< between two retries of a disk that failed
 constexpr std::chrono::milliseconds kNap(200);
-/// What a message takes beside its bytes.
+/// Memory of a message in addition to its bytes.
 constexpr std::size_t kOverhead = sizeof(Message);
 
 recording::WriterOptions writer_options(const AsyncWriterOptions& options)
 {
     recording::WriterOptions out;
-    // Of the 20 ms that a kill may cost the rest is for the way here, and for the write.
+    // Of the 20 ms that a kill may cost, the rest is for the queue and for the write.
     out.chunk_time = std::chrono::milliseconds(12);
     out.compression = options.compression;
     return out;
@@ -38,9 +38,9 @@ Result<std::unique_ptr<AsyncWriter>> AsyncWriter::open(std::unique_ptr<recording
     auto writer = recording::Writer::open(std::move(sink), writer_options(options));
     if (!writer) return writer.errors();
     if (auto added = writer->add_metadata(std::move(about)); !added) return added.errors();
-    std::unique_ptr<AsyncWriter> writer(new AsyncWriter(options, writer.take()));
-    writer->thread_ = std::jthread([self = writer.get()](const std::stop_token& stop) { self->run(stop); });
-    return writer;
+    std::unique_ptr<AsyncWriter> out(new AsyncWriter(options, writer.take()));
+    out->thread_ = std::jthread([self = out.get()](const std::stop_token& stop) { self->run(stop); });
+    return out;
 }
 
 AsyncWriter::AsyncWriter(const AsyncWriterOptions& options, recording::Writer writer) : options_(options), writer_(std::move(writer)) {}
@@ -93,11 +93,11 @@ Result<void> AsyncWriter::stop()
     }
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
-    // A last trial: what waits for the disk since it failed may still find its place.
+    // A last attempt: data that waits since the disk failed may still be written.
     if (writer_.retry()) attach_pending();
     note_no_room();
     const Result<void> closed = writer_.close();
-    if (!pending_.empty() && !refused_) refused_ = reason(options_.file + ": " + pending_.front().name + " found no place in it");
+    if (!pending_.empty() && !refused_) refused_ = reason(options_.file + ": " + pending_.front().name + " could not be stored in it");
     report();
     note_end(closed);
     if (!closed) return closed;
@@ -117,7 +117,7 @@ void AsyncWriter::run(const std::stop_token& stop)
     while (wait_for_work(stop, work) || !stop.stop_requested()) write(work);
 }
 
-/// Takes what has come, or waits until the writer has something to do of its own. False: there is nothing left.
+/// Takes queued messages, or waits until the writer has work of its own. False: there is nothing left.
 bool AsyncWriter::wait_for_work(const std::stop_token& stop, Work& work)
 {
     work = {};
@@ -170,14 +170,14 @@ void AsyncWriter::attach_pending()
     }
 }
 
-/// Tries a disk that failed now and then, and writes down what found no room in the queue.
+/// Retries a failed disk from time to time, and notes in the file what found no room in the queue.
 void AsyncWriter::mend(Clock::time_point now)
 {
     if (now - tried_ < kPatience) return;
     tried_ = now;
     if (writer_.trouble())
     {
-        report();  // a disk that fails once only is to be told of as well
+        report();  // a failure must be reported even if it occurs only once
         if (!writer_.retry()) return;
     }
     note_no_room();
@@ -190,7 +190,7 @@ void AsyncWriter::note_no_room()
         const std::lock_guard lock(mutex_);
         lost = std::exchange(unnoted_, {});
     }
-    if (lost.messages > 0) (void)writer_.add_gap(lost, "the disk was too slow for what came from the bus");
+    if (lost.messages > 0) (void)writer_.add_gap(lost, "the disk was too slow for the data from the bus");
 }
 
 void AsyncWriter::report()

@@ -1,5 +1,5 @@
-/// The file of a recording and the thread that writes it. Who hands over never waits for the disk: between the two is a
-/// queue with an end, and what finds no room is counted, in the file as well.
+/// The file of a recording and the thread that writes it. The producer never waits for the disk: a bounded queue is in between,
+/// and messages that find no room are counted, also in the file.
 #pragma once
 
 #include <condition_variable>
@@ -16,7 +16,7 @@
 namespace plab::recorder
 {
 
-/// A sample as it was on the wire.
+/// A sample in wire format.
 struct Message
 {
     const wire::Topic* topic = nullptr;
@@ -38,34 +38,34 @@ struct WriteProgress
     std::uint64_t messages = 0;         ///< in the file
     std::uint64_t bytes = 0;            ///< of the file
     recording::Losses dropped;          ///< no room in the queue, or the disk failed
-    std::uint64_t missing = 0;          ///< that never came
+    std::uint64_t missing = 0;          ///< that never arrived
     std::optional<Error> trouble;       ///< why nothing is written at present
-    std::optional<Error> last_trouble;  ///< the last of all, though the disk may take data again
-    bool is_ended = false;              ///< after close(): the file has its end
+    std::optional<Error> last_trouble;  ///< the most recent trouble, even if the disk works again
+    bool is_ended = false;              ///< after close(): the file is complete
 };
 
 class AsyncWriter
 {
 public:
-    /// Makes the file; `about` is its first record.
+    /// Creates the file; `about` is its first record.
     static Result<std::unique_ptr<AsyncWriter>> open(const AsyncWriterOptions& options, recording::Metadata about);
     /// For tests: any sink.
     static Result<std::unique_ptr<AsyncWriter>> open(std::unique_ptr<recording::Sink> sink, const AsyncWriterOptions& options,
                                                      recording::Metadata about);
-    /// Without close(): what waits is written, the file is ended, and nobody hears how that went.
+    /// Without close(): writes what waits and completes the file, but errors are not reported.
     ~AsyncWriter();
     AsyncWriter(const AsyncWriter&) = delete;
     AsyncWriter& operator=(const AsyncWriter&) = delete;
 
     /// False: there was no room.
     bool put(Message&& message);
-    /// Samples that never came, for the file to tell.
+    /// Samples that never arrived, to be noted in the file.
     void put_gap(const recording::Losses& losses, const std::string& why);
     void attach(std::uint64_t log_time, std::string name, std::string media_type, std::string text);
 
     WriteProgress progress() const;
-    /// Writes what waits and ends the file. An error: the file is as after a crash, whole up to what failed; progress() still
-    /// says how far it came.
+    /// Writes what waits and completes the file. An error: the file is as after a crash, intact up to the failure; progress()
+    /// still reports how far it got.
     Result<WriteProgress> close();
 
 private:
@@ -107,12 +107,12 @@ private:
     std::map<std::string, recording::ChannelId> channels_;
     std::deque<Enclosure> pending_;  ///< until the disk takes them
     recording::Clock::time_point tried_{};
-    std::optional<Error> refused_;  ///< what the file would not take, though the disk would
+    std::optional<Error> refused_;  ///< errors of the file itself, not of the disk
 
     mutable std::mutex mutex_;  ///< of the following
     std::condition_variable_any came_;
     Work waiting_;
-    recording::Losses no_room_, unnoted_;  ///< altogether; and those that the file does not tell of yet
+    recording::Losses no_room_, unnoted_;  ///< total; and those not yet noted in the file
     WriteProgress progress_;
     bool is_closed_ = false;
 

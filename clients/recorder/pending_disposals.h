@@ -1,5 +1,5 @@
-/// Things that the server says are gone. When it ends it says so of all it had: that is its goodbye, and no part of what
-/// happened in the scene. So each waits a moment before it is believed.
+/// Disposals of the server that are not confirmed yet. A server that ends disposes of everything, which is not part of what
+/// happened in the scene. So each disposal waits a moment before it counts.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@ struct Disposal
 {
     std::string topic, key;
     std::uint64_t run = 0;
-    std::uint64_t log_time = 0;  ///< when it was heard of
+    std::uint64_t log_time = 0;  ///< when it was received
     std::uint64_t publish_time = 0;
 };
 
@@ -22,15 +22,15 @@ class PendingDisposals
 {
 public:
     using Clock = std::chrono::steady_clock;
-    /// A goodbye has reached everybody after 200 ms (server/docs/bus.md).
+    /// All disposals at a server's end arrive within 200 ms (server/docs/bus.md).
     static constexpr std::chrono::milliseconds kDoubt{300};
 
     void add(Disposal disposal, Clock::time_point now) { waiting_.push_back({std::move(disposal), now + kDoubt}); }
-    /// Those that are believed at `now`, in their order.
+    /// The disposals that count at `now`, in their order.
     std::vector<Disposal> take(Clock::time_point now);
-    /// The thing is there again: it was gone, and everything that was heard before it is true as well.
+    /// The instance exists again: it was disposed, and all disposals received before it count as well.
     std::vector<Disposal> take_before_return(const std::string& topic, const std::string& key);
-    /// The server has gone itself.
+    /// The server itself has gone.
     void forget() { waiting_.clear(); }
 
 private:
@@ -41,7 +41,7 @@ private:
     };
     std::vector<Disposal> take_first(std::size_t count);
 
-    std::vector<Waiting> waiting_;  ///< in the order of their coming
+    std::vector<Waiting> waiting_;  ///< in order of arrival
 };
 
 }  // namespace plab::recorder

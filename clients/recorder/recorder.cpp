@@ -12,7 +12,7 @@ namespace plab::recorder
 namespace
 {
 
-constexpr std::chrono::seconds kTellEvery(1);  ///< gaps of one topic are told together
+constexpr std::chrono::seconds kTellEvery(1);  ///< gaps of one topic are reported together
 /// Times that differ by less are the same (s): far below any step, far above the rounding of n * dt.
 constexpr double kSameTime = 1e-9;
 
@@ -22,7 +22,7 @@ bool is_topic(const wire::Topic& topic)
     return std::strcmp(topic.name, wire::topic_of<T>().name) == 0;
 }
 
-/// How many samples may wait to be taken, of each instance. A thread does nothing else than to take them.
+/// How many samples may wait to be taken, per instance. A dedicated thread takes them.
 std::int32_t depth_of(wire::Delivery delivery)
 {
     switch (delivery)
@@ -84,8 +84,8 @@ Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::str
     }
     for (const std::string& name : names)
         if (std::none_of(out.begin(), out.end(), [&](const wire::Topic* t) { return name == t->name; }))
-            return reason("'" + name + "' is no topic of pLab's: plabctl topics lists them");
-    // States last: who sees that they are read knows that the others are.
+            return reason("'" + name + "' is not a pLab topic: plabctl topics lists them");
+    // States last: a client that sees their reader knows that the others exist.
     std::stable_partition(out.begin(), out.end(), [](const wire::Topic* t) { return !is_topic<plab_v2_Frame>(*t); });
     return out;
 }
@@ -102,7 +102,7 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const link::Session& session, c
 {
     auto topics = choose_topics(options.topics);
     if (!topics) return topics.errors();
-    // Without plab/server nobody would see the server go.
+    // Without plab/server, the end of the server would go unnoticed.
     const wire::Topic* const presence = &wire::topic_of<plab_v2_Server>();
     if (std::find(topics->begin(), topics->end(), presence) == topics->end()) topics->insert(topics->begin(), presence);
     auto writer = AsyncWriter::open(options.writer, about(server, options));
@@ -144,13 +144,13 @@ State Recorder::step(link::Seconds longest)
 Result<WriteProgress> Recorder::close()
 {
     if (state_ == State::Goes) take_all();
-    // What was said last is believed, but for the goodbye of a server.
+    // The latest disposals count, except those of a server's end.
     if (state_ == State::Goes || state_ == State::Done) write(disposals_.take(Clock::time_point::max()));
     tell_gaps();
     return writer_->close();
 }
 
-/// Each topic comes for itself; the order in which the server wrote is in the time stamps of its one writing thread. In any
+/// Topics arrive independently; the time stamps of the server's single writing thread give the order in which it wrote. In any
 /// other order a new run could seem to begin in the middle.
 void Recorder::take_all()
 {
@@ -163,7 +163,7 @@ void Recorder::take_all()
 
 void Recorder::take(Track& track)
 {
-    // One that never pauses must not keep the others waiting for ever.
+    // A topic that never pauses must not keep the others waiting forever.
     constexpr std::size_t kMost = 256;
     std::size_t taken = 0, batch = 0;
     do {
@@ -210,7 +210,7 @@ void Recorder::keep(const Track& track, const recording::SampleHeader& header, M
         has_blueprint_ = true;
         writer_->attach(message.log_time, "blueprint.xml", "text/xml", header.blueprint);
     }
-    (void)writer_->put(std::move(message));  // what finds no room is counted there
+    (void)writer_->put(std::move(message));  // messages that find no room are counted there
 }
 
 void Recorder::look_at_gone(const Arrived& sample)
@@ -249,7 +249,7 @@ bool Recorder::is_left_out(const Track& track, const recording::SampleHeader& he
     if (!options_.state_rate || !is_topic<plab_v2_Frame>(*track.topic)) return false;
     if (!next_frame_ || next_frame_->first != header.run) next_frame_ = {header.run, *header.time};
     if (*header.time < next_frame_->second - kSameTime) return true;
-    // On a grid of its own: a frame that is late does not make all that follow late.
+    // On a fixed grid, so that a late frame does not delay all following ones.
     const double interval = 1 / *options_.state_rate;
     next_frame_->second += interval * std::max(1.0, std::ceil((*header.time + kSameTime - next_frame_->second) / interval));
     return false;
@@ -263,7 +263,7 @@ void Recorder::write(const std::vector<Disposal>& disposals)
         std::string topic = p.topic, key = p.key;
         gone.run = p.run, gone.topic_name = topic.data(), gone.component_id = key.data();
         const auto bytes = encoder_.encode(gone);
-        if (!bytes) continue;  // two texts and a number are always a sample
+        if (!bytes) continue;  // two texts and a number always form a sample
         (void)writer_->put({&wire::topic_of<plab_v2_Gone>(), p.log_time, p.publish_time, recording::Bytes(bytes->begin(), bytes->end())});
     }
 }
@@ -273,7 +273,7 @@ void Recorder::tell_gaps()
     for (Track& track : tracks_)
     {
         if (track.missing.messages == 0) continue;
-        writer_->put_gap(track.missing, std::string(track.topic->name) + ": did not arrive from the bus");
+        writer_->put_gap(track.missing, std::string(track.topic->name) + ": lost on the bus");
         track.missing = {};
     }
 }

@@ -1,5 +1,4 @@
-/// A recording of what a server sends, made by listening: the server does not know of it, but that there is one more
-/// reader.
+/// Records what a server publishes, by listening: for the server it is only one more reader.
 #pragma once
 
 #include <map>
@@ -21,7 +20,7 @@ struct RecorderOptions
     AsyncWriterOptions writer;
     std::vector<std::string> topics;   ///< none: all but images
     std::optional<double> until;       ///< s, simulated: the recording ends there
-    std::optional<double> state_rate;  ///< frames per simulated second at the most; none: all that come
+    std::optional<double> state_rate;  ///< maximum number of frames per simulated second; empty: all
 };
 
 enum class State : std::uint8_t
@@ -32,7 +31,7 @@ enum class State : std::uint8_t
     Restarted,  ///< another server of that name has taken its place
 };
 
-/// Topics that are recorded. An error names the one that is none.
+/// The topics to record. An error names a topic that does not exist.
 Result<std::vector<const wire::Topic*>> choose_topics(const std::vector<std::string>& names);
 
 class Recorder
@@ -42,15 +41,15 @@ public:
     static Result<std::unique_ptr<Recorder>> open(const link::Session& session, const link::ServerInfo& server,
                                                   const RecorderOptions& options);
 
-    /// Waits for samples up to `longest`, and takes those that are there.
+    /// Waits for samples up to `longest`, and takes those that have arrived.
     State step(link::Seconds longest);
-    /// Ends the file. An error: not all of it could be written.
+    /// Completes the file. An error: not everything could be written.
     Result<WriteProgress> close();
 
     WriteProgress progress() const { return writer_->progress(); }
     /// s, of the recording's time line.
     double length() const { return static_cast<double>(timeline_.now()) * 1e-9; }
-    /// Samples that were no samples of their topic.
+    /// Samples that did not match the type of their topic.
     std::uint64_t broken() const { return broken_; }
 
 private:
@@ -63,13 +62,13 @@ private:
         link::RawReader reader;
         std::unique_ptr<recording::Peek> peek;
         link::Sequence numbers;
-        recording::Losses missing;  ///< that the file does not tell of yet
+        recording::Losses missing;  ///< not yet noted in the file
         std::uint64_t last_log_time = 0;
     };
 
     Recorder(const RecorderOptions& options, const link::ServerInfo& server, std::unique_ptr<AsyncWriter> writer);
     Result<void> subscribe(const link::Session& session, const std::vector<const wire::Topic*>& topics);
-    /// A sample that has come and is not looked at yet.
+    /// A sample that has arrived and is not processed yet.
     struct Arrived
     {
         Track* track = nullptr;

@@ -47,7 +47,7 @@ double size_of(std::span<const ComponentPair> pairs)
     return out;
 }
 
-/// Of the same object: by its id, or by its handle where a recording has no names.
+/// The partner of the same object: by its id, or by its handle if a recording has no names.
 std::optional<std::uint32_t> Comparison::Side::handle_of(const std::string& id, std::uint32_t handle) const
 {
     const Things& things = log->things();
@@ -87,7 +87,7 @@ bool Comparison::next()
         frame_ = {a_.when, a_.merged.now().time, a_.log_time};
         return true;
     }
-    // What is left of the longer one is counted.
+    // The remainder of the longer recording is counted.
     while (a_is_there_) a_is_there_ = a_.next();
     while (b_is_there_) b_is_there_ = b_.next();
     return false;

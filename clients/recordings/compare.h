@@ -1,4 +1,4 @@
-/// The states of two recordings side by side: at the steps that both have, object by object.
+/// Compares the states of two recordings: at the steps that both have, object by object.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace plab::recordings
 {
 
-/// A place in the course of a recording: its n-th run (from 0), and the step in it.
+/// A position in a recording: its n-th run (from 0), and the step in it.
 struct When
 {
     std::size_t run = 0;
@@ -27,12 +27,12 @@ struct ComponentPair
     std::string_view name;  ///< "position.x"
     double a = 0, b = 0;
 };
-/// |a - b|; 0 if both are no number, infinite if one is.
+/// |a - b|; 0 if both are NaN, infinite if only one is.
 double size_of(const ComponentPair& pair);
 /// The largest of them.
 double size_of(std::span<const ComponentPair> pairs);
 
-/// An object that both have. Either the two bodies are there or the two shafts.
+/// An object that both have. Either both bodies are set or both shafts.
 struct ComparedObject
 {
     std::string id;
@@ -55,7 +55,7 @@ class Comparison
 public:
     Comparison(const Log& a, const Log& b);
 
-    /// Goes to the next step that both have. False: there is none.
+    /// Advances to the next step that both have. False: there is none.
     bool next();
     const ComparedFrame& frame() const { return frame_; }
     /// Objects that both have at this step, by their handles in A.

@@ -89,7 +89,7 @@ private:
 
 std::string words_of(const Swap& swap) { return swap.component + ": " + (swap.from.empty() ? "" : swap.from + " ") + "→ " + swap.to; }
 
-/// Several of one kind in a step are one mark.
+/// Several marks of one kind in a step are merged.
 void add_events(const Entry& entry, bool all, std::vector<Moment>& out)
 {
     const auto* events = entry.as<plab_v2_Events>();
@@ -106,7 +106,7 @@ void add_events(const Entry& entry, bool all, std::vector<Moment>& out)
     }
 }
 
-/// Of many marks as many as a diagram has room for, evenly; their order stays.
+/// Selects as many marks as a diagram has room for, evenly; their order stays.
 void thin(std::vector<Moment>& moments, const Extent& extent)
 {
     constexpr double kPlaces = 600;
@@ -185,7 +185,7 @@ std::vector<Moment> moments_of(const Log& log, const Span& span, bool all_events
     std::vector<Moment> out;
     Runs runs;
     Swaps swaps;
-    // Metrics tell of runs that began without a request.
+    // Metrics also show runs that began without a request.
     Stream stream = log.stream({"plab/events", "plab/journal", "plab/metrics", "plab/scene"}, span);
     while (const Entry* entry = stream.next())
     {

@@ -1,4 +1,4 @@
-/// Quantities of a recording over its time, thinned to what a diagram can show.
+/// Quantities of a recording over time, reduced to what a diagram can show.
 #pragma once
 
 #include "figures/chart.h"
@@ -9,7 +9,7 @@
 namespace plab::recordings
 {
 
-/// A series of any length in bounded memory: of each slot of time it keeps the first, the least, the greatest and the last
+/// A series of any length in bounded memory: for each slot of time it keeps the first, the smallest, the largest and the last
 /// value, so that no peak is lost.
 class Thinned
 {
@@ -21,7 +21,7 @@ public:
 
     /// Times ascend.
     void add(double time, double value);
-    /// The curve does not go on from here.
+    /// The curve is interrupted here.
     void interrupt();
     std::vector<std::pair<double, double>> take();
     bool empty() const { return count_ == 0; }
@@ -43,7 +43,7 @@ private:
     std::vector<std::pair<double, double>> points_;
 };
 
-/// Where a span of a recording begins and ends, s of its own time line.
+/// Start and end of a span of a recording, s of its own time line.
 struct Extent
 {
     double begin = 0, end = 0;

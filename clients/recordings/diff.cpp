@@ -44,7 +44,7 @@ public:
         return out;
     }
     std::uint64_t count() const { return count_; }
-    /// That the recording has, as far as the log and the hashes tell.
+    /// The runs that the recording has, according to the log and the hashes.
     std::size_t runs() const { return runs_.all().size(); }
 
 private:
@@ -80,7 +80,7 @@ void compare_hashes(const Log& log_a, const Log& log_b, Difference& out)
 
 double angle_between(const plab_v2_Rotation& p, const plab_v2_Rotation& q)
 {
-    // From the length of the chord: exact for small angles, where the arc cosine of a product is not.
+    // From the length of the chord: accurate for small angles, unlike the arc cosine of a product.
     const double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;
     const double w = p.w - sign * q.w, x = p.x - sign * q.x, y = p.y - sign * q.y, z = p.z - sign * q.z;
     return 4 * std::asin(std::min(1.0, 0.5 * std::sqrt(w * w + x * x + y * y + z * z)));
@@ -124,7 +124,7 @@ private:
     std::map<std::string, Growth> objects_;
 };
 
-/// Of several components that differ, the first in their order.
+/// If several components differ, the first in their order.
 void note_first(const ComparedObject& object, const ComparedFrame& frame, Difference& out)
 {
     if (out.first_state) return;
@@ -136,7 +136,7 @@ void note_first(const ComparedObject& object, const ComparedFrame& frame, Differ
     }
 }
 
-/// The n-th is compared with the n-th: of more runs in one recording the last have no partner.
+/// The n-th run is compared with the n-th: additional runs of one recording have no partner.
 void note_single_runs(Difference& out)
 {
     for (std::size_t run = std::min(out.runs_a, out.runs_b) + 1; run <= std::max(out.runs_a, out.runs_b); ++run)

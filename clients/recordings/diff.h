@@ -1,7 +1,6 @@
-/// Where two recordings of a scene differ first, and how the difference grows.
-///
+/// Where two recordings of a scene first differ, and how the difference grows.
 /// The n-th run of one is compared with the n-th of the other, steps with equal steps, objects with those of the same id.
-/// Recordings may have been made at different rates: what is compared are the steps that both have.
+/// Recordings may have different rates: only steps that both have are compared.
 #pragma once
 
 #include <array>
@@ -28,18 +27,18 @@ struct StateDifference
     double a = 0, b = 0;  ///< SI
 };
 
-/// Sizes of the difference in which decades of growth are told: m, rad, m/s, rad/s.
+/// Thresholds for the growth of the difference: m, rad, m/s, rad/s.
 inline constexpr std::array<double, 4> kExceeded{1e-12, 1e-9, 1e-6, 1e-3};
 
-/// Of one object. The size of a difference is the largest one of its components, in SI units; an orientation and its
-/// negative are the same.
+/// Of one object. The size of a difference is the largest one of its components, in SI units; an orientation and its negative
+/// are the same.
 struct Growth
 {
     std::string object;
     bool is_shaft = false;
-    std::array<std::optional<double>, kExceeded.size()> exceeded;  ///< s on A's time line, when it first was larger
+    std::array<std::optional<double>, kExceeded.size()> exceeded;  ///< s on A's time line, when it was first exceeded
     double largest = 0;
-    // At the last step that was compared; of a shaft: angle and speed.
+    // At the last compared step; for a shaft: angle and speed.
     double position = 0;          ///< m, or rad
     double orientation = 0;       ///< rad, between the two
     double velocity = 0;          ///< m/s, or rad/s
@@ -72,7 +71,7 @@ struct Difference
 
 Difference difference_of(const Log& a, const Log& b);
 
-/// The size of the difference of these objects over A's time, logarithmic. Where there is none, there is no line.
+/// The size of the difference of these objects over A's time, logarithmic. Without a difference, there is no line.
 figures::Chart difference_chart(const Log& a, const Log& b, const std::vector<std::string>& objects);
 
 }  // namespace plab::recordings

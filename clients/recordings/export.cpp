@@ -17,7 +17,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// "plab/states" as it may be in a file's name: "states".
+/// "plab/states" as part of a file name: "states".
 std::string file_stem(const std::string& topic)
 {
     std::string out = topic.substr(topic.starts_with("plab/") ? 5 : 0);
@@ -32,7 +32,7 @@ std::vector<std::string> topics_in(const Log& log)
     return {out.begin(), out.end()};
 }
 
-/// In full, each once; an error names the ones that the recording has.
+/// Full names, each once; an error names the ones that the recording has.
 Result<std::vector<std::string>> asked_for(const Log& log, const std::vector<std::string>& topics)
 {
     const std::vector<std::string> known = topics_in(log);
@@ -72,7 +72,7 @@ Result<std::vector<std::string>> tables_asked_for(const Log& log, const ExportOp
     for (const std::string& topic : *topics)
         if (find_table(topic) == nullptr) return reason(topic + " has no table; those that have one: " + names_of_tables());
     if (topics->size() > 1 && !is_folder(options.out))
-        return reason("several tables go to a folder: name one topic, or a folder that exists or ends with '/'");
+        return reason("several tables need a folder: name one topic, or a folder that exists or ends with '/'");
     if (!topics->empty()) return topics;
     if (!is_folder(options.out)) return asked_for(log, {wire::topic_of<plab_v2_Frame>().name});
     for (const std::string& topic : topics_in(log))
@@ -103,7 +103,7 @@ public:
         return out;
     }
 
-    /// False: all are over.
+    /// False: writing to all of them has ended.
     bool add(const Entry& entry, const Things& things)
     {
         const auto found = files_.find(entry.channel->topic);
@@ -192,7 +192,7 @@ Result<Exported> export_json(const Log& log, const ExportOptions& options)
 {
     auto topics = asked_for(log, options.topics);
     if (!topics) return topics.errors();
-    if (is_folder(options.out)) return reason("lines of JSON go to one file, not to the folder " + options.out);
+    if (is_folder(options.out)) return reason("lines of JSON are written to one file, not to the folder " + options.out);
     if (topics->empty()) *topics = all_but_large(log);
     auto file = TextOut::open(options.out);
     if (!file) return file.errors();

@@ -10,7 +10,7 @@ struct ExportOptions
 {
     std::vector<std::string> topics = {};  ///< none: see below
     Span span = {};
-    std::string out = {};  ///< "": standard output; a file; of CSV also a folder (it is there, or ends with '/')
+    std::string out = {};  ///< "": standard output; a file; for CSV also a folder (an existing one, or a path that ends with '/')
 };
 
 struct Exported
@@ -20,12 +20,12 @@ struct Exported
     Troubles troubles;
 };
 
-/// A table (tables.h) into one file; several only into a folder, as "states.csv" and so on. Without topics: states into
-/// one file, all that have a table into a folder.
+/// Writes a table (tables.h) to one file; several only to a folder, as "states.csv" and so on. Without topics: states to one
+/// file, or all topics that have a table to a folder.
 Result<Exported> export_csv(const Log& log, const ExportOptions& options);
 
-/// A line per message: {"topic", "log_time" (ns), "publish_time" (ns since 1970), "message"}, decoded by the schemas of the
-/// file itself. Without topics: all but plab/images and plab/snapshots, which are large and of no use as text.
+/// One line per message: {"topic", "log_time" (ns), "publish_time" (ns since 1970), "message"}, decoded with the schemas of the
+/// file itself. Without topics: all but plab/images and plab/snapshots, which are large and useless as text.
 Result<Exported> export_json(const Log& log, const ExportOptions& options);
 
 }  // namespace plab::recordings

@@ -24,7 +24,7 @@ public:
 
     void note(const Entry& entry)
     {
-        if (const auto place = position_of(entry)) note_run(place->run);
+        if (const auto place = run_position_of(entry)) note_run(place->run);
         if (const auto* events = entry.as<plab_v2_Events>())
         {
             note_gap(*events, event_numbers_, entry.channel->topic);
@@ -67,7 +67,7 @@ private:
     std::uint64_t written_ = 0;
 };
 
-/// What a filter names and nobody has been found to have.
+/// Names of a filter that were not found in the recording so far.
 class Unknown
 {
 public:
@@ -129,7 +129,8 @@ Result<void> check_names(const Log& log, const logger::Filter& filter)
 {
     Unknown unknown(filter, log.things());
     if (unknown.is_empty()) return {};
-    // Kinds of events are their authors', and the catalogue may not be in the file: only what happened tells.
+    // Authors define kinds of events, and the catalogue may be missing in the file: only the recorded events show which kinds
+    // exist.
     Stream stream = log.stream({"plab/events", "plab/collisions"});
     for (const Entry* entry = stream.next(); entry != nullptr && !unknown.is_empty(); entry = stream.next()) unknown.note(*entry);
     if (unknown.is_empty()) return {};

@@ -12,14 +12,14 @@ struct LineOptions
 {
     logger::Filter filter = {};
     bool json = false;
-    std::optional<std::uint64_t> count = {};  ///< end after so many entries
+    std::optional<std::uint64_t> count = {};  ///< end after this many entries
     Span span = {};
 };
 
-/// An error: a kind or an object that nothing in the whole recording has.
+/// An error: a kind or an object that does not occur in the whole recording.
 Result<void> check_names(const Log& log, const logger::Filter& filter);
 
-/// In the order of time, with a line for each new run, and for entries that are missing.
+/// In order of time, with a line for each new run, and for missing entries.
 Result<Troubles> write_lines(const Log& log, const LineOptions& options, TextOut& out);
 
 }  // namespace plab::recordings

@@ -10,7 +10,7 @@ namespace plab::recordings
 namespace
 {
 
-/// Times that no recording reaches end at the ends of its scale.
+/// Times beyond every recording are clamped to the limits of the scale.
 std::uint64_t nanoseconds(double time)
 {
     const double ns = std::round(time * 1e9);

@@ -1,4 +1,4 @@
-/// A recording as a whole: where it comes from, who is in it, its messages.
+/// A recording as a whole: its origin, its components, its messages.
 ///
 ///   auto log = Log::open("run.mcap");
 ///   Stream stream = log->stream({"plab/states"}, {.from = 3.0});
@@ -17,7 +17,7 @@ namespace plab::recordings
 /// Nanoseconds as s, correctly rounded: 300000000 is 0.3.
 constexpr double seconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
 
-/// A part of the recording's own time line: simulated seconds since its beginning, which go on over a reset.
+/// A part of the recording's own time line: simulated seconds since its beginning, which continue across a reset.
 struct Span
 {
     std::optional<double> from = {}, to = {};
@@ -26,19 +26,19 @@ struct Span
 class Log
 {
 public:
-    /// An error: it is no recording, or cannot be read. `watch` is asked as long as the log is read: after it said no, what was
-    /// made of the log is not complete (is_interrupted()).
+    /// An error: it is not a recording, or cannot be read. `watch` is called while the log is read: after it returned false,
+    /// everything made from the log is incomplete (is_interrupted()).
     static Result<Log> open(const std::string& path, const recording::Watch& watch = {});
 
     const recording::Reader& reader() const { return *reader_; }
     const std::string& path() const { return reader_->name(); }
-    /// What the metadata record "plab" says: server, version, host, started ..; empty if there is none.
+    /// The metadata record "plab": server, version, host, started ..; empty if there is none.
     const recording::Pairs& head() const { return head_; }
-    /// All objects and interactions that the recording tells of.
+    /// All objects and interactions in the recording.
     const Things& things() const { return things_; }
-    /// Runs that the catalogue, the journal and the server's state tell of; how long they were is not known yet.
+    /// Runs found in the catalogue, the journal and the server's state; their lengths are not known yet.
     const Runs& runs() const { return runs_; }
-    /// What was damaged of what open() has read.
+    /// Damage in the parts that open() has read.
     const Troubles& troubles() const { return troubles_; }
     bool is_interrupted() const { return *interrupted_; }
     bool has_topic(const std::string& topic) const;
@@ -50,15 +50,15 @@ public:
 private:
     explicit Log(std::unique_ptr<recording::Reader> reader) : reader_(std::move(reader)) {}
 
-    std::unique_ptr<recording::Reader> reader_;  // stays where it is, for the streams
+    std::unique_ptr<recording::Reader> reader_;  // its address stays the same for the streams
     recording::Pairs head_;
     Things things_;
     Runs runs_;
     Troubles troubles_;
-    std::shared_ptr<bool> interrupted_ = std::make_shared<bool>(false);  // the source sets it, which knows no log
+    std::shared_ptr<bool> interrupted_ = std::make_shared<bool>(false);  // set by the source, which does not know the log
 };
 
-/// "plab/states" for "states": the names of our topics without their head.
+/// "plab/states" for "states": adds the prefix of our topics.
 std::string full_topic(const std::string& name);
 
 }  // namespace plab::recordings

@@ -31,7 +31,7 @@ const State* find(const Places& places, std::span<const State> states, std::uint
 void Merged::note(const plab_v2_Frame& frame)
 {
     now_ = &whole_.with(frame);
-    // Within a revision rows keep their places; new ones come behind them.
+    // Within a revision rows keep their places; new ones are appended.
     const bool same =
         frame.run == run_ && frame.revision == revision_ && bodies_.size() == bodies().size() && shafts_.size() == shafts().size();
     if (same) return;

@@ -19,7 +19,7 @@ struct Field
 {
     std::string_view name, unit;
     std::string_view components;  ///< "xyz", "wxyz", or "" for a number
-    std::string_view same_as;     ///< "" or the name that it stands for
+    std::string_view same_as;     ///< "" or the name of which it is an alias
 };
 
 constexpr std::array<Field, 7> kObjectFields{{
@@ -51,7 +51,7 @@ constexpr std::array<Field, 13> kSceneFields{{
     {"residual", "m/s", "", ""},
 }};
 
-/// The field that `text` names, with the component behind it; null if it names none.
+/// The field that `text` names, with the component after it; null if it names none.
 struct Named
 {
     const Field* field = nullptr;
@@ -73,7 +73,7 @@ Named named(std::span<const Field> fields, std::string_view text)
 
 std::string unit_of(const Field& field, bool is_shaft) { return is_shaft && field.name == "speed" ? "rad/s" : std::string(field.unit); }
 
-/// A vector without a component becomes all of its components.
+/// A vector without a component stands for all of its components.
 std::vector<Quantity> spread(Source source, const std::string& id, const Named& what, bool is_shaft)
 {
     const Field& field = *what.field;
@@ -88,7 +88,7 @@ std::vector<Quantity> spread(Source source, const std::string& id, const Named& 
     return out;
 }
 
-/// The longest of the ids that the text begins with, ids may have dots; "" if there is none.
+/// The longest id that the text begins with (ids may contain dots); "" if there is none.
 std::string id_in(const std::string& text, const std::vector<std::string>& ids)
 {
     std::string out;
@@ -121,8 +121,8 @@ Error unknown(const std::string& text, const Things& things)
     std::vector<std::string> known = things.objects();
     for (const std::string& id : things.interactions()) known.push_back(id);
     const std::string id = text.substr(0, text.find('.'));
-    return reason("no quantity '" + text + "': it begins with no id of an object or interaction" + link::did_you_mean(id, known) +
-                  "; of the scene there are " + names_of(kSceneFields));
+    return reason("no quantity '" + text + "': it does not begin with the id of an object or interaction" + link::did_you_mean(id, known) +
+                  "; quantities of the scene are " + names_of(kSceneFields));
 }
 
 double component_of(const std::string& component, const plab_v2_Vector& v)
@@ -186,7 +186,7 @@ std::vector<double> numbers_in(std::string_view text)
     return out;
 }
 
-/// Of a vector its length, unless a component is named.
+/// The length of a vector, unless a component is named.
 std::optional<double> output_value(const Quantity& q, const plab_v2_Parameter& output)
 {
     const std::string_view text = output.text;
@@ -209,12 +209,12 @@ std::string Quantity::name() const { return id + (id.empty() ? "" : ".") + what 
 Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Things& things)
 {
     std::string id = id_in(text, things.objects());
-    // Without a catalogue objects have numbers.
+    // Without a catalogue, objects are identified by numbers.
     if (id.empty() && text.starts_with('#')) id = text.substr(0, text.find('.'));
     if (!id.empty() && text.size() > id.size())
     {
         const Named what = named(kObjectFields, text.substr(id.size() + 1));
-        // Who is not in the catalogue may be either.
+        // An object that is not in the catalogue may be either.
         const std::vector<std::string> all = things.objects();
         const bool is_known = std::find(all.begin(), all.end(), id) != all.end(), is_shaft = things.is_shaft(id);
         const bool has_field = what.field != nullptr && (!is_known || (is_shaft ? is_of_shaft(*what.field) : what.field->name != "angle"));

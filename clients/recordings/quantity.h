@@ -29,23 +29,23 @@ struct Quantity
     std::string id;         ///< of an object or interaction
     std::string what;       ///< "position", "cost", "energy.kinetic"
     std::string component;  ///< "x" "y" "z" "w" "norm", or ""
-    std::string unit;       ///< of what is known beforehand; outputs tell theirs in each sample
+    std::string unit;       ///< of quantities with a fixed unit; outputs give theirs in each sample
 
     std::string name() const;
 };
 
-/// An error says which ids or quantities there are that are near.
+/// An error lists similar existing ids or quantities.
 Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Things& things);
 
-/// Measured over the time since the sample before: a cost, the pace. What the first sample of a run says of it reaches back to
-/// before the run, over a load, a rewind or a restore and the steps that were made again for it: it is no figure of the run.
+/// Measured over the time since the previous sample: a cost, the pace. In the first sample of a run, that time extends to
+/// before the run, across a load, a rewind or a restore and the steps that were repeated for it: it is not a figure of the run.
 bool is_measured(const Quantity& quantity);
 
-/// Nothing: the sample does not have it.
+/// Empty: the sample does not contain it.
 std::optional<double> value_of(const Quantity& quantity, const plab_v2_BodyState& body);
 std::optional<double> value_of(const Quantity& quantity, const plab_v2_ShaftState& shaft);
 std::optional<double> value_of(const Quantity& quantity, const plab_v2_Metrics& metrics);
-/// Of an output of an interaction; "" if there is none.
+/// Unit of an output of an interaction; "" if there is none.
 std::string unit_in(const Quantity& quantity, const plab_v2_Metrics& metrics);
 
 /// sqrt(x^2 + y^2 + z^2)

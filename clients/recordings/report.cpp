@@ -42,10 +42,10 @@ std::string lead_of(const Summary& s)
     return out + ".";
 }
 
-using Named = std::pair<std::string, std::string>;  // a quantity, and what it is called
+using NamedQuantity = std::pair<std::string, std::string>;  // a quantity, and what it is called
 
 /// Those that the recording has.
-std::vector<Curve> curves_of_scene(const Log& log, const std::vector<Named>& named)
+std::vector<Curve> curves_of_scene(const Log& log, const std::vector<NamedQuantity>& named)
 {
     std::vector<Quantity> quantities;
     for (const auto& [quantity, name] : named)
@@ -54,7 +54,7 @@ std::vector<Curve> curves_of_scene(const Log& log, const std::vector<Named>& nam
     for (Curve& curve : curves_of(log, quantities, {}))
     {
         if (curve.points.empty()) continue;
-        const auto called = std::find_if(named.begin(), named.end(), [&](const Named& n) { return n.first == curve.name; });
+        const auto called = std::find_if(named.begin(), named.end(), [&](const NamedQuantity& n) { return n.first == curve.name; });
         if (called != named.end()) curve.name = called->second;
         out.push_back(std::move(curve));
     }
@@ -106,11 +106,12 @@ void add_energy(Page& page, const Log& log, const std::vector<figures::Moment>& 
     page.heading("Energy and momentum");
     page.figure(draw(chart_of("Energy", std::move(energy), moments)),
                 "Kinetic and stored energy, and the work that all interactions have done since the run began. Dashed lines are swaps, "
-                "grey ones begin a run.");
+                "grey lines mark the start of a run.");
     std::vector<Curve> unexplained = curves_of_scene(log, {{"energy.unexplained", "unexplained"}});
     if (!unexplained.empty() && !is_all_zero(unexplained.front()))
-        page.figure(draw(chart_of("Energy that nobody put in", std::move(unexplained), moments, Scale::Kind::SymLog)),
-                    "Kinetic energy, less that at the start, less all work: what the methods made up (above 0) or lost (below).");
+        page.figure(
+            draw(chart_of("Unexplained energy", std::move(unexplained), moments, Scale::Kind::SymLog)),
+            "Kinetic energy, less that at the start, less all work: energy that the numerical methods created (above 0) or lost (below).");
     std::vector<Curve> momentum = curves_of_scene(log, {{"momentum.x", "momentum x"},
                                                         {"momentum.y", "momentum y"},
                                                         {"momentum.z", "momentum z"},
@@ -128,8 +129,9 @@ void add_interactions(Page& page, const Log& log, const std::vector<Segment>& se
     page.heading("Cost and error of the interactions");
     std::vector<Curve> cost = curves_of_interactions(log, ids, "cost", "ns per step");
     if (!cost.empty())
-        page.figure(draw(chart_of("Cost", std::move(cost), moments, Scale::Kind::Log)),
-                    "CPU time per step of each interaction, the most costly ones; of several of one type the share of their rows.");
+        page.figure(
+            draw(chart_of("Cost", std::move(cost), moments, Scale::Kind::Log)),
+            "CPU time per step of each interaction, the most costly ones; components of one type share it by their number of rows.");
     std::vector<Curve> error = curves_of_interactions(log, ids, "error", "error");
     if (!error.empty())
         page.figure(draw(chart_of("Error", std::move(error), moments, Scale::Kind::Log)),
@@ -164,16 +166,16 @@ std::vector<std::string> findings(const Summary& s, const std::vector<Segment>& 
     for (const TopicSummary& t : s.topics) missing += t.missing;
     for (const NotedGap& gap : s.gaps) missing += gap.messages;
     if (s.is_whole() && missing == 0 && s.dropped.empty())
-        out.push_back("The recording is whole, and nothing is missing.");
+        out.push_back("The recording is complete, and nothing is missing.");
     else if (missing > 0)
-        out.push_back(counted(missing, "entry") + " that were numbered are not in the file (below).");
+        out.push_back(counted(missing, "entry") + " are missing from the file, by their sequence numbers (see below).");
     if (!s.recovered.empty())
     {
         const std::vector<std::string> losses = s.losses();
-        out.push_back("It was recovered from a recording of which something is lost" +
-                      (losses.empty() ? std::string(".") : ": " + losses.front() + (losses.size() > 1 ? ", and more (below)." : ".")));
+        out.push_back("It was recovered from a recording that had lost some data" +
+                      (losses.empty() ? std::string(".") : ": " + losses.front() + (losses.size() > 1 ? ", and more (see below)." : ".")));
     }
-    if (!s.is_closed) out.push_back("The file was cut: it was not closed.");
+    if (!s.is_closed) out.push_back("The file is truncated: it was not closed.");
     if (s.troubles.count > 0) out.push_back(counted(s.troubles.count, "place") + " of the file cannot be read.");
     return out;
 }

@@ -1,5 +1,5 @@
-/// A recording as one HTML page for people that needs nothing else: the course of energy and momentum, cost and error of
-/// each interaction with its swaps, how fast it ran, what happened, what is missing.
+/// A recording as one self-contained HTML page: energy and momentum over time, cost and error of each interaction with its
+/// swaps, the pace of the run, what happened, what is missing.
 #pragma once
 
 #include "recordings/summary.h"

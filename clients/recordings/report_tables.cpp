@@ -29,7 +29,7 @@ PageCell text(std::string value) { return {std::move(value), "", ""}; }
 PageCell number(double value) { return {short_number(value), std::isfinite(value) ? formatted("%.9e", value) : "-", ""}; }
 PageCell whole(std::uint64_t value) { return {std::to_string(value), std::to_string(value), ""}; }
 PageCell whole(std::int64_t value) { return {std::to_string(value), std::to_string(value), ""}; }
-/// A moment on the recording's time line: more digits than other numbers.
+/// A moment on the recording's time line: it needs more digits than other numbers.
 PageCell moment(double value) { return {formatted("%.6g", value), formatted("%.9e", value), ""}; }
 Row head(std::initializer_list<const char*> names)
 {
@@ -40,7 +40,7 @@ Row head(std::initializer_list<const char*> names)
 
 std::string microseconds(double ns) { return short_number(ns * 1e-3) + " µs"; }
 
-/// A long table is cut, and says so.
+/// Shortens a long table, with a note.
 void add_table(Page& page, const Row& columns, const std::vector<Row>& rows, std::uint64_t all)
 {
     page.table(columns, rows);
@@ -104,7 +104,7 @@ void add_segments(Page& page, const std::vector<Segment>& segments)
                             text(s.error_unit),
                             number(s.work)});
     if (rows.empty()) return;
-    page.paragraph("Each interaction with each algorithm that it had. A click on a column's head sorts by it.");
+    page.paragraph("Each interaction with each algorithm that it used. Click a column header to sort by it.");
     add_table(page, head({"interaction", "algorithm", "run", "from, s", "to, s", "cost, µs/step", "largest error", "unit", "work, J"}),
               rows, segments.size());
 }
@@ -127,7 +127,7 @@ void add_requests(Page& page, const Log& log)
     }
     if (rows.empty()) return;
     page.heading("Requests");
-    page.paragraph("What was asked for and done, in the order in which it took effect.");
+    page.paragraph("The requests that were carried out, in the order in which they took effect.");
     add_table(page, head({"at, s", "before step", "request", "target", "argument", "values", "from"}), rows, all);
 }
 
@@ -164,7 +164,8 @@ void add_runs(Page& page, const Summary& summary)
     if (summary.runs.size() < 2) return;
     page.heading("Runs");
     page.paragraph(
-        "A load, a reset, a restored snapshot begins a run. The recording's own time goes on, the simulated time of each run is its own.");
+        "A load, a reset or a restored snapshot begins a run. The time of the recording continues, while each run has its own simulated "
+        "time.");
     add_table(page, head({"run", "began with", "from, s", "to, s", "first step", "last step", "simulated from, s", "to, s"}), rows,
               summary.runs.size());
 }

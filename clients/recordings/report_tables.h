@@ -1,4 +1,4 @@
-/// The tables of a report. Each is left out where there is nothing in it.
+/// The tables of a report. Empty ones are left out.
 #pragma once
 
 #include "figures/page.h"

@@ -41,7 +41,7 @@ std::string cause_in(const plab_v2_Journal& journal)
 
 }  // namespace
 
-std::optional<RunPosition> position_of(const Entry& entry)
+std::optional<RunPosition> run_position_of(const Entry& entry)
 {
     return std::visit(
         [](const auto& content) -> std::optional<RunPosition>
@@ -68,7 +68,7 @@ Run& Runs::at(std::uint64_t number, std::uint64_t log_time)
 
 void Runs::note(const Entry& entry)
 {
-    const auto place = position_of(entry);
+    const auto place = run_position_of(entry);
     if (!place) return;
     Run& run = at(place->run, entry.log_time);
     run.end = std::max(run.end, entry.log_time);

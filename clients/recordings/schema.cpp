@@ -85,7 +85,7 @@ public:
     {
         while (why_.empty() && at_ < tokens_.size()) declaration();
         if (why_.empty() && !scopes_.empty()) why_ = "module " + scopes_.back() + " does not end";
-        if (!why_.empty()) return reason("the schema's IDL is not understood: " + why_);
+        if (!why_.empty()) return reason("the schema's IDL cannot be parsed: " + why_);
         const auto found = types_.find(name);
         if (found == types_.end()) return reason("the schema's IDL does not declare " + name);
         return found->second;
@@ -218,7 +218,7 @@ private:
         const std::string text = take();
         std::uint32_t value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc() || end != text.data() + text.size()) (void)fail("'" + text + "' is no number");
+        if (error != std::errc() || end != text.data() + text.size()) (void)fail("'" + text + "' is not a number");
         return value;
     }
 

@@ -18,7 +18,7 @@ std::string unit_of_error(const plab_v2_InteractionMetrics& m)
     return {};
 }
 
-class Collector
+class SegmentCollector
 {
 public:
     void note(const plab_v2_Metrics& metrics, double time)
@@ -57,9 +57,9 @@ private:
         ++now.samples;
         // The first sample of a run measures what was before it (is_measured in quantity.h).
         if (all.step_ns > 0 && !is_new_run) now.mean_cost += (m.cost_ns - now.mean_cost) / static_cast<double>(++series.measured);
-        // A residual until the first shadow step, then what that measures: figures of two units are no largest one.
+        // A residual until the first shadow step, then the measured error: values of two units have no common maximum.
         if (const std::string unit = unit_of_error(m); std::exchange(now.error_unit, unit) != unit) now.largest_error = 0;
-        // A comparison with what is no number is false.
+        // A comparison with NaN is false.
         if (!(std::fabs(m.error) <= now.largest_error)) now.largest_error = std::fabs(m.error);
         now.work += m.work - series.last_work;
         series.last_work = m.work;
@@ -72,7 +72,7 @@ private:
 
 std::vector<Segment> segments_of(const Log& log)
 {
-    Collector collector;
+    SegmentCollector collector;
     Stream stream = log.stream({"plab/metrics"});
     while (const Entry* entry = stream.next())
         if (const auto* metrics = entry->as<plab_v2_Metrics>()) collector.note(*metrics, seconds(entry->log_time));

@@ -1,4 +1,4 @@
-/// The messages of a recording in the order of their time, decoded.
+/// The messages of a recording in order of time, decoded.
 ///
 ///   Stream stream(reader, {.topics = {"plab/states"}});
 ///   while (const Entry* entry = stream.next())
@@ -18,14 +18,14 @@
 namespace plab::recordings
 {
 
-/// The sample, of a topic of ours; nothing for what others write, or another version of the wire.
+/// The sample, of one of our topics; empty for foreign topics or another version of the wire.
 using Content =
     std::variant<std::monostate, const plab_v2_Server*, const plab_v2_Scene*, const plab_v2_SceneObject*, const plab_v2_Shape*,
                  const plab_v2_Interaction*, const plab_v2_Type*, const plab_v2_Frame*, const plab_v2_Collisions*, const plab_v2_Events*,
                  const plab_v2_Metrics*, const plab_v2_Request*, const plab_v2_Reply*, const plab_v2_Image*, const plab_v2_Journal*,
                  const plab_v2_Hashes*, const plab_v2_Snapshot*, const plab_v2_Gone*>;
 
-/// One message; valid until the stream goes on.
+/// One message; valid until the stream advances.
 struct Entry
 {
     const recording::Channel* channel = nullptr;
@@ -42,7 +42,7 @@ struct Entry
     }
 };
 
-/// What could not be read: chunks that are damaged, samples that are none.
+/// What could not be read: damaged chunks, invalid samples.
 struct Troubles
 {
     static constexpr std::size_t kMostTexts = 16;
@@ -51,20 +51,20 @@ struct Troubles
     std::vector<std::string> texts;  ///< of the first ones
 
     void add(const std::string& text);
-    /// Those of another pass over the same file: what both have seen counts once.
+    /// Merges those of another pass over the same file: what both have seen counts once.
     void merge(const Troubles& other);
 };
 
 class Stream
 {
 public:
-    /// The reader must outlive the stream and stay where it is.
+    /// The reader must outlive the stream and must not move.
     Stream(const recording::Reader& reader, const recording::Query& query);
     ~Stream();
     Stream(Stream&&) noexcept;
     Stream& operator=(Stream&&) = delete;
 
-    /// Null at the end. What is damaged is left out, and counted among the troubles.
+    /// Null at the end. Damaged messages are skipped, and counted among the troubles.
     const Entry* next();
     const Troubles& troubles() const { return troubles_; }
 

@@ -13,7 +13,7 @@ namespace plab::recordings
 namespace
 {
 
-constexpr std::uint64_t kOneWriter = 0;
+constexpr std::uint64_t kSingleWriter = 0;
 
 std::uint64_t whole_number(const recording::Pairs& pairs, const std::string& key)
 {
@@ -35,10 +35,10 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> numbers_of(const Entry& e
     return {};
 }
 
-class Collector
+class SummaryCollector
 {
 public:
-    explicit Collector(const Log& log) : log_(&log) {}
+    explicit SummaryCollector(const Log& log) : log_(&log) {}
 
     void note(const Entry& entry)
     {
@@ -95,7 +95,7 @@ private:
         s.bytes += entry.data.size(), s.last = std::max(s.last, entry.log_time);
         const auto numbers = numbers_of(entry);
         if (!numbers) return;
-        const auto missing = topic.numbers.note(kOneWriter, numbers->first, numbers->second);
+        const auto missing = topic.numbers.note(kSingleWriter, numbers->first, numbers->second);
         s.missing += missing.count, s.gaps += missing.count > 0 ? 1 : 0;
     }
     void note_frame(const plab_v2_Frame& frame)
@@ -181,7 +181,7 @@ double Summary::file_bytes_per_object_second() const { return per_object_second(
 
 Result<Summary> summary_of(const Log& log)
 {
-    Collector collector(log);
+    SummaryCollector collector(log);
     add_container(log, collector.out());
     auto source = recording::FileSource::open(log.path());
     if (!source) return source.errors();

@@ -1,4 +1,4 @@
-/// What is in a recording: one pass over the file, numbers only.
+/// The contents of a recording: one pass over the file, numbers only.
 #pragma once
 
 #include <map>
@@ -18,14 +18,14 @@ struct TopicSummary
     std::uint64_t bytes = 0;  ///< of messages, before compression
     std::uint64_t first = 0;  ///< log_time
     std::uint64_t last = 0;
-    std::uint64_t missing = 0;  ///< entries that were numbered, and are not in the file
-    std::uint64_t gaps = 0;     ///< places where some are missing
+    std::uint64_t missing = 0;  ///< numbered entries that are not in the file
+    std::uint64_t gaps = 0;     ///< number of gaps
 
     /// Per second of the recording; 0: it has no length.
     double rate() const;
 };
 
-/// What whoever wrote the file says it lost.
+/// Losses as reported by the writer of the file.
 struct NotedGap
 {
     std::string reason;
@@ -61,9 +61,9 @@ struct Summary
     recording::Pairs head;
     std::string library;  ///< that wrote the file
     std::uint64_t file_bytes = 0;
-    std::uint64_t chunks = 0, chunk_bytes = 0, raw_bytes = 0;  ///< of chunks: as they stand in the file, and decompressed
+    std::uint64_t chunks = 0, chunk_bytes = 0, raw_bytes = 0;  ///< of chunks: size in the file, and decompressed
     bool is_closed = false;                                    ///< ends as a file does that was closed
-    std::string recovered;  ///< what `plabctl recover` wrote into the file that it made: what it kept and what is lost; "": it did not
+    std::string recovered;  ///< report that `plabctl recover` wrote into the file: what it kept and what is lost; "": not recovered
     Troubles troubles;
 
     std::uint64_t messages = 0;
@@ -76,7 +76,7 @@ struct Summary
     std::uint64_t requests = 0;  ///< that took effect
     std::vector<KindCount> events, collisions;
     std::vector<NotedGap> gaps;
-    std::map<std::string, std::uint64_t> dropped;  ///< by the server's rings, as it last said, by topic
+    std::map<std::string, std::uint64_t> dropped;  ///< by the server's rings, as last reported, by topic
     std::vector<SnapshotSummary> snapshots;
     std::vector<Attached> attachments;
 
@@ -85,7 +85,7 @@ struct Summary
     /// Bytes per moving object and second of simulated time; 0 if there is no state or no time.
     double state_bytes_per_object_second() const;  ///< of plab/states, before compression
     double file_bytes_per_object_second() const;   ///< of all that is in the file
-    /// All that was recorded is there and can be read.
+    /// Everything that was recorded is present and readable.
     bool is_whole() const { return is_closed && troubles.count == 0 && recovered.empty(); }
     /// "lost: ..." of what was recovered, a text each.
     std::vector<std::string> losses() const;

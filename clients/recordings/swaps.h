@@ -1,4 +1,4 @@
-/// Algorithms that were exchanged: from the journal, or from the catalogue where no journal was recorded.
+/// Exchanges of algorithms: from the journal, or from the catalogue if no journal was recorded.
 #pragma once
 
 #include "recordings/things.h"
@@ -10,10 +10,10 @@ struct Swap
 {
     std::uint64_t run = 0;
     std::int64_t step = 0;       ///< took effect before this one
-    std::optional<double> time;  ///< s, simulated; the catalogue does not tell it
+    std::optional<double> time;  ///< s, simulated; unknown if it comes from the catalogue
     std::uint64_t log_time = 0;
     std::string component;
-    std::string from;  ///< "" if the recording does not tell
+    std::string from;  ///< "" if the recording does not contain it
     std::string to;
     std::string origin;  ///< "client", "command line"; "" if there is no journal
 };
@@ -23,7 +23,7 @@ class Swaps
 public:
     /// Of the journal's entries.
     void note(const Entry& entry);
-    /// With what the catalogue knows: who was there before; without a journal, its changes.
+    /// Adds what the catalogue knows: the former algorithms; without a journal, its changes.
     std::vector<Swap> all(const Things& things) const;
 
 private:

@@ -21,7 +21,7 @@ auto items(const Sequence& s)
 /// `time`: of the entry in the sample, where it has one of its own.
 CsvRow& begin_row(CsvRow& rows, const Entry& entry, std::optional<double> time = {})
 {
-    const RunPosition place = position_of(entry).value_or(RunPosition{});
+    const RunPosition place = run_position_of(entry).value_or(RunPosition{});
     if (!time) time = place.time;
     rows.whole(place.run);
     (void)(place.step ? rows.whole(*place.step) : rows.none());

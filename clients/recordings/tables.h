@@ -1,7 +1,6 @@
-/// The topics of a recording as tables: one for each topic that has one, a row per sample and thing.
-///
-/// Columns name their unit: "position_x_m", "speed_rad_per_s"; what has none is pure or text. All tables begin with
-/// run, step, time_s (simulated), log_time_s (the recording's own time line). A cell is empty where there is nothing to say.
+/// The topics of a recording as tables: one for each topic that has one, one row per sample and entry.
+/// Column names include the unit: "position_x_m", "speed_rad_per_s"; columns without one are pure numbers or text. All tables
+/// begin with run, step, time_s (simulated), log_time_s (the recording's own time line). A cell is empty if there is no value.
 #pragma once
 
 #include <span>
@@ -16,7 +15,7 @@ namespace plab::recordings
 struct Table
 {
     std::string_view topic;
-    std::string_view columns;  ///< behind the four that all have
+    std::string_view columns;  ///< after the four that all tables have
     void (*add_rows)(const Entry& entry, const Things& things, CsvRow& rows);
 };
 

@@ -15,14 +15,14 @@ Result<TextOut> TextOut::open(const std::string& path)
     out.name_ = path.empty() || path == "-" ? "standard output" : path;
     if (path.empty() || path == "-") return out;
     std::error_code failed;
-    const fs::path real = fs::weakly_canonical(path, failed);  // a link stays one: what it leads to is written
+    const fs::path real = fs::weakly_canonical(path, failed);  // a link is kept: its target is written
     out.target_ = failed ? path : real.string();
     const auto kind = fs::status(out.target_, failed).type();
     if (kind == fs::file_type::regular || kind == fs::file_type::not_found)
     {
         out.partial_ = out.target_ + ".part";
         out.file_.reset(std::fopen(out.partial_.c_str(), "we"));
-        if (out.file_ == nullptr) out.partial_.clear();  // the folder takes no new file, but the file may be there
+        if (out.file_ == nullptr) out.partial_.clear();  // the folder accepts no new file, but the file may exist
     }
     if (out.file_ == nullptr) out.file_.reset(std::fopen(path.c_str(), "we"));
     if (out.file_ == nullptr) return reason("cannot write " + path + ": " + std::strerror(errno));

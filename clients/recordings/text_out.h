@@ -1,5 +1,5 @@
-/// Where text goes that a command makes: standard output or a file. A file gets its name only when it is whole: until then it is
-/// NAME.part, and it is removed if it is not finished.
+/// The destination of text that a command produces: standard output or a file. The text is written to NAME.part, which gets its
+/// final name when it is complete, and is removed otherwise.
 #pragma once
 
 #include <cstdio>
@@ -23,7 +23,7 @@ public:
     static Result<TextOut> open(const std::string& path);
 
     void write(std::string_view text);
-    /// Nobody reads any more (a closed pipe), or the disk is full: the rest need not be made.
+    /// The reader is gone (a closed pipe), or the disk is full: the rest need not be produced.
     bool is_over() const { return error_ != 0; }
     /// Writes what is left, and gives the file its name. A closed pipe is a normal end.
     Result<void> finish();
@@ -37,12 +37,12 @@ private:
 
     std::unique_ptr<std::FILE, Closer> file_;  ///< empty: standard output
     std::string name_;                         ///< for messages
-    std::string target_;                       ///< where links lead to
-    std::string partial_;  ///< "": it is written in place, because it is no plain file (a pipe, a device) or standard output
+    std::string target_;                       ///< the target after resolving links
+    std::string partial_;  ///< "": written in place, because it is not a regular file (a pipe, a device) or standard output
     int error_ = 0;        ///< errno of the first failure
 };
 
-/// One text as one file.
+/// Writes one text as one file.
 Result<void> write_file(const std::string& path, std::string_view text);
 
 }  // namespace plab::recordings

@@ -17,7 +17,7 @@ void Things::note(const Entry& entry)
 void Things::note(const plab_v2_Interaction& interaction, std::uint64_t log_time)
 {
     Algorithm& now = algorithms_[interaction.component_id];
-    // A new run has the algorithms that its scene names: that is no swap.
+    // A new run has the algorithms that its scene names: that is not a swap.
     if (now.run == interaction.run && !now.type.empty() && now.type != interaction.type_name)
         changes_.push_back({interaction.run, interaction.since, log_time, interaction.component_id, now.type, interaction.type_name});
     now = {interaction.run, interaction.type_name};

@@ -1,4 +1,4 @@
-/// Who is in a recording: objects by the handles that frames use, interactions and the algorithms that they had.
+/// The components in a recording: objects by the handles that frames use, interactions and their algorithms.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ struct Thing
     std::string motion;
 };
 
-/// An interaction whose algorithm is another one from `step` on.
+/// An interaction whose algorithm changed at `step`.
 struct Change
 {
     std::uint64_t run = 0;
@@ -32,11 +32,11 @@ class Things
 public:
     void note(const Entry& entry);
 
-    /// Its id; "#7" if the recording does not tell.
+    /// Its id; "#7" if the recording does not contain it.
     std::string name_of(std::uint64_t run, std::uint32_t handle) const;
-    /// Null if the recording does not tell.
+    /// Null if the recording does not contain it.
     const Thing* find(std::uint64_t run, std::uint32_t handle) const;
-    /// Nothing: that run has no such object. "#7" is the one whose handle is 7.
+    /// Empty: that run has no such object. "#7" is the one whose handle is 7.
     std::optional<std::uint32_t> handle_of(std::uint64_t run, const std::string& id) const;
     bool has_objects() const { return !objects_.empty(); }
     bool is_shaft(const std::string& id) const;

@@ -1,4 +1,4 @@
-/// Small texts that both the report and plabctl say.
+/// Short texts that both the report and plabctl use.
 #pragma once
 
 #include <cstdint>

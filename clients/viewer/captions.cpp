@@ -8,7 +8,7 @@ namespace plab::view
 namespace
 {
 
-/// Changes of one algorithm that are remembered: frames lag behind the catalogue by less than that.
+/// Number of remembered changes of one algorithm: frames lag behind the catalogue by less than that.
 constexpr std::size_t kMostChanges = 64;
 
 std::string shortened(std::string line)
@@ -18,7 +18,7 @@ std::string shortened(std::string line)
     return line + "...";
 }
 
-/// Ids, the most expensive ones if there are too many; in the order of ids.
+/// Ids, limited to the most expensive ones if there are too many; in order of ids.
 std::vector<std::string> choose(const link::CatalogueContents& scene)
 {
     std::vector<std::pair<double, std::string>> ranked;
@@ -61,7 +61,7 @@ void Captions::use(const link::CatalogueContents& scene)
 const std::string& Captions::algorithm_at(const std::string& id, std::int64_t step) const
 {
     const std::vector<Change>& changes = algorithms_.at(id);
-    // The first one that is known also stands for what was before: nobody can say better.
+    // The first known algorithm is also used for earlier times, for lack of better information.
     auto change = changes.end() - 1;
     while (change != changes.begin() && change->first > step) --change;
     return change->second;

@@ -16,18 +16,18 @@ namespace plab::view
 class Captions
 {
 public:
-    /// More interactions than this: those that cost most, and how many there are beside them.
+    /// If there are more interactions than this, show those with the highest cost, and the number of the others.
     static constexpr std::size_t kMostLines = 12;
     static constexpr std::size_t kLongestLine = 72;  ///< characters
 
-    /// The scene has changed. Which interactions are shown stays the same until the next change.
+    /// The scene has changed. The selection of interactions stays the same until the next change.
     void use(const link::CatalogueContents& scene);
 
     /// From the top: title and time, then "id: algorithm" as it was in this state.
     std::vector<std::string> lines(const State& state) const;
 
 private:
-    /// An algorithm, and the step from which on it was the one.
+    /// An algorithm, and the step at which it became active.
     using Change = std::pair<std::int64_t, std::string>;
 
     const std::string& algorithm_at(const std::string& id, std::int64_t step) const;

@@ -12,7 +12,7 @@ namespace
 using Clock = std::chrono::steady_clock;
 
 constexpr link::Seconds kSlice{0.1};
-/// A paused server sends no states by itself; one that runs sends its first in far less than that.
+/// A paused server sends no states by itself; a running one sends its first much sooner than that.
 constexpr link::Seconds kStandingStill{0.5};
 
 std::string seconds(const char* format, double value)
@@ -59,7 +59,8 @@ std::optional<Moment> Feed::next()
             {
                 any_ = true;
                 if (stale)
-                    std::fputs("plab-view: the server is paused and sends no states: objects are where it last listed them\n", stderr);
+                    std::fputs("plab-view: the server is paused and sends no states: objects are drawn at their last listed positions\n",
+                               stderr);
                 return moment;
             }
         if (waited < timeout_) continue;

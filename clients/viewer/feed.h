@@ -1,4 +1,4 @@
-/// Moments one after the other, or why there are no more.
+/// Delivers moments one after the other, or the reason why there are no more.
 #pragma once
 
 #include "viewer/options.h"
@@ -15,14 +15,14 @@ public:
     {
     }
 
-    /// Waits for the next moment. None: end() says why.
+    /// Waits for the next moment. Empty: end() gives the reason.
     std::optional<Moment> next();
-    /// What the catalogue shows, for a paused server that has sent no state yet; `stale` says whether objects may have
-    /// moved since. None: it is not paused, or has sent states.
+    /// The state in the catalogue, for a paused server that has sent no state yet; `stale` tells whether objects may have moved
+    /// since. Empty: it is not paused, or has sent states.
     std::optional<Moment> standing_still(bool& stale) const;
 
     const Outcome& end() const { return end_; }
-    /// The server has gone, in order: what it will never send cannot be waited for.
+    /// The server has ended: states that it will never send cannot be waited for.
     bool server_has_gone() const { return gone_; }
 
 private:

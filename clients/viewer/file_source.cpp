@@ -11,10 +11,10 @@ namespace plab::view
 namespace
 {
 
-/// A recording that was made from the bus has the catalogue in the order of its coming, which may be after the first
-/// frame of its revision: by so much.
-constexpr std::uint64_t kSettle = 150'000'000;  // ns of wall time
-constexpr std::uint64_t kFar = 1'000'000'000;   // ns of the recording: no further, whatever the clocks say
+/// A recording made from the bus has the catalogue in order of arrival, which may be after the first frame of its revision, by
+/// up to this time.
+constexpr std::uint64_t kFileSettle = 150'000'000;  // ns of wall time
+constexpr std::uint64_t kFar = 1'000'000'000;       // ns of the recording: an upper bound, whatever the clocks say
 
 template <class T>
 const std::string& name_of()
@@ -37,7 +37,7 @@ std::optional<link::Metrics> metrics_of(recording::ByteView bytes)
     return link::metrics_of(*sample);
 }
 
-/// The last ones until `time`, or the first ones; none: there are none.
+/// The last ones until `time`, or the first ones; empty: there are none.
 std::optional<link::Metrics> metrics_at(const recording::Reader& reader, std::uint64_t time)
 {
     const auto last = reader.last_at(name_of<plab_v2_Metrics>(), time);
@@ -60,7 +60,7 @@ Result<std::unique_ptr<Source>> FileSource::open(const std::string& file, std::o
     return std::unique_ptr<Source>(std::move(out));
 }
 
-/// Far into a file nobody wants to read all that was before. Time and time line differ by a constant within a run.
+/// Skips what lies before a position far into the file. Time and time line differ by a constant within a run.
 void FileSource::start(std::optional<double> from)
 {
     catalogue_.emplace(reader_.messages({{name_of<plab_v2_Scene>(), name_of<plab_v2_SceneObject>(), name_of<plab_v2_Shape>(),
@@ -79,13 +79,13 @@ void FileSource::start(std::optional<double> from)
     frames_.emplace(reader_.messages({states, begin}));
     if (begin == log_time) return;
     const auto there = next_frame();
-    // In another run the constant is another: then there is no short cut.
+    // In another run the constant differs: then there is no short cut.
     const bool is_there = there && decode_frame(*there) && frame_->run == run;
     frames_.emplace(reader_.messages({states, is_there ? begin : 0}));
 }
 
-/// When the frame is from which the one at `first` + `ahead` can be drawn: the one before it; where frames name only what
-/// moved, one before the last that names everything.
+/// The time of the frame needed to draw the one at `first` + `ahead`: the frame before it; if frames contain only what moved,
+/// one before the last full frame.
 std::uint64_t FileSource::frame_that_leads_to(std::uint64_t first, std::uint64_t ahead) const
 {
     constexpr auto kBack = static_cast<std::uint64_t>(1.5e9 * recording::kFullFrameEvery);
@@ -102,7 +102,7 @@ std::optional<recording::Found> FileSource::next_frame()
     {
         auto found = frames_->next();
         if (found) return *found;
-        ++broken_;  // a chunk: the cursor goes on behind it
+        ++broken_;  // a damaged chunk: the cursor continues after it
     }
 }
 
@@ -134,7 +134,7 @@ std::optional<Moment> FileSource::pop(link::Seconds)
     return {};
 }
 
-/// A server that was paused all the time has sent no states: everything is where it was last listed.
+/// A server that was paused all the time has sent no states: objects are at their last listed positions.
 std::optional<Moment> FileSource::only_catalogue()
 {
     const auto info = server();
@@ -165,13 +165,13 @@ void FileSource::follow_scene(const recording::Message& frame, bool is_new)
     const auto is_due = [&](const recording::Message& m)
     {
         if (m.log_time <= frame.log_time) return true;
-        return is_new && m.log_time <= frame.log_time + kFar && m.publish_time > 0 && m.publish_time <= frame.publish_time + kSettle;
+        return is_new && m.log_time <= frame.log_time + kFar && m.publish_time > 0 && m.publish_time <= frame.publish_time + kFileSettle;
     };
     while (ahead() && is_due(ahead_->message) && !is_of_later(*ahead_)) apply(*std::exchange(ahead_, std::nullopt));
 }
 
-/// Whether a message of the catalogue is of a step after the frame's. What says no time is dated by what was last heard of
-/// before it: where frames are rare, that may be long before.
+/// Whether a message of the catalogue belongs to a step after the frame's. A message without a time is dated by the last
+/// message before it; if frames are rare, that may be long before.
 bool FileSource::is_of_later(const recording::Found& found)
 {
     const auto peek = peeks_.find(found.channel->topic);
@@ -215,7 +215,7 @@ void FileSource::erase(const std::string& topic, const std::string& id)
     if (topic == name_of<plab_v2_Interaction>()) erase_from(now_.interactions);
 }
 
-/// The scene as it is shown from now on; costs decide which captions there are, so it gets the last ones, or the first.
+/// The scene to show from now on; costs decide which captions are shown, so it gets the last ones, or the first.
 void FileSource::show(std::uint64_t time)
 {
     if (!is_changed_) return;

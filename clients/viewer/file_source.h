@@ -1,4 +1,4 @@
-/// Moments out of a recording: all of them, as fast as they are drawn.
+/// Moments from a recording: all of them, as fast as they are drawn.
 #pragma once
 
 #include <set>
@@ -26,7 +26,7 @@ public:
     std::optional<link::ServerInfo> server() const override;
 
 private:
-    /// A message of the catalogue that is read, but whose time has not come.
+    /// A message of the catalogue that was read, but is not due yet.
     using Ahead = std::optional<recording::Found>;
 
     FileSource(recording::Reader reader) : reader_(std::move(reader)) {}

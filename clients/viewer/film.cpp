@@ -40,8 +40,8 @@ std::vector<std::string> command_of(const std::string& ffmpeg, const std::string
     // clang-format on
 }
 
-/// How ffmpeg starts: our pipe as its input, no blocked signals, and away from the terminal's Ctrl-C, which would cut
-/// the film's end off.
+/// How ffmpeg is started: our pipe as its input, no blocked signals, and detached from the terminal's Ctrl-C, which would
+/// truncate the film.
 class SpawnSettings
 {
 public:
@@ -144,7 +144,7 @@ Result<void> Film::add(const render::Picture& picture)
     {
         const ssize_t written = ::write(pipe_, data, left);
         if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return reason(std::string("ffmpeg takes no more pictures: ") + std::strerror(errno));
+        if (written < 0) return reason(std::string("ffmpeg accepts no more pictures: ") + std::strerror(errno));
         data += written, left -= static_cast<std::size_t>(written);
     }
     return {};

@@ -12,18 +12,18 @@
 namespace plab::view
 {
 
-/// Where ffmpeg is, or that it is not in PATH.
+/// The path of ffmpeg, or an error if it is not in PATH.
 Result<std::string> find_ffmpeg();
 
 class Film
 {
 public:
-    /// Starts ffmpeg. The file has its name when finish() has succeeded, not before.
+    /// Starts ffmpeg. The file gets its name only when finish() has succeeded.
     static Result<Film> open(const std::string& ffmpeg, const std::string& file, std::uint32_t width, std::uint32_t height,
                              double frames_per_second);
     Film(Film&& other) noexcept;
     Film& operator=(Film&&) = delete;
-    /// Without finish(): gives the film up.
+    /// Without finish(): discards the film.
     ~Film();
 
     Result<void> add(const render::Picture& picture);
@@ -33,7 +33,7 @@ private:
     Film(std::string file, std::string partial) : file_(std::move(file)), partial_(std::move(partial)) {}
     Result<void> start(const std::vector<std::string>& command);
     void close_pipe();
-    /// Exit status of ffmpeg, which has been told that there is no more; none if it did not end by itself.
+    /// Exit status of ffmpeg after its input was closed; empty if it did not end by itself.
     std::optional<int> wait();
 
     std::string file_, partial_;

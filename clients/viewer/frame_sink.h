@@ -1,4 +1,4 @@
-/// Where the frames of a sequence go: numbered files, or a film.
+/// The destination of the frames of a sequence: numbered files, or a film.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ class FrameSink
 public:
     virtual ~FrameSink() = default;
     virtual Result<void> add(std::uint64_t index, const render::Picture& picture) = 0;
-    /// No more will come. What is not finished leaves no half film behind.
+    /// No more frames follow. A sink that is not finished leaves no partial film behind.
     virtual Result<void> finish() = 0;
 };
 

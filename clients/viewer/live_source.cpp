@@ -8,10 +8,10 @@ namespace
 using Clock = std::chrono::steady_clock;
 
 constexpr link::Seconds kNap{0.02};
-/// Frames and catalogue are topics of their own, in no order: a frame of a new revision waits this long for what the
-/// catalogue says of that revision.
+/// Frames and catalogue are separate topics without a common order: a frame of a new revision waits this long for the catalogue
+/// of that revision.
 constexpr std::chrono::milliseconds kSettle{150};
-constexpr std::size_t kMostHeld = 64;  ///< frames that wait; more go on without waiting
+constexpr std::size_t kMostHeld = 64;  ///< number of frames that may wait; further ones are passed on at once
 
 constexpr link::Parts kParts =
     link::Part::Server | link::Part::Scene | link::Part::Objects | link::Part::Shapes | link::Part::Interactions | link::Part::Metrics;
@@ -27,7 +27,7 @@ Result<std::unique_ptr<Source>> LiveSource::open(const link::Session& session, c
     out->catalogue_ = catalogue.take();
     if (auto fetched = out->catalogue_->fetch(timeout, stop); !fetched) return fetched.errors();
     out->take_catalogue();
-    // Only now: a reader of states that nobody empties keeps the last four.
+    // Subscribe only now: a reader of states that is not emptied keeps only the last four.
     auto frames = session.reader<plab_v2_Frame>();
     if (!frames) return frames.errors();
     out->frames_ = frames.take();
@@ -89,7 +89,7 @@ void LiveSource::take_catalogue()
     const link::CatalogueContents& now = catalogue_->now();
     const std::lock_guard lock(mutex_);
     server_ = now.server;
-    // Costs come with the metrics, which are no change of the scene: their first ones decide what captions show.
+    // Costs come with the metrics, which do not count as changes of the scene: the first ones decide which captions are shown.
     const bool first_costs = scene_ && !scene_->metrics && now.metrics;
     if (scene_ && version_ == catalogue_->version() && !first_costs) return;
     version_ = catalogue_->version();

@@ -1,4 +1,4 @@
-/// Reads one server on a thread of its own, so that drawing never makes it miss states.
+/// Reads one server on a separate thread, so that drawing never causes missed states.
 #pragma once
 
 #include <thread>
@@ -11,7 +11,7 @@ namespace plab::view
 class LiveSource final : public Source
 {
 public:
-    /// Subscribes, waits until the catalogue is there, and starts to read. The session must outlive it.
+    /// Subscribes, waits until the catalogue has arrived, and starts to read. The session must outlive it.
     static Result<std::unique_ptr<Source>> open(const link::Session& session, const Grid& grid, link::Seconds timeout,
                                                 const link::Stop& stop);
     ~LiveSource() override;

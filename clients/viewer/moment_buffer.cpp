@@ -23,8 +23,8 @@ std::int64_t MomentBuffer::cell_of(const State& state) const
 
 bool MomentBuffer::is_of_no_more_use(const Moment& newest) const
 {
-    // The newest two and this one lie in one cell: the middle one is neither its first nor its last. What changes the
-    // scene is kept all the same.
+    // This one and the newest two are in one cell: the middle one is neither its first nor its last. Moments that change the
+    // scene are always kept.
     if (grid_.per_second <= 0 || moments_.size() < 2) return false;
     const Moment& first = moments_[moments_.size() - 2];
     const Moment& middle = moments_.back();

@@ -1,5 +1,5 @@
-/// States on their way from the thread that reads to the one that draws. Bounded: who draws slower than the server
-/// steps loses states in between, never memory.
+/// States on their way from the reading thread to the drawing thread. Bounded: if drawing is slower than the server's steps,
+/// states in between are dropped instead of using more memory.
 #pragma once
 
 #include <condition_variable>
@@ -21,10 +21,10 @@ struct Moment
     std::shared_ptr<const link::CatalogueContents> scene;
 };
 
-/// Of the states between two times of a regular grid only the first and the last are of use.
+/// Of the states between two times of a regular grid, only the first and the last are needed.
 struct Grid
 {
-    double per_second = 0;         ///< 0: every state is of use
+    double per_second = 0;         ///< 0: every state is needed
     std::optional<double> origin;  ///< s; none: the first state's time
 };
 
@@ -36,16 +36,16 @@ public:
 
     explicit MomentBuffer(const Grid& grid, std::size_t most_moments = kMostMoments, std::size_t most_rows = kMostRows);
 
-    /// When it is full, this moment takes the place of the one before it.
+    /// If the buffer is full, this moment replaces the previous one.
     void push(Moment&& moment);
-    /// No more will come, for this reason.
+    /// No more moments will follow, for this reason.
     void close(std::string why);
 
-    /// The oldest moment; none when none came until `timeout`, or after the last one of a closed buffer.
+    /// The oldest moment; empty if none arrived until `timeout`, or after the last one of a closed buffer.
     std::optional<Moment> pop(link::Seconds timeout);
     /// Why it was closed, once all moments are taken.
     std::optional<std::string> closed() const;
-    /// Moments that were given up because it was full.
+    /// Moments that were dropped because it was full.
     std::uint64_t given_up() const;
 
 private:

@@ -24,11 +24,11 @@ constexpr const char* kExamples = R"(Examples:
   plab-view run.mcap --png hit.png --at 1.2
   plab-view run.mcap --mp4 slow.mp4 --at 1 --until 2 --rate 0.1
 
-With a FILE the pictures are of a recording, without it of a running server. Times are simulated seconds. The view: --camera, or --from, --look-at, --orbit; without any of them the scene's camera
-'front', else its first one, else one that shows everything.
+With FILE, the pictures show a recording; without it, a running server. Times are simulated seconds. The view: --camera, or --from, --look-at, --orbit; without any of them the scene's camera
+'front', else its first one, else a view that shows everything.
 
-Environment: PLAB_SERVER, PLAB_DOMAIN, PLAB_INTERFACE stand in for the options of these names.
-Exit codes: 0 done, 1 failed or not all pictures could be had, 2 wrong use, 3 no server or time-out, 130 Ctrl-C, 143 SIGTERM.)";
+Environment: PLAB_SERVER, PLAB_DOMAIN, PLAB_INTERFACE replace the options of these names.
+Exit codes: 0 done, 1 failed or not all pictures could be had, 2 wrong usage, 3 no server or time-out, 130 Ctrl-C, 143 SIGTERM.)";
 
 struct Texts
 {
@@ -59,7 +59,7 @@ void add_pictures(CLI::App& app, ViewerOptions& options, Texts& texts)
         ->group("Pictures");
     app.add_option("--mp4", texts.film, "write a film (needs ffmpeg)")->type_name("FILE")->group("Pictures");
     app.add_option("file", options.recording, "recording to draw from; default: a running server")->type_name("FILE");
-    app.add_option("--at", options.at, "of the picture, or of the first frame; default: now, of a recording its begin")
+    app.add_option("--at", options.at, "time of the picture, or of the first frame; default: now, or the beginning of a recording")
         ->check(link::check_not_negative)
         ->type_name("T")
         ->group("Pictures");
@@ -68,7 +68,7 @@ void add_pictures(CLI::App& app, ViewerOptions& options, Texts& texts)
         ->check(CLI::Range(0.001, 1e5))
         ->capture_default_str()
         ->group("Pictures");
-    app.add_option("--rate", options.rate, "simulated seconds in a second of the film")
+    app.add_option("--rate", options.rate, "simulated seconds per second of film")
         ->check(link::check_positive)
         ->check(CLI::Range(0.001, 1000.))
         ->type_name("R")
@@ -78,7 +78,7 @@ void add_pictures(CLI::App& app, ViewerOptions& options, Texts& texts)
                                ->check(link::check_positive)
                                ->type_name("S")
                                ->group("Pictures");
-    app.add_flag("--progress", options.progress, "a line every five seconds on standard error, also where that is no terminal")
+    app.add_flag("--progress", options.progress, "print the progress every five seconds on standard error, even if that is not a terminal")
         ->group("Pictures");
     app.add_option("--until", options.until, "time of the last frame")
         ->check(link::check_not_negative)
@@ -90,25 +90,25 @@ void add_pictures(CLI::App& app, ViewerOptions& options, Texts& texts)
 void add_view(CLI::App& app, ViewerOptions& options, Texts& texts)
 {
     auto* const camera = app.add_option("--camera", options.view.camera, "camera of the scene")->type_name("NAME")->group("View");
-    auto* const from = app.add_option("--from", texts.from, "where to look from")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
-    app.add_option("--look-at", texts.look_at, "what to look at")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
-    app.add_option("--up", texts.up, "what is up in the picture")->type_name("\"X Y Z\"")->group("View");
-    app.add_option("--orbit", options.view.orbit, "go round in a circle of this radius; 0: as far as the scene needs")
+    auto* const from = app.add_option("--from", texts.from, "position of the camera")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
+    app.add_option("--look-at", texts.look_at, "point to look at")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
+    app.add_option("--up", texts.up, "up direction of the picture")->type_name("\"X Y Z\"")->group("View");
+    app.add_option("--orbit", options.view.orbit, "move the camera on a circle of this radius; 0: as large as the scene needs")
         ->check(link::check_not_negative)
         ->type_name("RADIUS")
         ->excludes(camera)
         ->excludes(from)
         ->group("View");
-    app.add_option("--orbit-period", options.view.orbit_period, "simulated seconds of one round")
+    app.add_option("--orbit-period", options.view.orbit_period, "simulated seconds per revolution")
         ->check(link::check_positive)
         ->type_name("S")
         ->capture_default_str()
         ->group("View");
-    app.add_option("--track", options.view.track, "look at this object as it moves")->type_name("ID")->group("View");
+    app.add_option("--track", options.view.track, "follow this object as it moves")->type_name("ID")->group("View");
     app.add_option("--width", options.width, "pixels")->check(CLI::Range(16, 8192))->capture_default_str()->group("View");
     app.add_option("--height", options.height, "pixels")->check(CLI::Range(16, 8192))->capture_default_str()->group("View");
-    app.add_flag("--no-captions", texts.no_captions, "no text in the picture")->group("View");
-    app.add_flag("--no-ground", texts.no_ground, "no grid at z = 0")->group("View");
+    app.add_flag("--no-captions", texts.no_captions, "draw no text")->group("View");
+    app.add_flag("--no-ground", texts.no_ground, "draw no grid at z = 0")->group("View");
 }
 
 void add_server(CLI::App& app, ViewerOptions& options, Texts& texts)
@@ -118,7 +118,7 @@ void add_server(CLI::App& app, ViewerOptions& options, Texts& texts)
     app.add_option("--interface", options.link.domain.network_interface, "network interface; default: this host only")
         ->type_name("NAME")
         ->group("Server");
-    app.add_option("--timeout", texts.timeout, "longest wait for the server, and for its next state; default: 10")
+    app.add_option("--timeout", texts.timeout, "maximum wait for the server, and for its next state; default: 10")
         ->check(link::check_positive)
         ->type_name("S")
         ->group("Server");
@@ -158,14 +158,14 @@ Result<void> take_task(const Texts& texts, ViewerOptions& options)
 {
     if (auto shots = take_shots(texts, options); !shots) return shots;
     const int tasks = int(!options.shots.empty()) + int(!texts.frames.empty()) + int(!texts.film.empty());
-    if (tasks == 0) return reason("says not what to make: --png, --shot, --frames or --mp4; see plab-view --help");
-    if (tasks > 1) return reason("makes pictures, frames or a film, one of them in a run");
+    if (tasks == 0) return reason("needs an output: --png, --shot, --frames or --mp4; see plab-view --help");
+    if (tasks > 1) return reason("makes pictures, frames or a film, only one of them per run");
     options.task = !texts.frames.empty() ? Task::Frames : !texts.film.empty() ? Task::Film : Task::Shots;
     options.target = options.task == Task::Frames ? texts.frames : texts.film;
     if (options.task == Task::Shots && (options.duration || options.until))
-        return reason("--duration and --until are for --frames and --mp4");
-    if (options.task == Task::Shots && options.rate != 1) return reason("--rate is for --frames and --mp4");
-    if (options.task == Task::Shots && texts.png.empty() && options.at) return reason("--at is for --png, --frames and --mp4");
+        return reason("--duration and --until require --frames or --mp4");
+    if (options.task == Task::Shots && options.rate != 1) return reason("--rate requires --frames or --mp4");
+    if (options.task == Task::Shots && texts.png.empty() && options.at) return reason("--at requires --png, --frames or --mp4");
     if (options.at && options.until && *options.until < *options.at) return reason("--until is before --at");
     return {};
 }
@@ -181,10 +181,10 @@ Result<Vec3> parse_vector(const std::string& text)
     for (std::string word; words >> word;)
     {
         const auto number = parse_number(word);
-        if (!number || !std::isfinite(*number)) return reason("'" + word + "' is no number");
+        if (!number || !std::isfinite(*number)) return reason("'" + word + "' is not a number");
         numbers.push_back(*number);
     }
-    if (numbers.size() != 3) return reason("wants three numbers, \"x y z\", not '" + text + "'");
+    if (numbers.size() != 3) return reason("needs three numbers, \"x y z\", not '" + text + "'");
     return Vec3{numbers[0], numbers[1], numbers[2]};
 }
 
@@ -197,7 +197,7 @@ Result<Shot> parse_shot(const std::string& text)
     const bool named = sign != std::string::npos;
     if (equal == std::string::npos || equal + 1 == text.size() || !time || !link::check_not_negative(when.substr(0, sign)).empty() ||
         (named && sign + 1 == when.size()))
-        return reason("--shot wants T[@CAMERA]=FILE, not '" + text + "'");
+        return reason("--shot needs T[@CAMERA]=FILE, not '" + text + "'");
     return Shot{time, named ? when.substr(sign + 1) : "", text.substr(equal + 1)};
 }
 
@@ -206,7 +206,7 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerO
     auto environment = link::options_from_environment();
     if (!environment) return ParseEnd{2, "plab-view: " + environment.error().reason + "\n"};
     options.link = environment.take();
-    CLI::App app{"plab-view: pictures of a running scene", "plab-view"};
+    CLI::App app{"plab-view: makes pictures of a running scene or a recording", "plab-view"};
     app.footer(kExamples);
     app.set_version_flag("--version", std::string("plab-view ") + PLAB_VERSION);
     Texts texts;
@@ -226,7 +226,7 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerO
     if (texts.timeout) options.timeout = link::Seconds(*texts.timeout);
     options.captions = !texts.no_captions, options.ground = !texts.no_ground;
     if (!options.link.server.empty() && !wire::is_server_name(options.link.server))
-        return ParseEnd{2, "plab-view: '" + options.link.server + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'\n"};
+        return ParseEnd{2, "plab-view: '" + options.link.server + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'\n"};
     for (const auto& taken : {take_vectors(texts, options.view), take_task(texts, options)})
         if (!taken) return ParseEnd{2, "plab-view: " + taken.error().reason + "\n"};
     return {};

@@ -12,7 +12,7 @@
 namespace plab::view
 {
 
-/// One picture: of the first state at or after `at`, of the present one without it.
+/// One picture: of the first state at or after `at`, or of the current one without it.
 struct Shot
 {
     std::optional<double> at;  ///< s, simulated
@@ -24,7 +24,7 @@ struct ViewChoice
 {
     std::string camera = {};
     std::optional<Vec3> from = {}, look_at = {}, up = {};  ///< W, m
-    std::optional<double> orbit = {};                      ///< m; 0: as far as the scene needs
+    std::optional<double> orbit = {};                      ///< m; 0: as large as the scene needs
     double orbit_period = 10;                              ///< s, simulated
     std::string track = {};                                ///< component id
 };
@@ -43,28 +43,28 @@ struct ViewerOptions
     std::string target;              ///< Task::Frames: folder; Task::Film: file
     std::optional<double> at;        ///< s: time of the first frame
     double frames_per_second = 30;   ///< of the film
-    double rate = 1;                 ///< simulated seconds in a second of the film
+    double rate = 1;                 ///< simulated seconds per second of film
     std::string recording;           ///< file to draw from; empty: a server
     std::optional<double> duration;  ///< s
     std::optional<double> until;     ///< s
     ViewChoice view;
     std::uint32_t width = 1280, height = 720;
     bool captions = true, ground = true;
-    bool progress = false;  ///< lines of progress also where standard error is no terminal
-    link::ViewerOptions link;
+    bool progress = false;  ///< lines of progress even if standard error is not a terminal
+    link::SessionOptions link;
     link::Seconds timeout{10};
 
     double frames_per_simulated_second() const { return frames_per_second / rate; }
 };
 
-/// Why the program ends before it begins: --help, --version (code 0, for standard output) or wrong use (code 2).
+/// Why the program ends before it starts: --help, --version (code 0, for standard output) or wrong usage (code 2).
 struct ParseEnd
 {
     int code = 0;
     std::string message;
 };
 
-/// Nothing: `options` is filled.
+/// Empty: `options` is filled.
 std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerOptions& options);
 
 /// "T[@CAMERA]=FILE"

@@ -1,4 +1,4 @@
-/// From a moment to a picture: scene, view, renderer.
+/// Converts a moment to a picture: scene, view, renderer.
 #pragma once
 
 #include "viewer/moment_buffer.h"

@@ -49,7 +49,7 @@ void say(program::Progress& progress, const std::string& message)
     std::fprintf(stderr, "plab-view: %s\n", message.c_str());
 }
 
-/// One picture; tells what it is of, because a state at or after a time may be later than that.
+/// One picture; prints its time, because the first state at or after a time may be later than that.
 Result<void> take_shot(const Shot& shot, const Moment& moment, Painter& painter)
 {
     auto picture = painter.paint(moment, shot.camera);
@@ -71,7 +71,7 @@ Outcome take_shots(const ViewerOptions& options, Feed& feed, Painter& painter)
         while (!moment || (shot.at && moment->state.time < *shot.at - kSameTime))
         {
             moment = feed.next();
-            if (!moment) return {feed.end().exit, "'" + shot.file + "' cannot be had: " + feed.end().message};
+            if (!moment) return {feed.end().exit, "'" + shot.file + "' cannot be made: " + feed.end().message};
             show(progress, "pictures", taken, options.shots.size(), moment->state.time);
         }
         if (auto done = take_shot(shot, *moment, painter); !done) return failed(done.error());
@@ -80,12 +80,12 @@ Outcome take_shots(const ViewerOptions& options, Feed& feed, Painter& painter)
     return {};
 }
 
-/// What the pictures do not show by themselves.
+/// Facts that the pictures do not show by themselves.
 void tell_doubts(const ViewerOptions& options, const Sequence& sequence, std::uint64_t given_up, program::Progress& progress)
 {
-    if (sequence.runs() > 1) say(progress, "the scene was loaded or reset meanwhile: times start anew in the frames");
+    if (sequence.runs() > 1) say(progress, "the scene was loaded or reset meanwhile: times restart in the frames");
     if (given_up > 0)
-        say(progress, std::to_string(given_up) + " states were left out: drawing is slower than the simulation (try a lower --rate there)");
+        say(progress, std::to_string(given_up) + " states were skipped: drawing is slower than the simulation (try a lower --rate there)");
     if (sequence.widest_gap() > 1.5 / options.frames_per_simulated_second())
         say(progress, "some frames are drawn between states that are up to " + in_seconds(sequence.widest_gap()) + " apart");
 }
@@ -94,19 +94,19 @@ void tell_doubts(const ViewerOptions& options, const Sequence& sequence, std::ui
 Outcome judge(const Sequence& sequence, const Feed& feed)
 {
     const std::string lost = sequence.missing() > 0 ? "the first " + std::to_string(sequence.missing()) +
-                                                          " frames cannot be had: they are of before the first state that came"
+                                                          " frames cannot be made: they are of before the first state that came"
                                                     : "";
     if (sequence.done()) return lost.empty() ? Outcome{} : Outcome{Exit::Failed, lost};
-    // Without an end, the server's going is the end.
+    // Without an end time, the end of the server is the end.
     if (feed.server_has_gone() && !sequence.total() && sequence.drawn() > 0) return {};
     std::string why = feed.end().message;
     if (const auto total = sequence.total())
-        why += "; " + std::to_string(*total - sequence.drawn()) + " of " + std::to_string(*total) + " frames cannot be had" +
+        why += "; " + std::to_string(*total - sequence.drawn()) + " of " + std::to_string(*total) + " frames cannot be made" +
                (sequence.drawn() > 0 ? ", the last state was of t = " + in_seconds(sequence.time()) : "");
     return {feed.end().exit, why};
 }
 
-/// What was drawn until then is kept, and marked as what it is.
+/// What was drawn until then is kept, and reported as incomplete.
 Outcome interrupted(const ViewerOptions& options, const Sequence& sequence)
 {
     std::string message = "interrupted";
@@ -166,7 +166,7 @@ std::optional<double> first_time(const ViewerOptions& options)
 
 Outcome run(const ViewerOptions& options, const link::Stop& stop)
 {
-    // What can fail without a server fails before anybody waits for one.
+    // Everything that can fail without a server is done before waiting for one.
     if (options.task == Task::Film)
         if (auto ffmpeg = find_ffmpeg(); !ffmpeg) return failed(ffmpeg.error());
     auto painter = Painter::make(options);

@@ -1,4 +1,4 @@
-/// What plab-view does once its command line is understood.
+/// The work of plab-view after its command line is parsed.
 #pragma once
 
 #include "viewer/options.h"
@@ -7,7 +7,7 @@
 namespace plab::view
 {
 
-/// `stop`: nobody wants the rest.
+/// `stop`: the rest is not wanted.
 Outcome run(const ViewerOptions& options, const link::Stop& stop);
 
 }  // namespace plab::view

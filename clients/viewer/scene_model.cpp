@@ -26,7 +26,7 @@ std::optional<render::Form> form_of(const std::string& name)
     if (name == "mesh" || name == "compound") return render::Form::Mesh;
     if (name == "cylinder") return render::Form::Cylinder;
     if (name == "capsule") return render::Form::Capsule;
-    return {};  // "none", and what a newer server may have
+    return {};  // "none", and forms of newer servers
 }
 
 /// The row with this handle; null if there is none.
@@ -139,7 +139,7 @@ void SceneModel::add_parts(const link::Object& object, const Vec3& color, std::v
     for (const std::string& id : object.shapes)
     {
         const auto shape = scene_->shapes.find(id);
-        if (shape == scene_->shapes.end()) continue;  // it comes with a later snapshot
+        if (shape == scene_->shapes.end()) continue;  // it arrives with a later snapshot
         const std::optional<render::Form> form = form_of(shape->second.form);
         if (!form) continue;
         Part part{*form, {shape->second.position, shape->second.orientation}, shape->second.size, color, 0};
@@ -159,7 +159,7 @@ void SceneModel::add_prop(const link::Object& object)
     {
         const Axle axle = axle_of_inertia(object.mass);
         prop.parts.push_back({render::Form::Cylinder, {}, {axle.radius, axle.radius, axle.half_length}, color, 0});
-        // A cylinder that turns looks like one that stands: a mark across both faces and the rim shows it.
+        // A rotating cylinder looks like a resting one: a mark across both faces and the rim shows its rotation.
         const Vec3 mark{0.22 * axle.radius, 0.08 * axle.radius, 1.12 * axle.half_length};
         prop.parts.push_back({render::Form::Box, {{0.82 * axle.radius, 0, 0}, {}}, mark, kMarkColor, 0});
     }
@@ -169,7 +169,7 @@ void SceneModel::add_prop(const link::Object& object)
 std::optional<Pose> SceneModel::pose_of(const Prop& prop, const State& state) const
 {
     if (prop.is_static) return prop.X_WB;
-    // Handles are never used again in a run, but they are in the next one.
+    // Handles are never reused within a run, but they are in the next one.
     if (prop.run != state.run) return {};
     if (prop.is_shaft)
     {

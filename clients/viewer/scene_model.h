@@ -1,4 +1,4 @@
-/// What a server says of its scene, and a state, as geometry to draw.
+/// Converts a server's scene and a state to geometry to draw.
 #pragma once
 
 #include <memory>
@@ -24,15 +24,15 @@ public:
 
     explicit SceneModel(const Look& look) : look_(look) {}
 
-    /// From now on the scene is this. Cheap if it is the one that is in use.
+    /// Use this scene from now on. Cheap if it is already in use.
     void use(std::shared_ptr<const link::CatalogueContents> scene);
 
-    /// Everything that can be seen at this state; valid until the next call. The view is for the caller to choose.
+    /// Everything visible in this state; valid until the next call. The caller chooses the view.
     render::Drawing& draw(const State& state);
 
     const std::vector<link::Camera>& cameras() const;
     bool has_object(const std::string& id) const;
-    /// Origin of an object (W, m); none if it has no place in this state.
+    /// Origin of an object (W, m); empty if it has no place in this state.
     std::optional<Vec3> position_of(const std::string& id, const State& state) const;
 
 private:
@@ -67,14 +67,14 @@ private:
     render::Drawing drawing_;
 };
 
-/// Poses as the catalogue has them, for a server that is paused and sends no states.
+/// Poses from the catalogue, for a server that is paused and sends no states.
 State state_of_catalogue(const link::CatalogueContents& scene, const link::ServerInfo& server);
 
-/// Colour of an object that names none: one of a few that go together, always the same for one id.
+/// Colour of an object that specifies none: one of a small palette, always the same for one id.
 Vec3 color_of_id(const std::string& id);
 
-/// Radius and half length of the cylinder that stands for a shaft without shapes: a solid disk of its inertia
-/// (kg m^2), within bounds that can be seen.
+/// Radius and half length of the cylinder that represents a shaft without shapes: a solid disk of its inertia (kg m^2), within
+/// visible bounds.
 struct Axle
 {
     double radius = 0, half_length = 0;  ///< m

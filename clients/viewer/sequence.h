@@ -1,4 +1,4 @@
-/// Frames at equal simulated times, out of states that come when they come.
+/// Frames at equal simulated times, from states at arbitrary times.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@
 namespace plab::view
 {
 
-/// Frame k is of origin + k / per_second. Without `duration` and `until` it has no end.
+/// Frame k has the time origin + k / per_second. Without `duration` and `until` there is no end.
 struct SequencePlan
 {
     double per_second = 30;
@@ -24,21 +24,21 @@ public:
 
     explicit Sequence(const SequencePlan& plan) : plan_(plan) {}
 
-    /// Draws all frames that are due now that this moment has come, each from the two moments around its time. A new
-    /// run starts at its own first time, with the next number.
+    /// Draws all frames that are due with this moment, each from the two moments around its time. A new run starts at its own
+    /// first time, with the next number.
     Result<void> advance(Moment&& moment, const Draw& draw);
 
     bool done() const { return total_ && next_ >= *total_; }
-    /// Frames that there will be; none: no end.
+    /// Number of frames that there will be; empty: no end.
     std::optional<std::uint64_t> total() const { return total_; }
     std::uint64_t drawn() const { return next_ - missing_; }
     /// Time of the newest state, s.
     double time() const { return before_ ? before_->state.time : 0; }
     std::uint64_t runs() const { return runs_; }
 
-    /// Frames before the first state: nobody can draw them.
+    /// Frames before the first state, which cannot be drawn.
     std::uint64_t missing() const { return missing_; }
-    /// The longest time between two states that a frame was drawn from, s.
+    /// The longest interval between two states that a frame was interpolated from, s.
     double widest_gap() const { return widest_gap_; }
 
 private:

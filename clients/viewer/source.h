@@ -1,4 +1,4 @@
-/// Where moments come from, one after the other: a server, or a recording.
+/// The source of moments: a server, or a recording.
 #pragma once
 
 #include <memory>
@@ -18,15 +18,15 @@ public:
     Source& operator=(const Source&) = delete;
     virtual ~Source() = default;
 
-    /// The next moment; none when none came until `timeout`, or when there are no more.
+    /// The next moment; empty if none arrived until `timeout`, or if there are no more.
     virtual std::optional<Moment> pop(link::Seconds timeout) = 0;
     /// Why there are no more, once all moments are taken.
     virtual std::optional<std::string> closed() const = 0;
-    /// Moments that were left out because nobody took them.
+    /// Moments that were dropped because they were not taken in time.
     virtual std::uint64_t given_up() const = 0;
-    /// The newest that is known of the scene and the server.
+    /// The latest known scene and server.
     virtual std::shared_ptr<const link::CatalogueContents> scene() const = 0;
-    /// The server's own words on itself.
+    /// The server's own status.
     virtual std::optional<link::ServerInfo> server() const = 0;
 };
 

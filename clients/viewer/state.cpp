@@ -16,7 +16,7 @@ void sort_by_handle(std::vector<T>& rows)
     if (!std::is_sorted(rows.begin(), rows.end(), before)) std::sort(rows.begin(), rows.end(), before);
 }
 
-/// Rows of a, each blended with the row of b that has its handle, where there is one.
+/// Rows of a, each blended with the row of b that has the same handle, if there is one.
 template <class T, class Blend>
 std::vector<T> blend_rows(const std::vector<T>& a, const std::vector<T>& b, Blend&& blend)
 {

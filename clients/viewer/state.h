@@ -1,4 +1,4 @@
-/// Where everything is at one time: what a frame of plab/states says, without velocities, ordered by handle.
+/// The poses of all objects at one time: a frame of plab/states without velocities, ordered by handle.
 #pragma once
 
 #include <cstdint>
@@ -36,12 +36,12 @@ struct State
 
 State state_of(const plab_v2_Frame& frame);
 
-/// From a (at 0) to b (at 1) by the shorter way, at a constant rate of turning.
+/// From a (at 0) to b (at 1) along the shorter arc, at a constant rate of rotation.
 Quat slerp(const Quat& a, const Quat& b, double share);
 
-/// The state at `time` between those of two frames of one run, a before b: positions and angles linearly, orientations
-/// by slerp. What is only in a stays where it is until b; what is only in b appears with b. Step and revision are those
-/// of the last frame that is not later than `time`.
+/// The state at `time` between those of two frames of one run, a before b: positions and angles linearly, orientations by
+/// slerp. Objects that are only in a keep their pose until b; objects that are only in b appear with b. Step and revision are
+/// those of the last frame that is not later than `time`.
 State interpolate(const State& a, const State& b, double time);
 
 }  // namespace plab::view

@@ -38,7 +38,7 @@ Result<render::View> Viewpoint::start(const SceneModel& model, const std::string
 
 void Viewpoint::circle(render::View& view, double time) const
 {
-    // As far away and as high as the view of everything; a radius that is given changes the distance alone.
+    // As far away and as high as the view of everything; a given radius changes only the distance.
     const Vec3 arm = of_everything_->position - of_everything_->look_at;
     const double distance = length(arm);
     const double elevation = distance > 0 ? std::asin(std::clamp(arm.z / distance, -1.0, 1.0)) : 0.35;
@@ -56,7 +56,7 @@ Result<render::View> Viewpoint::find(const SceneModel& model, const std::vector<
     if (!choice_.track.empty())
     {
         if (!model.has_object(choice_.track) && !tracked_) return reason("the scene has no object '" + choice_.track + "' to track");
-        // One that has been removed is looked for where it was last.
+        // If it has been removed, its last position is used.
         if (const auto place = model.position_of(choice_.track, state)) tracked_ = place;
     }
     auto view = start(model, camera);

@@ -56,7 +56,7 @@ Result<void> Decoder::decode(ByteView bytes, void* sample, const dds_topic_descr
     auto* data = reinterpret_cast<char*>(aligned_.data());
     // Checks every length and value, so that the next call need not.
     if (dds_stream_normalize_data(data, &end, size, is_big_endian, CDR_ENC_VERSION_1, type.m_ops) == nullptr)
-        return refused(type, "cut, or no sample of this type");
+        return refused(type, "truncated, or not a sample of this type");
     if (end != size) return refused(type, std::to_string(size - end) + " bytes more than a sample of this type");
     dds_istream_t in;
     dds_istream_init(&in, size, aligned_.data(), CDR_ENC_VERSION_1);

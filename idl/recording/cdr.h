@@ -1,5 +1,5 @@
-/// Samples of the wire's types as bytes and back: XCDR1 with its 4 bytes of encapsulation, as DDS sends them and as
-/// messages of a recording hold them (message encoding "cdr").
+/// Samples of the wire's types as bytes and back: XCDR1 with its 4 bytes of encapsulation, as DDS sends them and as recordings
+/// store them (message encoding "cdr").
 #pragma once
 
 #include <dds/dds.h>
@@ -13,7 +13,7 @@
 namespace plab::recording
 {
 
-/// A C type of plab.h with what it points to. Starts as zeros and empty texts.
+/// A C type of plab.h with the memory that it points to. Starts with zeros and empty texts.
 template <class T>
 class Sample
 {
@@ -32,7 +32,7 @@ private:
     T value_;
 };
 
-/// Keeps its buffer: a warm one allocates nothing. Little-endian.
+/// Reuses its buffer: after the first calls it allocates nothing. Little-endian.
 class Encoder
 {
 public:
@@ -50,22 +50,22 @@ public:
     Result<ByteView> encode(const void* sample, const dds_topic_descriptor_t& type);
 
 private:
-    unsigned char* buffer_ = nullptr;  // of Cyclone's allocator, which grows it
+    unsigned char* buffer_ = nullptr;  // allocated by Cyclone's allocator, which grows it
     std::uint32_t size_ = 0;
 };
 
-/// Keeps its buffer.
+/// Reuses its buffer.
 class Decoder
 {
 public:
-    /// Fills the sample, whose sequences use the memory again that they have. Bytes are not trusted: what is cut, too
-    /// long, or no sample of this type is an error, and the sample stays as it was. Both byte orders are read.
+    /// Fills the sample; its sequences reuse their memory. The bytes are not trusted: data that is truncated, too long, or not
+    /// a sample of this type is an error, and the sample stays unchanged. Both byte orders are accepted.
     template <class T>
     Result<void> decode(ByteView bytes, Sample<T>& sample)
     {
         return decode(bytes, &*sample, *wire::topic_of<T>().type);
     }
-    /// `sample`: as a zeroed sample of this type, or one that was decoded before.
+    /// `sample`: a zeroed sample of this type, or one that was decoded before.
     Result<void> decode(ByteView bytes, void* sample, const dds_topic_descriptor_t& type);
 
 private:

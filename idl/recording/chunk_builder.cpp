@@ -52,7 +52,7 @@ Result<ChunkIndex> ChunkBuilder::write(Bytes& out, Compressor& compressor)
 {
     if (compressor.compression() == Compression::None) return write_stored(out, records_, Compression::None);
     if (auto done = compressor.compress(records_, compressed_); !done) return done.errors();
-    // What compression makes no smaller is kept as it is.
+    // If compression does not reduce the size, the data are stored uncompressed.
     if (compressed_.size() >= records_.size()) return write_stored(out, records_, Compression::None);
     return write_stored(out, compressed_, compressor.compression());
 }

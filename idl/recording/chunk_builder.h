@@ -11,7 +11,7 @@
 namespace plab::recording
 {
 
-/// What a chunk holds: messages by channel, in the order of their ids, and their times.
+/// The contents of a chunk: messages by channel, in order of channel ids, and their times.
 struct ChunkContents
 {
     std::vector<std::pair<ChannelId, std::uint64_t>> messages;
@@ -36,10 +36,10 @@ public:
     /// Sorts the channels; call it when the chunk is complete.
     const ChunkContents& contents();
 
-    /// Becomes what another chunk is.
+    /// Copies the contents of another chunk.
     void copy(const ChunkData& chunk);
 
-    /// Appends the chunk and its message indexes. The index's offsets count from where the chunk begins in `out`.
+    /// Appends the chunk and its message indexes. The index's offsets count from the start of the chunk in `out`.
     Result<ChunkIndex> write(Bytes& out, Compressor& compressor);
     /// As above; `stored` are the records as they were compressed before.
     ChunkIndex write_stored(Bytes& out, ByteView stored, Compression compression);

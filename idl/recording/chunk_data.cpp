@@ -10,7 +10,7 @@ namespace plab::recording
 namespace
 {
 
-/// An error of the chunk at `offset`.
+/// An error that concerns the chunk at `offset`.
 Error of_chunk(std::uint64_t offset, const std::string& why) { return damage(offset, "Chunk: " + why); }
 
 }  // namespace
@@ -63,18 +63,18 @@ Result<void> ChunkData::load(const Source& source, std::uint64_t offset, const L
 
 Result<void> ChunkData::load_compressed(const Source& source, std::uint64_t offset, const Limits& limits)
 {
-    Bytes head(kRecordHead + kLongestChunkHead);
-    auto got = source.read(offset, head);
+    Bytes beginning(kRecordHead + kLongestChunkHead);
+    auto got = source.read(offset, beginning);
     if (!got) return got.errors();
-    head.resize(*got);
-    if (head.size() < kRecordHead) return reason("the file ends here");
-    const RecordHead head = parse_head(head);
-    if (head.opcode != Opcode::Chunk) return reason("a " + name_of(head.opcode) + " record stands here");
+    beginning.resize(*got);
+    if (beginning.size() < kRecordHead) return reason("the file ends here");
+    const RecordHead head = parse_head(beginning);
+    if (head.opcode != Opcode::Chunk) return reason("a " + name_of(head.opcode) + " record is here");
     auto size = source.size();
     if (!size) return size.errors();
     if (head.length > *size - offset - kRecordHead) return reason("the file ends within it");
 
-    const ByteView body = ByteView(head).subspan(kRecordHead);
+    const ByteView body = ByteView(beginning).subspan(kRecordHead);
     const auto header = parse_chunk_header(body.first(std::min<std::uint64_t>(body.size(), head.length)), head.length);
     if (!header) return reason("its header does not fit its length");
     if (header->uncompressed_size > limits.chunk_bytes || header->compressed_size > limits.chunk_bytes)
@@ -95,7 +95,7 @@ Result<void> ChunkData::take_apart()
         const std::uint64_t at = records_.size() - in.rest().size();
         const RecordHead head = parse_head(in.bytes(kRecordHead));
         const ByteView body = in.bytes(head.length);
-        if (in.failed()) return reason("record " + std::to_string(at) + " reaches beyond its end");
+        if (in.failed()) return reason("record " + std::to_string(at) + " extends beyond its end");
         if (auto done = take_record(head.opcode, at, body); !done) return done;
     }
     return {};
@@ -123,8 +123,8 @@ Result<void> ChunkData::take_record(Opcode opcode, std::uint64_t at, ByteView bo
         if (!declarations_.add(*channel)) return bad("contradicts another one of its id");
     }
     else if (opcode <= Opcode::DataEnd)
-        return bad("may not stand in a chunk");
-    return {};  // a later version's record, or somebody's own
+        return bad("is not allowed in a chunk");
+    return {};  // a record of a later version, or a private one
 }
 
 Message ChunkData::message(const Entry& entry) const
@@ -138,7 +138,7 @@ Result<void> ChunkData::check_times(std::uint64_t offset, std::uint64_t start_ti
     const auto [first, last] = std::minmax_element(messages_.begin(), messages_.end(), earlier);
     const bool is_empty = messages_.empty();
     if (start_time == (is_empty ? 0 : first->log_time) && end_time == (is_empty ? 0 : last->log_time)) return {};
-    return of_chunk(offset, "its header, or the index, tells other times than its messages");
+    return of_chunk(offset, "its header, or the index, gives other times than its messages");
 }
 
 }  // namespace plab::recording

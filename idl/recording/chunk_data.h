@@ -1,4 +1,4 @@
-/// A chunk out of a file: decompressed, checked, taken apart.
+/// A chunk of a file: decompressed, verified, and split into records.
 #pragma once
 
 #include <map>
@@ -12,24 +12,24 @@
 namespace plab::recording
 {
 
-/// What a reader takes from a file at the most, whatever the file says.
+/// Limits for what a reader accepts, whatever the file says.
 struct Limits
 {
-    std::uint64_t chunk_bytes = 512u << 20;  ///< of one chunk, decompressed; all open chunks together: twice that
+    std::uint64_t chunk_bytes = 512u << 20;  ///< of one chunk, decompressed; all open chunks together may have twice that
     std::uint64_t record_bytes = 64u << 20;  ///< of one schema, channel or metadata record
     std::uint64_t attachment_bytes = 1u << 30;
 };
 
-/// Schemas and channels by id. Two of one id must be alike.
+/// Schemas and channels by id. Two with the same id must be equal.
 struct Declarations
 {
     std::map<std::uint16_t, Schema> schemas;
     std::map<ChannelId, Channel> channels;
 
-    /// False: there is another one of this id already, which stays.
+    /// False: there is already a different one with this id, which is kept.
     bool add(const Schema& schema);
     bool add(const Channel& channel);
-    /// No id stands for one thing here and for another there.
+    /// No id has different meanings here and there.
     bool agrees_with(const Declarations& other) const;
 };
 
@@ -44,12 +44,12 @@ public:
         ChannelId channel = 0;
     };
 
-    /// Reads the chunk at `offset`. An error: it is not all there, its CRC is wrong, its parts do not fit together; it
-    /// holds nothing then. Errors say at which byte of the file.
+    /// Reads the chunk at `offset`. An error: it is incomplete, its CRC is wrong, or its parts are inconsistent; it then holds
+    /// nothing. Errors name the byte of the file.
     Result<void> load(const Source& source, std::uint64_t offset, const Limits& limits);
 
     const ChunkHeader& header() const { return header_; }
-    /// Of the whole record, with its head.
+    /// Of the whole record, including its head.
     std::uint64_t length() const { return length_; }
     bool has_crc() const { return header_.uncompressed_crc != 0; }
     ByteView records() const { return records_; }
@@ -58,11 +58,11 @@ public:
     /// In file order.
     const std::vector<Entry>& messages() const { return messages_; }
     const Declarations& declarations() const { return declarations_; }
-    /// The message of an entry; its data lives as long as this is not loaded again.
+    /// The message of an entry; its data are valid until this object is loaded again.
     Message message(const Entry& entry) const;
     /// Bytes of memory that its records take.
     std::size_t size() const { return records_.size(); }
-    /// Whether what is said of its times is right. What the header says of them stands outside of what its CRC covers.
+    /// Whether the times in the header are correct. The header is not covered by the CRC.
     Result<void> check_times(std::uint64_t offset, std::uint64_t start_time, std::uint64_t end_time) const;
 
 private:

@@ -21,7 +21,7 @@ LZ4F_preferences_t lz4_preferences(std::size_t size)
 
 Error failed(std::string_view what, const char* why) { return reason(std::string(what) + ": " + why); }
 
-/// Bytes that `in` can hold at the most.
+/// Largest number of bytes to which `in` can decompress.
 std::uint64_t most_decompressed(Compression compression, ByteView in)
 {
     constexpr std::uint64_t kMostOfLz4 = 256, kMostOfZstd = 65536;  // per byte: runs of one value in the largest blocks
@@ -115,7 +115,7 @@ Result<void> Compressor::compress_lz4(ByteView in, Bytes& out)
 
 Result<void> Decompressor::decompress(Compression compression, ByteView in, std::uint64_t size, Bytes& out)
 {
-    // A size that cannot be true is refused before memory is taken for it.
+    // An impossible size is refused before memory is allocated for it.
     const std::uint64_t bound = most_decompressed(compression, in);
     if (size > bound) return reason(std::to_string(in.size()) + " bytes cannot hold " + std::to_string(size));
     out.resize(size);

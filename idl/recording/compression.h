@@ -1,4 +1,4 @@
-/// What chunks are compressed with. Contexts are kept: a warm compressor allocates nothing.
+/// Compression of chunks. Contexts are reused: after the first calls a compressor allocates nothing.
 #pragma once
 
 #include <memory>
@@ -23,19 +23,19 @@ enum class Compression : std::uint8_t
     Zstd,
 };
 
-/// As MCAP writes it: "", "lz4", "zstd".
+/// The name in MCAP: "", "lz4", "zstd".
 std::string_view name_of(Compression compression);
-/// Nothing for any other name.
+/// Empty for any other name.
 std::optional<Compression> compression_of(std::string_view name);
 
 class Compressor
 {
 public:
-    /// `level`: of zstd, 1 to 19; higher is smaller and slower. LZ4 has one.
+    /// `level`: of zstd, 1 to 19; higher is smaller and slower. LZ4 has only one.
     Compressor(Compression compression, int level);
 
     Compression compression() const { return compression_; }
-    /// Replaces what is in `out`. Fails only for want of memory.
+    /// Replaces the contents of `out`. Fails only for lack of memory.
     Result<void> compress(ByteView in, Bytes& out);
 
 private:
@@ -59,7 +59,8 @@ private:
 class Decompressor
 {
 public:
-    /// Replaces what is in `out`, which is `size` bytes then; anything else is an error. The caller has bounded `size`.
+    /// Replaces the contents of `out`, which must then have `size` bytes; anything else is an error. The caller has limited
+    /// `size`.
     Result<void> decompress(Compression compression, ByteView in, std::uint64_t size, Bytes& out);
 
 private:

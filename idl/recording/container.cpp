@@ -75,7 +75,7 @@ Result<void> Container::repair()
 Result<void> Container::finish()
 {
     auto done = is_damaged_ ? Result<void>(in_doubt()) : write_end();
-    // Half a summary would be taken for damage: without any the file is one that was not closed.
+    // A partial summary would look like damage; without any, the file merely counts as not closed.
     Errors errors = done.errors();
     const auto collect = [&](const Result<void>& result) { errors.insert(errors.end(), result.errors().begin(), result.errors().end()); };
     if (!errors.empty()) collect(sink_->truncate(size_));

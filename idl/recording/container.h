@@ -1,4 +1,4 @@
-/// A file record by record: appends to a sink, and remembers where each thing stands. Writers and copies stand on this.
+/// Writes a file record by record: appends to a sink, and keeps the position of each record. Used by writers and by copies.
 #pragma once
 
 #include <memory>
@@ -12,14 +12,14 @@
 namespace plab::recording
 {
 
-/// After a failed append the end of the file is in doubt: everything is refused until repair() has cut it off.
+/// After a failed append, the end of the file is undefined: everything is refused until repair() has truncated it.
 class Container
 {
 public:
     /// Writes magic and header.
     static Result<Container> begin(std::unique_ptr<Sink> sink, const Header& header, std::size_t most_index_memory);
 
-    /// For the summary. What messages refer to must also stand in a chunk, before them.
+    /// For the summary. Schemas and channels that messages refer to must also be in a chunk, before these messages.
     void declare(const Schema& schema) { summary_.add(schema); }
     void declare(const Channel& channel) { summary_.add(channel); }
 
@@ -31,16 +31,16 @@ public:
     /// Until finish(), and not after a move.
     bool is_open() const { return sink_ != nullptr; }
     bool is_damaged() const { return is_damaged_; }
-    /// Cuts off what a failed append left.
+    /// Truncates what a failed append left.
     Result<void> repair();
-    /// Brings what was appended to the disk.
+    /// Flushes the appended data to the disk.
     Result<void> sync() { return sink_->sync(); }
-    /// End of data, summary, footer; closes the sink. If that fails, what was put before stays readable.
+    /// Writes the end of data, summary and footer; closes the sink. If that fails, everything written before stays readable.
     Result<void> finish();
 
-    /// Bytes that are in the file for certain.
+    /// Bytes that are certainly in the file.
     std::uint64_t size() const { return size_; }
-    /// Of what is in the file for certain.
+    /// Statistics of the data that are certainly in the file.
     Statistics statistics() const { return summary_.statistics(); }
 
 private:

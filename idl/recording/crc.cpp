@@ -9,7 +9,7 @@ std::uint32_t crc_of(ByteView bytes) { return crc_onwards(0, bytes); }
 
 std::uint32_t crc_onwards(std::uint32_t crc, ByteView bytes)
 {
-    if (bytes.empty()) return crc;  // zlib takes a null pointer for the wish to start again
+    if (bytes.empty()) return crc;  // zlib interprets a null pointer as a request to start again
     return static_cast<std::uint32_t>(crc32_z(crc, bytes.data(), bytes.size()));
 }
 

@@ -40,12 +40,12 @@ Result<void> Cursor::open(const ChunkPlace& place)
     if (auto done = chunk->data.load(*reader_->source_, place.offset, reader_->limits_); !done) return reader_->with_name(done.error());
     if (auto done = chunk->data.check_times(place.offset, place.start_time, place.end_time); !done) return reader_->with_name(done.error());
     if (!chunk->data.declarations().agrees_with(reader_->index_.declarations))
-        return reader_->with_name(damage(place.offset, "a chunk that declares an id otherwise than the rest of the file"));
+        return reader_->with_name(damage(place.offset, "a chunk whose declaration of an id differs from the rest of the file"));
     for (const auto& entry : chunk->data.messages())
     {
         if (!reader_->channels().contains(entry.channel))
             return reader_->with_name(
-                damage(place.offset, "a message of channel " + std::to_string(entry.channel) + ", which is declared nowhere"));
+                damage(place.offset, "a message of channel " + std::to_string(entry.channel) + ", which is not declared"));
         if (is_wanted(entry)) chunk->entries.push_back(entry);
     }
     const auto earlier = [](const ChunkData::Entry& a, const ChunkData::Entry& b) { return a.log_time < b.log_time; };
@@ -84,7 +84,7 @@ Result<void> Cursor::open_due()
             if (place.start_time > first.entries[first.next].log_time) return {};
         }
         ++next_chunk_;
-        if (is_full()) return reader_->with_name(damage(place.offset, "too many chunks overlap in time: left out"));
+        if (is_full()) return reader_->with_name(damage(place.offset, "too many chunks overlap in time: skipped"));
         if (place.end_time < from_) continue;
         if (auto done = open(place); !done) return done;
     }
@@ -93,7 +93,7 @@ Result<void> Cursor::open_due()
 
 Result<std::optional<Found>> Cursor::next()
 {
-    // What was handed out last may go now.
+    // The memory of the message that was returned last may be released now.
     if (last_ < open_.size() && open_[last_]->next == open_[last_]->entries.size())
     {
         spare_.push_back(std::move(open_[last_]));

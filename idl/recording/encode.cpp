@@ -11,7 +11,7 @@ namespace plab::recording
 namespace
 {
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied as they stand");
+static_assert(std::endian::native == std::endian::little, "numbers are copied byte for byte");
 
 template <class T>
 void put(Bytes& out, T v)

@@ -1,4 +1,4 @@
-/// Records to bytes: each function appends one whole record. Little-endian.
+/// Serializes records: each function appends one complete record. Little-endian.
 #pragma once
 
 #include <string_view>
@@ -19,7 +19,7 @@ void append(Bytes& out, const Schema& record);
 void append(Bytes& out, const Channel& record);
 void append(Bytes& out, const Message& record);
 void append(Bytes& out, const ChunkIndex& record);
-/// With the CRC of what it holds.
+/// With a CRC of its contents.
 void append(Bytes& out, const Attachment& record);
 void append(Bytes& out, const AttachmentIndex& record);
 void append(Bytes& out, const Statistics& record);

@@ -1,7 +1,6 @@
-/// The fields of each record, once: in the order of the format, for writing and for reading.
-///
-/// fields(visit, record) calls visit(field, ...). What has no constant layout (messages, chunks, attachments) is written out
-/// in encode.cpp and parse.cpp.
+/// The fields of each record, defined once, in the order of the format, for both writing and reading.
+/// fields(visit, record) calls visit(field, ...). Records without a constant layout (messages, chunks, attachments) are handled
+/// separately in encode.cpp and parse.cpp.
 #pragma once
 
 #include <type_traits>

@@ -1,4 +1,4 @@
-/// Errors of the system, about a file.
+/// System errors that concern a file.
 #pragma once
 
 #include <cerrno>
@@ -10,7 +10,7 @@
 namespace plab::recording
 {
 
-/// "run.mcap: cannot write: No space left on device", with what errno says.
+/// "run.mcap: cannot write: No space left on device", with the text of errno.
 inline Error file_error(const std::string& path, const char* what)
 {
     Error error = reason(std::string(what) + ": " + std::generic_category().message(errno));
@@ -18,7 +18,7 @@ inline Error file_error(const std::string& path, const char* what)
     return error;
 }
 
-/// A call that a signal interrupts is made again.
+/// Repeats a call that a signal interrupted.
 template <class Call>
 auto uninterrupted(Call&& call)
 {

@@ -26,7 +26,7 @@ public:
             auto bytes = window.exactly(at, kRecordHead);
             if (!bytes) return bytes.errors();
             const RecordHead head = parse_head(*bytes);
-            if (head.length > end - at - kRecordHead) return damage(at, name_of(head.opcode) + " record reaches beyond the summary");
+            if (head.length > end - at - kRecordHead) return damage(at, name_of(head.opcode) + " record extends beyond the summary");
             if (auto done = take(window, at, head); !done) return done.errors();
             at += kRecordHead + head.length;
         }
@@ -75,7 +75,7 @@ private:
             case Opcode::MetadataIndex:
                 return keep(parse_metadata_index(body), [&](MetadataIndex r) { index_.metadata.push_back(std::move(r)); });
             default:
-                return true;  // summary offsets are for who reads only a part; others are of later versions
+                return true;  // summary offsets serve readers that read only a part; other records are of later versions
         }
     }
 
@@ -151,14 +151,14 @@ Result<FileStart> read_start(const Source& source, const Limits& limits)
     auto got = source.read(0, start);
     if (!got) return got.errors();
     if (*got < start.size() || !std::equal(kMagic.begin(), kMagic.end(), start.begin()))
-        return reason(*got == 0 ? "is empty" : "is no MCAP file: it does not begin with its magic bytes");
+        return reason(*got == 0 ? "is empty" : "is not an MCAP file: it does not begin with the magic bytes");
     const RecordHead head = parse_head(ByteView(start).subspan(kMagic.size()));
-    if (head.opcode != Opcode::Header || head.length > limits.record_bytes) return damage(kMagic.size(), "a Header record must stand here");
+    if (head.opcode != Opcode::Header || head.length > limits.record_bytes) return damage(kMagic.size(), "a Header record is missing here");
     Bytes body(head.length);
     got = source.read(start.size(), body);
     if (!got) return got.errors();
     const auto header = parse_header(ByteView(body).first(*got));
-    if (!header || *got < body.size()) return damage(kMagic.size(), "the Header record is cut or damaged");
+    if (!header || *got < body.size()) return damage(kMagic.size(), "the Header record is truncated or damaged");
     return FileStart{*header, start.size() + body.size()};
 }
 

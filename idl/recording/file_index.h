@@ -1,4 +1,4 @@
-/// Where everything stands in a file: from its summary, or from a scan that reads lengths and skips the rest.
+/// The positions of everything in a file: from its summary, or from a scan that reads lengths and skips the rest.
 #pragma once
 
 #include <map>
@@ -17,11 +17,11 @@ namespace plab::recording
 /// Channels, ascending.
 using ChannelSet = std::vector<ChannelId>;
 
-/// Sets of channels, each kept once: a file has a million chunks, and few sets that occur in them.
+/// Sets of channels, each stored once: a file has a million chunks, but only few different sets.
 class ChannelSets
 {
 public:
-    /// Its number. An empty one stands for "nobody knows".
+    /// Its number. An empty set means "unknown".
     std::uint32_t number_of(const ChannelSet& channels);
     const ChannelSet& at(std::uint32_t number) const { return sets_[number]; }
 
@@ -51,16 +51,16 @@ struct FileIndex
     std::vector<AttachmentIndex> attachments;
     std::vector<MetadataIndex> metadata;
     Statistics statistics;
-    bool is_closed = false;       ///< ends as a file does that was closed
-    bool has_summary = false;     ///< this comes from its summary; otherwise from a scan
-    std::vector<Error> troubles;  ///< what is damaged, as far as it showed; a file that was cut has none
+    bool is_closed = false;       ///< has the ending of a closed file
+    bool has_summary = false;     ///< read from the file's summary; otherwise from a scan
+    std::vector<Error> troubles;  ///< damage that was noticed; a truncated file has none
 
     bool may_hold(const ChunkPlace& chunk, const std::set<ChannelId>& wanted) const;
-    /// Sorts the chunks; call it when they are complete.
+    /// Sorts the chunks; call it when all are added.
     void sort_chunks();
 };
 
-/// Magic and header, and where the next record begins.
+/// Checks magic and header, and returns the position of the next record.
 struct FileStart
 {
     Header header;
@@ -68,7 +68,7 @@ struct FileStart
 };
 Result<FileStart> read_start(const Source& source, const Limits& limits);
 
-/// The footer of a file that was closed. Nothing: it does not end like one.
+/// The footer of a closed file. Empty: the file does not end like one.
 Result<std::optional<Footer>> read_footer(const Source& source);
 /// CRC of the bytes from `begin` to before `end`.
 Result<std::uint32_t> crc_of_range(const Source& source, std::uint64_t begin, std::uint64_t end);

@@ -23,7 +23,7 @@ public:
         {
             auto head = head_at(at);
             if (!head) return head.errors();
-            if (head->length > *size - at - kRecordHead) break;  // cut
+            if (head->length > *size - at - kRecordHead) break;  // truncated
             if (auto done = take(at, *head); !done)
             {
                 index_.troubles.push_back(done.error());
@@ -47,7 +47,7 @@ private:
     }
 
     /// The first bytes of a body, at most `most`.
-    Result<ByteView> front(std::uint64_t at, const RecordHead& head, std::size_t most)
+    Result<ByteView> beginning(std::uint64_t at, const RecordHead& head, std::size_t most)
     {
         return window_.exactly(at + kRecordHead, std::min<std::uint64_t>(head.length, most));
     }
@@ -73,14 +73,14 @@ private:
             case Opcode::Message:
                 return damage(at, "a message outside of a chunk; only files with chunks are read");
             default:
-                if (head.opcode > Opcode::DataEnd) return {};  // a later version's, or somebody's own
-                return damage(at, "a " + name_of(head.opcode) + " record may not stand here");
+                if (head.opcode > Opcode::DataEnd) return {};  // a record of a later version, or a private one
+                return damage(at, "a " + name_of(head.opcode) + " record is not allowed here");
         }
     }
 
     Result<void> take_chunk(std::uint64_t at, const RecordHead& head)
     {
-        auto bytes = head(at, head, kLongestChunkHead);
+        auto bytes = beginning(at, head, kLongestChunkHead);
         if (!bytes) return bytes.errors();
         const auto header = parse_chunk_header(*bytes, head.length);
         if (!header) return damage(at, "the header of a Chunk record does not fit its length");
@@ -90,7 +90,7 @@ private:
 
     Result<void> take_message_index(std::uint64_t at, const RecordHead& head)
     {
-        auto bytes = head(at, head, 6);
+        auto bytes = beginning(at, head, 6);
         if (!bytes) return bytes.errors();
         const auto index = parse_message_index_head(*bytes, head.length);
         if (!index || !chunk_) return damage(at, "a MessageIndex record is damaged, or follows no chunk");
@@ -99,7 +99,7 @@ private:
         return {};
     }
 
-    /// A chunk is followed by its message indexes: now they are all there.
+    /// The message indexes follow their chunk: now they are complete.
     void end_chunk()
     {
         if (!chunk_) return;
@@ -148,7 +148,7 @@ private:
         return is_good ? Result<void>() : damage(at, name_of(head.opcode) + " record is damaged");
     }
 
-    /// Channels are declared where they are first used (or before, by others' writers): those chunks are opened.
+    /// Channels are declared where they are first used (or before, by other writers): those chunks are opened.
     void declare_unknown()
     {
         for (const std::uint64_t offset : without_index_) harvest(offset, true);
@@ -162,7 +162,7 @@ private:
         }
         for (const auto& [channel, offset] : first_seen_)
             if (!index_.declarations.channels.contains(channel))
-                index_.troubles.push_back(damage(offset, "messages of channel " + std::to_string(channel) + ", which is declared nowhere"));
+                index_.troubles.push_back(damage(offset, "messages of channel " + std::to_string(channel) + ", which is not declared"));
     }
 
     void harvest(std::uint64_t offset, bool count_messages)

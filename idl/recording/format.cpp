@@ -21,7 +21,7 @@ std::string why_not(const Pairs& about)
     int format = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), format);
     if (error != std::errc() || end != text.data() + text.size() || format < 1)
-        return text.empty() ? "does not say of which format it is; " + reads : "is of the unknown format '" + text + "'; " + reads;
+        return text.empty() ? "does not state its format; " + reads : "has the unknown format '" + text + "'; " + reads;
     if (format >= kOldestFormat && format <= kFormat) return {};
     return "is of format " + text + ", " + reads + ": " + (format > kFormat ? "a newer" : "an older") + " pLab" +
            (version.empty() ? "" : ", " + version + ",") + " wrote it, and one like that reads it";
@@ -37,7 +37,7 @@ Result<Reader> open_recording(const std::string& path, const Watch& watch)
     if (watch) source = std::make_unique<WatchedSource>(std::move(source), watch);
     auto reader = Reader::open(std::move(source));
     if (!reader) return reader;
-    // None, or damaged: what else is in the file may still be good.
+    // Missing or damaged: the rest of the file may still be intact.
     const auto about = reader->metadata(kAbout);
     if (!about) return reader;
     if (const std::string why = why_not(about->values); !why.empty()) return reason(reader->name() + ": " + why);

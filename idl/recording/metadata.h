@@ -1,5 +1,5 @@
-/// Metadata records with a seal. MCAP gives them no CRC of their own: in a file that was cut or bent nobody could tell
-/// whether they are as they were.
+/// Metadata records with a seal. MCAP gives them no CRC of their own, so without a seal damage in a truncated or corrupted file
+/// would go unnoticed.
 #pragma once
 
 #include "idl/recording/records.h"
@@ -7,7 +7,7 @@
 namespace plab::recording
 {
 
-/// The key under which the seal stands: CRC-32 of all else, as 8 hexadecimal digits.
+/// The key of the seal: CRC-32 of everything else, as 8 hexadecimal digits.
 inline constexpr const char* kSeal = "crc32";
 
 enum class Seal : std::uint8_t
@@ -17,7 +17,7 @@ enum class Seal : std::uint8_t
     Broken,
 };
 
-/// With a seal; one that it had is replaced.
+/// Adds a seal; replaces an existing one.
 Metadata sealed(Metadata metadata);
 Seal seal_of(const Metadata& metadata);
 

@@ -12,7 +12,7 @@ namespace plab::recording
 namespace
 {
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied as they stand");
+static_assert(std::endian::native == std::endian::little, "numbers are copied byte for byte");
 
 /// The record, unless a field was missing.
 template <class T>

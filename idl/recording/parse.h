@@ -1,6 +1,5 @@
-/// Bytes to records. Every length is checked against what is there; what does not fit is an error, never a guess.
-///
-/// Views in records point into the bytes that were parsed.
+/// Parses records. Every length is checked against the available bytes; data that does not fit is an error, never a guess.
+/// Views in records point into the parsed bytes.
 #pragma once
 
 #include <optional>
@@ -12,7 +11,7 @@
 namespace plab::recording
 {
 
-/// Takes fields off the front of a record's body. After a failure all further fields are zero or empty.
+/// Takes fields from the front of a record's body. After a failure all further fields are zero or empty.
 class FieldReader
 {
 public:
@@ -23,10 +22,10 @@ public:
     std::uint32_t u32() { return number<std::uint32_t>(); }
     std::uint64_t u64() { return number<std::uint64_t>(); }
     ByteView bytes(std::uint64_t n);
-    /// A text, a map or an array: preceded by its length in bytes.
+    /// A text, a map or an array, preceded by its length in bytes.
     ByteView counted() { return bytes(u32()); }
 
-    /// Fills fields in, each by its type: what fields() of fields.h calls.
+    /// Reads fields, each by its type; called by fields() of fields.h.
     template <class... Fields>
     void operator()(Fields&... all)
     {
@@ -55,12 +54,12 @@ private:
     bool failed_ = false;
 };
 
-/// "byte 4711: why": an error about a place in a file.
+/// "byte 4711: why": an error about a position in a file.
 Error damage(std::uint64_t offset, const std::string& why);
-/// "Chunk", or "0x85" for what has no name.
+/// "Chunk", or "0x85" for an opcode without a name.
 std::string name_of(Opcode opcode);
 
-/// What stands before a body.
+/// The head before a body.
 struct RecordHead
 {
     Opcode opcode = Opcode::Header;
@@ -69,14 +68,14 @@ struct RecordHead
 /// `bytes`: kRecordHead of them.
 RecordHead parse_head(ByteView bytes);
 
-// Bodies, without their head. Nothing: a field reaches beyond the body, or its value is none. Fields that a later
+// Parse bodies, without their head. Empty: a field extends beyond the body, or its value is invalid. Fields that a later
 // version of the format added at the end are ignored, as the format demands.
 std::optional<Header> parse_header(ByteView body);
 std::optional<Footer> parse_footer(ByteView body);
 std::optional<Schema> parse_schema(ByteView body);
 std::optional<Channel> parse_channel(ByteView body);
 std::optional<Message> parse_message(ByteView body);
-/// Into a record whose memory is used again: files have a million of these.
+/// Into a record whose memory is reused, since files have a million of these.
 bool parse_chunk_index(ByteView body, ChunkIndex& out);
 std::optional<AttachmentIndex> parse_attachment_index(ByteView body);
 std::optional<Statistics> parse_statistics(ByteView body);
@@ -92,17 +91,17 @@ struct ParsedAttachment
 };
 std::optional<ParsedAttachment> parse_attachment(ByteView body);
 
-/// The front of a chunk, from as much of its body as is at hand; `body_length`: all of it. Nothing if the parts do not
+/// The head of a chunk, from the available part of its body; `body_length`: length of the whole body. Empty if the parts do not
 /// add up to body_length.
 std::optional<ChunkHeader> parse_chunk_header(ByteView head, std::uint64_t body_length);
 /// Bytes of a chunk's body before its records.
 std::size_t size_of_head(const ChunkHeader& header);
-/// Longest name of a compression that is read.
+/// Longest accepted name of a compression.
 inline constexpr std::size_t kLongestCompression = 16;
-/// Bytes that are enough for parse_chunk_header.
+/// Number of bytes that is enough for parse_chunk_header.
 inline constexpr std::size_t kLongestChunkHead = 8 + 8 + 8 + 4 + 4 + kLongestCompression + 8;
 
-/// A message index by its front; all of it is 6 + 16 * messages bytes.
+/// The head of a message index; the whole index has 6 + 16 * messages bytes.
 struct MessageIndexHead
 {
     ChannelId channel = 0;

@@ -1,4 +1,4 @@
-/// Finding out where everything stands in a file.
+/// Determines the positions of everything in a file.
 #pragma once
 
 #include "idl/recording/file_index.h"
@@ -6,9 +6,9 @@
 namespace plab::recording
 {
 
-/// By the summary if there is a whole one, else by a scan. An error: this is no recording, or cannot be read at all.
-/// In a file without a summary, which channels a chunk holds is told by records that no CRC covers: recover() does not
-/// rely on them, readers do.
+/// Uses the summary if there is a complete one, otherwise a scan. An error: this is not a recording, or cannot be read at all.
+/// In a file without a summary, the channels of a chunk are read from records that no CRC covers: readers rely on them,
+/// recover() does not.
 Result<FileIndex> read_index(const Source& source, const Limits& limits);
 
 }  // namespace plab::recording

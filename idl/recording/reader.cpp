@@ -97,7 +97,7 @@ Result<Bytes> Reader::record_at(std::uint64_t offset, std::uint64_t length, Opco
     if (!got) return got.errors();
     const RecordHead head = parse_head(record);
     if (*got < length || head.opcode != opcode || head.length != length - kRecordHead)
-        return with_name(damage(offset, "the index names a " + name_of(opcode) + " record that is not here"));
+        return with_name(damage(offset, "the index names a " + name_of(opcode) + " record that is not there"));
     return record;
 }
 

@@ -23,7 +23,7 @@
 namespace plab::recording
 {
 
-/// Which messages; the default is all.
+/// Selects messages; by default all.
 struct Query
 {
     std::vector<std::string> topics;                               ///< none: all
@@ -31,7 +31,7 @@ struct Query
     std::uint64_t to = std::numeric_limits<std::uint64_t>::max();  ///< inclusive
 };
 
-/// A message where it lies: valid until its cursor moves.
+/// A message in the reader's memory: valid until its cursor moves.
 struct Found
 {
     const Channel* channel = nullptr;
@@ -48,13 +48,13 @@ struct Kept
 
 class Reader;
 
-/// Goes through messages by log_time; those of one time in the order in which they stand in the file. The reader must
-/// stay where it is. Each thread has a cursor of its own.
+/// Iterates over messages by log_time; messages of equal time are in file order. The reader must not move. Each thread needs a
+/// cursor of its own.
 class Cursor
 {
 public:
-    /// The next message, or nothing at the end. After an error the chunk that it is about is left out, and the next call
-    /// goes on behind it: who wants to know what was lost counts errors.
+    /// The next message, or nothing at the end. After an error the affected chunk is skipped, and the next call continues after
+    /// it: count the errors to know what was lost.
     Result<std::optional<Found>> next();
 
 private:
@@ -81,8 +81,8 @@ private:
     bool all_channels_;
     std::size_t next_chunk_;
     std::vector<std::unique_ptr<OpenChunk>> open_;
-    std::vector<std::unique_ptr<OpenChunk>> spare_;  ///< their memory is used again
-    std::size_t last_ = 0;                           ///< of open_: where the message came from that was handed out last
+    std::vector<std::unique_ptr<OpenChunk>> spare_;  ///< reused memory
+    std::size_t last_ = 0;                           ///< index in open_: origin of the message that was returned last
 };
 
 class Reader
@@ -95,12 +95,12 @@ public:
     const std::map<ChannelId, Channel>& channels() const { return index_.declarations.channels; }
     /// Nothing: the channel has none, or it is lost.
     const Schema* schema_of(const Channel& channel) const;
-    /// Ids of the channels of these topics. What has no channel in this file is left out.
+    /// Ids of the channels of these topics. Topics without a channel in this file are left out.
     std::set<ChannelId> channels_of(const std::vector<std::string>& topics) const;
     const std::string& name() const { return source_->name(); }
 
     Cursor messages(const Query& query = {}) const { return Cursor(*this, query); }
-    /// The last message of a topic whose log_time is at most `time`; of two at one time the one that stands last.
+    /// The last message of a topic whose log_time is at most `time`; of several with equal time, the last one in the file.
     Result<std::optional<Kept>> last_at(const std::string& topic, std::uint64_t time) const;
 
     struct AttachmentData

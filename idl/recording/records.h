@@ -87,7 +87,7 @@ struct Message
     std::uint32_t sequence = 0;
     std::uint64_t log_time = 0;
     std::uint64_t publish_time = 0;
-    ByteView data;  ///< owned by somebody else
+    ByteView data;  ///< owned by the caller
 };
 
 /// A chunk without its records.
@@ -121,7 +121,7 @@ struct Attachment
     std::uint64_t create_time = 0;
     std::string name;
     std::string media_type;
-    ByteView data;  ///< owned by somebody else
+    ByteView data;  ///< owned by the caller
 };
 
 struct AttachmentIndex

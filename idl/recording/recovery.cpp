@@ -16,7 +16,7 @@ namespace
 
 constexpr std::size_t kMostIndexMemory = 256u << 20;
 
-/// Writes a new file out of the good records of another.
+/// Writes a new file from the intact records of another.
 class Rebuild
 {
 public:
@@ -36,7 +36,7 @@ public:
     }
 
 private:
-    /// All of them, first: what had declared a channel may be among what is lost.
+    /// All chunks first: the declarations of a channel may be among the lost data.
     Result<void> put_declarations(Container& out)
     {
         for (const auto& [id, schema] : found_->declarations.schemas) out.declare(schema), chunk_.add(schema);
@@ -89,7 +89,7 @@ private:
         return chunk_.empty() ? Result<void>() : put_chunk(out, compression);
     }
 
-    /// Whether the chunk may stay as it is: all its messages are of known channels.
+    /// Whether the chunk may be copied unchanged: all its messages have known channels.
     bool is_declared() const
     {
         const auto is_known = [&](const ChunkData::Entry& entry) { return found_->declarations.channels.contains(entry.channel); };
@@ -136,7 +136,7 @@ void count_messages(const Salvage& found, RecoveryReport& report)
     }
 }
 
-/// The summary counts what there was: if all of it is here, damage elsewhere has cost nothing.
+/// The statistics of the summary count all messages: if they are all here, damage elsewhere has cost nothing.
 bool is_complete(const Salvage& found, const RecoveryReport& report)
 {
     if (!found.summary || !report.missing.empty() || report.undeclared > 0) return false;
@@ -212,8 +212,8 @@ std::string RecoveryReport::text() const
         if (!kept.contains(topic)) out += "  " + topic + ": none, " + std::to_string(count) + " missing\n";
     for (const LostPart& part : lost) out += "lost: " + range_text(part) + ": " + part.reason + "\n";
     if (knows_no_end() && to)
-        out += "lost: what was recorded after " + seconds(*to) + ", until the recorder ended; the file does not tell when\n";
-    if (undeclared > 0) out += "lost: " + std::to_string(undeclared) + " messages whose channels are declared nowhere\n";
+        out += "lost: what was recorded after " + seconds(*to) + ", until the recorder ended; the file does not record when\n";
+    if (undeclared > 0) out += "lost: " + std::to_string(undeclared) + " messages whose channels are not declared\n";
     for (const std::string& what : mended) out += "mended: " + what + "\n";
     if (unproved > 0) out += "unproved: " + std::to_string(unproved) + " records without CRC or seal\n";
     return out;
@@ -233,8 +233,8 @@ Result<RecoveryReport> recover(const Source& in, const SinkMaker& make_out, cons
 
 Result<RecoveryReport> recover(const std::string& in, const std::string& out, Overwrite overwrite, const Limits& limits, const Watch& watch)
 {
-    std::error_code ignored;  // what is not there is not the same
-    if (std::filesystem::equivalent(in, out, ignored)) return reason(out + ": is the recording itself; name another file");
+    std::error_code ignored;  // a file that does not exist is not the same file
+    if (std::filesystem::equivalent(in, out, ignored)) return reason(out + ": is the recording itself; give another file");
     auto file = FileSource::open(in);
     if (!file) return file.errors();
     const WatchedSource source(std::make_unique<FileSource>(file.take()), watch);

@@ -10,12 +10,12 @@ namespace plab::recording
 namespace
 {
 
-/// Whether a record is kept.
+/// The result of checking a record.
 enum class Worth : std::uint8_t
 {
-    Good,      ///< a CRC or a seal vouches for it
-    Unproved,  ///< it fits together, and nothing vouches for it
-    Useless,   ///< nothing to keep, and in its place: indexes, declarations
+    Good,      ///< protected by a CRC or a seal
+    Unproved,  ///< consistent, but not protected
+    Useless,   ///< not worth keeping, but valid: indexes, declarations
     End,       ///< of the data
     Bad,
 };
@@ -52,7 +52,7 @@ public:
     }
 
 private:
-    /// Without its first bytes a file can still hold good chunks.
+    /// A file without its first bytes can still contain intact chunks.
     Result<std::uint64_t> begin_of_data()
     {
         auto start = read_start(*source_, limits_);
@@ -66,7 +66,7 @@ private:
         return lose(0, *next, start.error().reason);
     }
 
-    /// With a whole summary it is known where the data end, whatever has become of the record that says so.
+    /// An intact summary gives the end of the data, even if the record that marks it is damaged.
     Result<void> look_at_summary()
     {
         auto footer = read_footer(*source_);
@@ -83,7 +83,7 @@ private:
         return {};
     }
 
-    /// Looks at the record at `at`; returns where to go on.
+    /// Checks the record at `at`; returns the position where to continue.
     Result<std::uint64_t> step(std::uint64_t at)
     {
         auto head = head_at(at);
@@ -102,7 +102,7 @@ private:
         return lose(at, *next, verdict->reason);
     }
 
-    /// Nothing: the record is not all there.
+    /// Empty: the record is incomplete.
     Result<std::optional<RecordHead>> head_at(std::uint64_t at)
     {
         auto bytes = window_.view(at, kRecordHead);
@@ -114,7 +114,7 @@ private:
     Result<Inspected> inspect(std::uint64_t at, const RecordHead& head)
     {
         if (head.length > data_end_ - at - std::min<std::uint64_t>(kRecordHead, data_end_ - at))
-            return Inspected{Worth::Bad, "a record that reaches beyond the end of the data"};
+            return Inspected{Worth::Bad, "a record that extends beyond the end of the data"};
         switch (head.opcode)
         {
             case Opcode::Chunk:
@@ -129,9 +129,9 @@ private:
             case Opcode::DataEnd:
                 return inspect_end(at, head);
             case Opcode::Message:
-                return Inspected{Worth::Bad, "a message outside of a chunk, which nothing vouches for"};
+                return Inspected{Worth::Bad, "a message outside of a chunk, which no checksum protects"};
             default:
-                return Inspected{Worth::Bad, "a " + name_of(head.opcode) + " record, which may not stand here"};
+                return Inspected{Worth::Bad, "a " + name_of(head.opcode) + " record, which is not allowed here"};
         }
     }
 
@@ -139,16 +139,16 @@ private:
     {
         if (auto done = chunk_.load(*source_, at, limits_); !done) return Inspected{Worth::Bad, done.error().reason};
         if (!chunk_.declarations().agrees_with(out_.declarations))
-            return Inspected{Worth::Bad, "a chunk that declares an id otherwise than one before it"};
+            return Inspected{Worth::Bad, "a chunk whose declaration of an id differs from an earlier one"};
         return Inspected{chunk_.has_crc() ? Worth::Good : Worth::Unproved, ""};
     }
 
     Result<Inspected> inspect_message_index(std::uint64_t at, const RecordHead& head)
     {
         constexpr std::size_t kHead = 6;
-        auto head = window_.view(at + kRecordHead, std::min<std::uint64_t>(kHead, head.length));
-        if (!head) return head.errors();
-        if (parse_message_index_head(*head, head.length)) return Inspected{Worth::Useless, ""};
+        auto beginning = window_.view(at + kRecordHead, std::min<std::uint64_t>(kHead, head.length));
+        if (!beginning) return beginning.errors();
+        if (parse_message_index_head(*beginning, head.length)) return Inspected{Worth::Useless, ""};
         return Inspected{Worth::Bad, "a MessageIndex record that does not fit its length"};
     }
 
@@ -227,8 +227,8 @@ private:
         return end;
     }
 
-    /// Where the next good record begins behind a bad one. If the bad one's length leads to a record that fits together,
-    /// it is believed; otherwise every byte is tried, and only what a CRC or a seal vouches for counts.
+    /// The position of the next intact record after a bad one. If the bad record's length leads to a consistent record, that
+    /// one is accepted; otherwise every byte is tried, and only records protected by a CRC or a seal count.
     Result<std::uint64_t> next_good(std::uint64_t bad, const RecordHead& head)
     {
         if (head.length <= data_end_ - bad - std::min<std::uint64_t>(kRecordHead, data_end_ - bad))
@@ -242,7 +242,7 @@ private:
         return search(bad + 1);
     }
 
-    /// Where the next good record begins, at `begin` or later; the end of the data if there is none.
+    /// The position of the next intact record, at `begin` or later; the end of the data if there is none.
     Result<std::uint64_t> search(std::uint64_t begin)
     {
         Bytes piece;
@@ -282,7 +282,7 @@ private:
         return verdict->worth == Worth::Good;
     }
 
-    /// Of channels that no good chunk declares, others may tell: the summary, or records outside of chunks.
+    /// Channels that no intact chunk declares may be declared elsewhere: in the summary, or in records outside of chunks.
     void add_late_declarations()
     {
         for (const Declarations* more : {out_.summary ? &out_.summary->declarations : nullptr, &loose_})

@@ -1,4 +1,4 @@
-/// What of a damaged file is good: the first half of a recovery. Nothing is changed.
+/// Finds the intact part of a damaged file: the first half of a recovery. Changes nothing.
 #pragma once
 
 #include <map>
@@ -15,13 +15,13 @@
 namespace plab::recording
 {
 
-/// A part of the file that is of no use.
+/// An unusable part of the file.
 struct LostPart
 {
     std::uint64_t begin = 0;  ///< bytes of the file
     std::uint64_t end = 0;
     std::string reason;
-    /// It lies between these log_times, as far as its neighbours tell: the last before it, the first after it.
+    /// It lies between these log_times, as far as its neighbours show: the last before it, the first after it.
     std::optional<std::uint64_t> after;
     std::optional<std::uint64_t> before;
 };
@@ -38,16 +38,16 @@ struct Salvage
 {
     Header header;
     std::vector<Salvaged> records;                ///< in file order
-    Declarations declarations;                    ///< of good chunks; what they lack, of others
-    std::map<ChannelId, std::uint64_t> messages;  ///< in good chunks
+    Declarations declarations;                    ///< of intact chunks; missing ones are taken from elsewhere
+    std::map<ChannelId, std::uint64_t> messages;  ///< in intact chunks
     std::optional<std::uint64_t> from;            ///< log_time of the first and the last of them
     std::optional<std::uint64_t> to;
     std::vector<LostPart> lost;
     std::vector<std::string> mended;
-    std::uint64_t unproved = 0;        ///< of the records: no CRC or seal vouches for them
-    std::optional<FileIndex> summary;  ///< if it is whole
-    bool has_end = false;              ///< the data end as they should
-    bool is_proved = false;            ///< and the CRC of all of them is right, or absent
+    std::uint64_t unproved = 0;        ///< number of these records that no CRC or seal protects
+    std::optional<FileIndex> summary;  ///< if it is intact
+    bool has_end = false;              ///< the data end correctly
+    bool is_proved = false;            ///< and the CRC of all of them is correct, or absent
 };
 
 Result<Salvage> salvage(const Source& source, const Limits& limits);

@@ -18,7 +18,7 @@ SampleHeader header(const plab_v2_Server& s)
     return out;
 }
 
-/// The time of what happened first; a sample holds what one step brought.
+/// The time of the first entry; a sample contains the entries of one step.
 template <class T>
 SampleHeader header_with_entries(const T& sample)
 {
@@ -117,7 +117,7 @@ private:
     Sample<T> sample_;
 };
 
-/// The one of Ts that this topic has.
+/// The type among Ts that this topic has.
 template <class... Ts>
 std::unique_ptr<Peek> make_one_of(const wire::Topic& topic)
 {
@@ -137,7 +137,7 @@ std::unique_ptr<Peek> make_peek(const wire::Topic& topic)
 
 std::string key_of_gone(ByteView bytes)
 {
-    constexpr std::size_t kHead = 4 + 4;  // encapsulation, length with the zero at its end
+    constexpr std::size_t kHead = 4 + 4;  // encapsulation, and the length with the terminating zero
     if (bytes.size() <= kHead) return {};
     const bool is_little = (bytes[1] & 1u) != 0;
     std::uint32_t length = 0;

@@ -21,7 +21,7 @@ FileSink::FileSink(FileSink&& other) noexcept : descriptor_(std::exchange(other.
 
 FileSink::~FileSink()
 {
-    if (descriptor_ >= 0) (void)::close(descriptor_);  // who wants to know has called close()
+    if (descriptor_ >= 0) (void)::close(descriptor_);  // callers that need the result have called close() before
 }
 
 Error FileSink::failed(const char* what) const { return file_error(path_, what); }
@@ -31,7 +31,7 @@ Result<void> FileSink::append(ByteView bytes)
     while (!bytes.empty())
     {
         const ssize_t n = uninterrupted([&] { return ::write(descriptor_, bytes.data(), bytes.size()); });
-        if (n == 0) errno = EIO;  // nothing written, and no reason given: going on would never end
+        if (n == 0) errno = EIO;  // nothing written and no error given: retrying would never end
         if (n <= 0) return failed("cannot write");
         bytes = bytes.subspan(static_cast<std::size_t>(n));
     }
@@ -41,20 +41,20 @@ Result<void> FileSink::append(ByteView bytes)
 Result<void> FileSink::truncate(std::uint64_t size)
 {
     const auto end = static_cast<off_t>(size);
-    if (uninterrupted([&] { return ::ftruncate(descriptor_, end); }) < 0) return failed("cannot cut off a part that failed");
-    if (::lseek(descriptor_, end, SEEK_SET) < 0) return failed("cannot go back to where a write failed");
+    if (uninterrupted([&] { return ::ftruncate(descriptor_, end); }) < 0) return failed("cannot truncate a part that failed");
+    if (::lseek(descriptor_, end, SEEK_SET) < 0) return failed("cannot seek back to where a write failed");
     return {};
 }
 
 Result<void> FileSink::sync()
 {
-    if (uninterrupted([&] { return ::fdatasync(descriptor_); }) < 0) return failed("cannot bring the data to the disk");
+    if (uninterrupted([&] { return ::fdatasync(descriptor_); }) < 0) return failed("cannot flush the data to the disk");
     return {};
 }
 
 Result<void> FileSink::close()
 {
-    // Linux gives the descriptor back whatever close says; trying again could close another thread's file.
+    // Linux releases the descriptor whatever close returns; a retry could close another thread's file.
     const int descriptor = std::exchange(descriptor_, -1);
     if (descriptor >= 0 && ::close(descriptor) < 0 && errno != EINTR) return failed("cannot close");
     return {};

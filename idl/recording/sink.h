@@ -1,4 +1,4 @@
-/// Where a recording's bytes go.
+/// The destination of a recording's bytes.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +15,24 @@ class Sink
 {
 public:
     virtual ~Sink() = default;
-    /// All of `bytes`, or an error; then some of them may have been written: truncate() before anything else is appended.
+    /// Appends all of `bytes`, or returns an error; then a part may have been written: call truncate() before anything else is
+    /// appended.
     virtual Result<void> append(ByteView bytes) = 0;
-    /// Cuts off what follows the first `size` bytes, and goes on there.
+    /// Removes everything after the first `size` bytes, and continues there.
     virtual Result<void> truncate(std::uint64_t size) = 0;
-    /// Returns when what was appended is on the disk (fdatasync).
+    /// Returns when the appended data are on the disk (fdatasync).
     virtual Result<void> sync() = 0;
-    /// Nothing may be called afterwards. Some file systems tell only now that a write failed.
+    /// No function may be called afterwards. Some file systems report a failed write only now.
     virtual Result<void> close() = 0;
 };
 
 enum class Overwrite : std::uint8_t
 {
-    No,   ///< a file that is there already is an error
-    Yes,  ///< it is emptied
+    No,   ///< an existing file is an error
+    Yes,  ///< an existing file is emptied
 };
 
-/// A file by its name. Errors name it, with what the system said: "run.mcap: cannot write: No space left on device".
+/// A file by its name. Errors name it, with the system's message: "run.mcap: cannot write: No space left on device".
 class FileSink final : public Sink
 {
 public:

@@ -20,7 +20,7 @@ Result<FileSource> FileSource::open(const std::string& path)
     struct stat status
     {
     };
-    if (::fstat(descriptor, &status) < 0) return file_error(path, "cannot look at the recording");
+    if (::fstat(descriptor, &status) < 0) return file_error(path, "cannot examine the recording");
     if (!S_ISREG(status.st_mode))
     {
         Error error = reason("is not a file; recordings are read from files");
@@ -42,7 +42,7 @@ Result<std::uint64_t> FileSource::size() const
     struct stat status
     {
     };
-    if (::fstat(descriptor_, &status) < 0) return file_error(path_, "cannot tell the size");
+    if (::fstat(descriptor_, &status) < 0) return file_error(path_, "cannot determine the size");
     return static_cast<std::uint64_t>(status.st_size);
 }
 

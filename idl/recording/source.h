@@ -1,4 +1,4 @@
-/// Where a recording is read from.
+/// The source from which a recording is read.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ public:
     virtual ~Source() = default;
     /// For messages: a file's name.
     virtual const std::string& name() const = 0;
-    /// Bytes that are there now; a file that is being written grows.
+    /// Number of bytes available now; a file that is being written grows.
     virtual Result<std::uint64_t> size() const = 0;
-    /// Fills `into` from `offset` on; fewer bytes only where the source ends.
+    /// Fills `into` from `offset` on; fewer bytes only at the end of the source.
     virtual Result<std::size_t> read(std::uint64_t offset, std::span<std::uint8_t> into) const = 0;
 };
 
-/// Errors name the file, with what the system said.
+/// Errors name the file, with the system's message.
 class FileSource final : public Source
 {
 public:
@@ -48,7 +48,7 @@ private:
     std::string path_;
 };
 
-/// Bytes that somebody else owns.
+/// Bytes that other code owns.
 class MemorySource final : public Source
 {
 public:
@@ -63,11 +63,11 @@ private:
     std::string name_;
 };
 
-/// Told at each read which share of the source lies before it, from 0 to 1; false: nobody wants the rest.
+/// Called at each read with the fraction of the source before it, from 0 to 1; return false to stop.
 using Watch = std::function<bool(double share)>;
 
-/// A source that tells how far it is read, and that can be told to stop: from then on each read is an error. So whatever reads a
-/// recording, by its index or byte by byte, can be interrupted and shows how far it is.
+/// A source that reports the progress of reading, and can be told to stop: from then on each read is an error. This makes every
+/// reader of recordings, with or without an index, interruptible.
 class WatchedSource final : public Source
 {
 public:
@@ -82,7 +82,7 @@ private:
     Watch watch_;
 };
 
-/// A source through a small window: for many short reads that are near each other.
+/// A source with a small window: for many short reads that are close to each other.
 class Window
 {
 public:

@@ -10,9 +10,9 @@ namespace plab::recording
 namespace
 {
 
-constexpr std::size_t kPiece = 64u << 10;
+constexpr std::size_t kSummaryPiece = 64u << 10;
 
-/// Appends to a sink, and keeps the CRC and the place.
+/// Appends to a sink, and keeps the CRC and the position.
 class Tail
 {
 public:
@@ -24,7 +24,7 @@ public:
         at_ += bytes.size();
         return sink_->append(bytes);
     }
-    /// Writes the records of one kind, and remembers where they stand.
+    /// Writes the records of one kind, and keeps their positions.
     template <class Record>
     Result<void> group(Opcode opcode, const std::vector<Record>& records)
     {
@@ -72,7 +72,7 @@ Result<void> PackedRecords::add(const ChunkIndex& record)
     const std::size_t before = open_.size();
     append(open_, record);
     size_ += open_.size() - before;
-    return open_.size() < kPiece ? Result<void>() : pack();
+    return open_.size() < kSummaryPiece ? Result<void>() : pack();
 }
 
 Result<void> PackedRecords::pack()

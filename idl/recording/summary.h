@@ -1,4 +1,4 @@
-/// What a file's last section says: gathered while the file grows, written when it is closed.
+/// The last section of a file: collected while the file grows, written when it is closed.
 #pragma once
 
 #include <functional>
@@ -13,16 +13,16 @@
 namespace plab::recording
 {
 
-/// Many small records of one kind, compressed as they come: a hundred bytes each in the file, a fifth of that here.
+/// Many small records of one kind, compressed incrementally: a hundred bytes each in the file, a fifth of that here.
 class PackedRecords
 {
 public:
     Result<void> add(const ChunkIndex& record);
-    /// Bytes of all records as they will stand in the file.
+    /// Bytes of all records in the file.
     std::uint64_t size() const { return size_; }
-    /// Bytes that they take here.
+    /// Bytes of memory that they take.
     std::size_t memory() const { return memory_ + open_.size(); }
-    /// Hands out all records, in order, some at a time.
+    /// Passes on all records, in order, in batches.
     Result<void> each_piece(const std::function<Result<void>(ByteView)>& take) const;
 
 private:
@@ -43,7 +43,7 @@ private:
 class Summary
 {
 public:
-    /// Beyond `most_index_memory` bytes the index is given up and the file gets no summary: readers scan it.
+    /// Beyond `most_index_memory` bytes the index is dropped and the file gets no summary: readers scan it.
     explicit Summary(std::size_t most_index_memory) : most_index_memory_(most_index_memory) {}
 
     void add(const Schema& schema) { schemas_.push_back(schema); }

@@ -1,9 +1,8 @@
-/// The time line of a recording: simulated time, which goes on where a new run begins at zero.
-///
-/// A run counts from where the recording had come to when the run was first seen. So log_time never jumps back over a
-/// reset, a load or a rewind, and a second in a recording is a simulated second. Samples overtake one another: what a run
-/// says of a time before it was first seen, or after the next one began, is dated at that border, and no run reaches into
-/// another.
+/// The time line of a recording: simulated time, which continues where a new run begins at zero.
+/// A run is placed at the log_time that the recording had reached when the run was first seen. So log_time never jumps back at
+/// a reset, a load or a rewind, and a second in a recording is a simulated second. Samples can arrive out of order: what a run
+/// reports for a time before it was first seen, or after the next one began, is placed at that boundary, so that runs do not
+/// overlap.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +30,7 @@ public:
         now_ = std::max(now_, out);
         return out;
     }
-    /// ns: the latest there was, for what has no time of its own.
+    /// ns: the latest time so far, for samples without a time of their own.
     std::uint64_t now() const { return now_; }
     /// Simulated seconds of a run at a log_time; 0 for a run that was never seen.
     double seconds(std::uint64_t run, std::uint64_t log_time) const

@@ -36,7 +36,7 @@ std::vector<std::string> words_of(std::string_view text)
     return out;
 }
 
-/// Comments become nothing, runs of white space one space.
+/// Removes comments, and replaces each run of white space by one space.
 std::string without_comments(std::string_view idl)
 {
     std::string out;
@@ -59,7 +59,7 @@ std::string without_comments(std::string_view idl)
     return out;
 }
 
-/// What a declaration gives a name to: the word behind "struct", or the last one of a typedef before its dimensions.
+/// The name that a declaration defines: the word after "struct", or the last one of a typedef before its dimensions.
 std::string name_in(const std::string& text, const std::vector<std::string>& words)
 {
     for (std::size_t i = 0; i + 1 < words.size(); ++i)
@@ -68,7 +68,7 @@ std::string name_in(const std::string& text, const std::vector<std::string>& wor
     return before.empty() ? "" : before.back();
 }
 
-/// What stands in the innermost module, declaration by declaration.
+/// The contents of the innermost module, declaration by declaration.
 std::vector<Declaration> declarations_of(std::string_view body)
 {
     std::vector<Declaration> out;
@@ -90,7 +90,7 @@ std::vector<Declaration> declarations_of(std::string_view body)
     return out;
 }
 
-/// Names of all that `name` is made of, itself included.
+/// Names of all types that `name` uses, itself included.
 std::set<std::string> needed_for(const std::string& name, const std::vector<Declaration>& all)
 {
     std::set<std::string> needed{name};

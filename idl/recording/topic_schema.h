@@ -11,9 +11,10 @@
 namespace plab::recording
 {
 
-/// `type_name` ("plab::v2::Frame") and what it is made of, out of idl/plab.idl: self-contained OMG IDL without comments.
+/// `type_name` ("plab::v2::Frame") and all types that it uses, extracted from idl/plab.idl: self-contained OMG IDL without
+/// comments.
 Result<std::string> idl_of(std::string_view type_name);
-/// As above, out of any IDL whose declarations stand in one scope of modules ("module a { module b { ... }; };").
+/// As above, from any IDL whose declarations are in one scope of modules ("module a { module b { ... }; };").
 Result<std::string> select_idl(std::string_view idl, std::string_view type_name);
 
 /// Encoding "omgidl"; without id.

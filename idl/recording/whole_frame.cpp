@@ -7,7 +7,7 @@ namespace plab::recording
 namespace
 {
 
-/// Rows of `news` take the place of those with their handles. Both stand in the same order, mostly: one pass.
+/// Rows of `news` replace those with the same handles. Both are mostly in the same order: one pass.
 template <class Row, class Sequence>
 void merge(std::vector<Row>& kept, const Sequence& news)
 {

@@ -1,7 +1,6 @@
-/// Frames of a recording that names only what moved, made whole again: as the server would have sent them.
-///
-/// A recorder may leave out what is, bit for bit, as it was named last (plabd --record --moved-only; metadata "plab" says
-/// states = "moved"). It names everything again with each run and each revision, and once in a simulated second.
+/// Completes the frames of a recording that contain only what moved, so that they are as the server would have sent them.
+/// A recorder may omit objects whose values are bit for bit those last written (plabd --record --moved-only; metadata "plab"
+/// has states = "moved"). It writes all objects with each run and each revision, and once per simulated second.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +11,16 @@
 namespace plab::recording
 {
 
-/// A full frame comes at least this often, s of simulated time.
+/// Largest interval between full frames, s of simulated time.
 inline constexpr double kFullFrameEvery = 1;
 
 class WholeFrame
 {
 public:
-    /// `frame` with all that was named before in its run and revision, in the order of the first frame that named it.
-    /// Valid until the next call.
+    /// `frame` with all objects that occurred before in its run and revision, in the order of the first frame that contains
+    /// them. Valid until the next call.
     const plab_v2_Frame& with(const plab_v2_Frame& frame);
-    /// The next frame is not the one that follows the last one.
+    /// The next frame does not directly follow the last one.
     void forget() { run_ = 0; }
 
 private:

@@ -70,7 +70,7 @@ Result<ChannelId> Writer::add_channel(Channel channel)
 {
     if (channels_.size() >= kMostIds) return reason("more channels than a file can hold");
     if (channel.schema_id > schemas_.size())
-        return reason("channel " + channel.topic + " names schema " + std::to_string(channel.schema_id) + ", which is none");
+        return reason("channel " + channel.topic + " names schema " + std::to_string(channel.schema_id) + ", which does not exist");
     channel.id = static_cast<ChannelId>(channels_.size() + 1);
     container_.declare(channel);
     channels_.push_back({std::move(channel)});
@@ -82,7 +82,8 @@ void Writer::forget_declarations()
     for (Known& known : channels_) known.is_declared = false;
 }
 
-/// Each chunk is preceded by what its messages refer to. Again after a while: see WriterOptions::declare_time.
+/// Each chunk is preceded by the declarations that its messages refer to. They are repeated after a while: see
+/// WriterOptions::declare_time.
 void Writer::declare(ChannelId id, Clock::time_point now)
 {
     if (now - declared_since_ > options_.declare_time)
@@ -147,7 +148,7 @@ void Writer::flush()
     }
     if (trouble_) drop_chunk();
     chunk_.clear();
-    if (!trouble_) (void)note_gap("larger than a message may be, or of no channel");
+    if (!trouble_) (void)note_gap("larger than a message may be, or without a channel");
 }
 
 void Writer::drop_chunk()
@@ -220,7 +221,7 @@ Result<void> Writer::retry()
     return {};
 }
 
-/// A channel without messages stands in no chunk yet, but the summary may only repeat what is in the data.
+/// A channel without messages is in no chunk yet, but the summary may only repeat what is in the data.
 void Writer::declare_rest()
 {
     for (Known& known : channels_)
@@ -229,7 +230,7 @@ void Writer::declare_rest()
 
 Result<void> Writer::close()
 {
-    if (!container_.is_open()) return reason("the recording is closed already");
+    if (!container_.is_open()) return reason("the recording is already closed");
     auto tried = retry();
     declare_rest();
     flush();

@@ -1,11 +1,9 @@
 /// Writes a recording, message by message. Made for a thread that does nothing else.
-///
-/// Messages gather in a chunk; a chunk goes to the file with one write, when it is `chunk_time` old or `chunk_bytes`
-/// large. So a crash loses what is younger than that, and never what is in the file already. The caller passes the time
-/// in, calls tick() when due() says, and hears of nothing that blocks but the disk.
-///
-/// When the disk fails, the writer goes on without it: it counts what it drops, says why in trouble(), and starts again
-/// when retry() succeeds; a metadata record "gap" then tells readers what is missing. Nothing is thrown.
+/// Messages are collected in a chunk; a chunk is written to the file with one write, when it is `chunk_time` old or
+/// `chunk_bytes` large. So a crash loses younger messages, but nothing that is already in the file. The caller passes the time
+/// in, and calls tick() when due() says so; only the disk can block.
+/// When the disk fails, the writer continues without it: it counts what it drops, gives the reason in trouble(), and resumes
+/// when retry() succeeds; a metadata record "gap" then reports what is missing. No function throws.
 #pragma once
 
 #include <chrono>
@@ -31,7 +29,7 @@ struct WriterOptions
     std::chrono::nanoseconds chunk_time = std::chrono::milliseconds(20);
     std::size_t chunk_bytes = 1u << 20;                            ///< uncompressed
     std::chrono::nanoseconds sync_time = std::chrono::seconds(1);  ///< between two fdatasync; 0: never
-    /// Channels are declared again in the chunks that come after this: a file whose start is lost can still be read.
+    /// Channels are declared again in the chunks after this time, so that a file whose beginning is lost can still be read.
     std::chrono::nanoseconds declare_time = std::chrono::seconds(5);
     std::size_t most_message_bytes = 256u << 20;  ///< larger ones are dropped; readers refuse larger chunks
     std::size_t most_index_memory = 64u << 20;    ///< beyond it the file gets no index: days of 20 ms chunks
@@ -57,7 +55,7 @@ public:
     static Result<Writer> create(const std::string& path, WriterOptions options = {}, Overwrite overwrite = Overwrite::No);
     Writer(Writer&&) noexcept = default;
     Writer& operator=(Writer&&) = delete;
-    /// Closes the file, if nobody did; who wants to know how that went calls close().
+    /// Closes the file if necessary; call close() to learn whether that succeeded.
     ~Writer();
 
     /// Ids count from 1. The id of `schema` is ignored.
@@ -65,26 +63,27 @@ public:
     /// The id of `channel` is ignored; its schema must be there. A topic may have several channels.
     Result<ChannelId> add_channel(Channel channel);
 
-    /// False: it was dropped (and counted), because the disk fails, or it is larger than most_message_bytes, or there is
-    /// no such channel. Its sequence is set here: it counts the channel's messages from 0, those that were dropped too.
-    /// log_time need not ascend, but readers are faster if it does.
+    /// False: the message was dropped (and counted), because the disk fails, or it is larger than most_message_bytes, or there
+    /// is no such channel. Its sequence is set here: it counts the channel's messages from 0, including dropped ones. log_time
+    /// need not ascend, but readers are faster if it does.
     bool write(const Message& message, Clock::time_point now);
-    /// At once, not in a chunk.
+    /// Written at once, not in a chunk.
     Result<void> attach(const Attachment& attachment);
-    /// At once, and sealed (metadata.h).
+    /// Written at once, and sealed (metadata.h).
     Result<void> add_metadata(Metadata metadata);
-    /// Messages that were lost on their way to this writer, because a ring was full, say: noted as a gap.
+    /// Notes messages as a gap that were lost on their way to this writer, for example because a ring was full.
     Result<void> add_gap(const Losses& losses, const std::string& why);
 
-    /// Does what is due: closes a chunk that is old enough, syncs.
+    /// Does what is due: completes a chunk that is old enough, syncs.
     void tick(Clock::time_point now);
     /// When tick() has something to do; nothing: not before the next message.
     std::optional<Clock::time_point> due() const;
     /// Writes the chunk as it is.
     void flush();
-    /// Tries a disk that failed again: cuts off what a failed write left, notes the gap. Success if there was no trouble.
+    /// Retries a disk that failed: truncates what a failed write left, notes the gap. Success if there was no trouble.
     Result<void> retry();
-    /// Ends the file. With trouble, tries again first. An error: the file is as after a crash, whole up to what failed.
+    /// Completes the file. If there is trouble, retries first. An error: the file is as after a crash, intact up to the
+    /// failure.
     Result<void> close();
 
     /// Why nothing is written at present.

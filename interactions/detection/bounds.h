@@ -1,4 +1,4 @@
-/// Boxes along the axes of W that bound shapes.
+/// Axis-aligned bounding boxes in the frame W.
 #pragma once
 
 #include <cmath>
@@ -32,14 +32,14 @@ inline Box joined(const Box& a, const Box& b)
     return out;
 }
 
-/// Half the surface, m^2: the chance that a random line meets a box goes with it (the surface area heuristic).
+/// Half the surface area, m^2. The probability that a random line meets the box is proportional to it (surface area heuristic).
 inline double half_surface(const Box& b)
 {
     const Vec3 d = b.upper - b.lower;
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/// Whether a box comes as near as rounding lets one say to the half-space normal . p <= offset + growth (m).
+/// Whether a box reaches the half-space normal . p <= offset + growth (m), allowing for rounding.
 inline bool reaches(const Vec3& normal, double offset, const Box& box, double growth = 0)
 {
     double lowest = 0, size = std::fabs(offset);

@@ -9,26 +9,28 @@ namespace
 {
 Vec3 column(const Mat3& R, int k) { return {R(0, k), R(1, k), R(2, k)}; }
 
-/// An axis must be better than those before by this share of the boxes' size, so that rounding does not choose.
+/// Fraction of the boxes' size by which an axis must be better than the earlier ones, so that rounding does not decide between
+/// equal axes.
 constexpr double kPreference = 4e-15;
-/// Edges whose sine is less are parallel: a face's normal does as well.
+/// Edges with a smaller sine count as parallel: a face normal then serves as well.
 constexpr double kParallel = 1e-7;
 
 using Triple = std::array<double, 3>;
 
-/// What the 15 axes are measured with: plain arrays, since an index into a Vec3 is a choice.
+/// The inputs of the 15 tests, in plain arrays: Vec3 selects its component by a branch.
 struct Boxes
 {
     Triple a, b, t;              ///< half extents; p_b - p_a in A's frame
-    std::array<Triple, 3> C, F;  ///< b's axes in A's frame, and their magnitudes
+    std::array<Triple, 3> C, F;  ///< b's axes in A's frame, and their absolute values
 };
 
-/// The best axis so far, by number: 0 to 2 A's faces, 3 to 5 B's, 6 + 3 i + j the product of edges.
+/// The best axis so far, by number: 0 to 2 for A's faces, 3 to 5 for B's faces, 6 + 3 i + j for the cross product of edges i and
+/// j.
 struct Best
 {
     int axis = 0;
     double gap = -HUGE_VAL;
-    bool backwards = false;  ///< from B to A
+    bool backwards = false;  ///< whether it points from B to A
 
     void offer(int which, double along, double reach, double preference)
     {
@@ -48,15 +50,15 @@ void try_faces(const Boxes& x, double preference, Best& best)
     }
 }
 
-/// The axis e_i x f_j, in A's frame: its component along e_i is 0. It is known to a rounding error over the sine.
+/// The axis e_i x f_j in A's frame; its component along e_i is 0. Its error is a rounding error divided by the sine.
 void try_edge(const Boxes& x, std::size_t i, std::size_t j, double preference, Best& best)
 {
     const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-    const double u = -x.C[i2][j], v = x.C[i1][j];  // along e_i1, e_i2
+    const double u = -x.C[i2][j], v = x.C[i1][j];  // components along e_i1, e_i2
     const double square = u * u + v * v;
     const double along = x.t[i1] * u + x.t[i2] * v;
     const double reach = x.a[i1] * x.F[i2][j] + x.a[i2] * x.F[i1][j] + x.b[j1] * x.F[i][j2] + x.b[j2] * x.F[i][j1];
-    // Not better even before the root is taken: most are not.
+    // Most axes can be rejected before the square root is taken.
     const double rough = std::fabs(along) - reach;
     if (square < kParallel * kParallel || (rough < 0 && best.gap < 0 && rough * rough > best.gap * best.gap * square)) return;
     const double sine = std::sqrt(square);

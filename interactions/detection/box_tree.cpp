@@ -7,7 +7,7 @@ namespace plab::detection
 {
 namespace
 {
-/// Twice the centre along an axis; 0 where it is no number, so that sorting by it stays an order.
+/// Twice the centre along an axis; 0 if that is NaN, so that sorting by it remains a valid order.
 double place(const Box& box, int axis)
 {
     const double sum = box.lower[axis] + box.upper[axis];
@@ -81,7 +81,7 @@ void BoxTree::move(std::uint32_t item, const Box& box)
     put_in(leaf, free_node);
 }
 
-/// The leaf's sibling takes the place of their parent, which is returned for another use.
+/// The leaf's sibling replaces their common parent, whose node is returned for reuse.
 std::uint32_t BoxTree::take_out(std::uint32_t leaf)
 {
     const std::uint32_t parent = nodes_[leaf].parent, above = nodes_[parent].parent;
@@ -97,7 +97,7 @@ std::uint32_t BoxTree::take_out(std::uint32_t leaf)
     return parent;
 }
 
-/// Down from the root, to the child that grows less, until a new parent here costs no more than going on.
+/// Descends towards the child that grows less, until a new parent at this place costs no more than descending further.
 std::uint32_t BoxTree::best_sibling(const Box& box) const
 {
     std::uint32_t at = root_;
@@ -105,7 +105,7 @@ std::uint32_t BoxTree::best_sibling(const Box& box) const
     {
         const Node& node = nodes_[at];
         const double here = half_surface(joined(node.box, box));
-        const double inherited = here - half_surface(node.box);  // what all nodes on the way down grow by
+        const double inherited = here - half_surface(node.box);  // growth of all nodes passed on the way down
         const auto cost = [&](std::uint32_t child)
         {
             const Node& c = nodes_[child];

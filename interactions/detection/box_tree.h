@@ -1,8 +1,8 @@
-/// A binary tree of boxes: which of n boxes overlap a given one, in about log n tests.
+/// A binary bounding-volume tree of axis-aligned boxes: finds which of n boxes overlap a given one, in about log n tests.
 ///
-/// Built top-down by halving at the median of the longest axis; a box that moves afterwards is taken out and put back
-/// where it enlarges the tree least (surface area heuristic, Goldsmith and Salmon 1987). The tree's form depends on that
-/// history, the set of boxes that a query finds does not.
+/// It is built top-down by splitting at the median along the longest axis. A box that moves later is removed and reinserted
+/// where it enlarges the tree least (surface area heuristic, Goldsmith and Salmon 1987). The shape of the tree depends on that
+/// history, but the set of boxes that a query finds does not.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ namespace plab::detection
 class BoxTree
 {
 public:
-    /// Makes the tree of `items`, item i bounded by boxes[i].
+    /// Builds the tree of `items`; boxes[i] is the box of item i.
     void build(std::span<const Box> boxes, std::span<const std::uint32_t> items);
-    /// Gives an item that build() was given another box.
+    /// Changes the box of an item that was passed to build().
     void move(std::uint32_t item, const Box& box);
-    /// Calls found(item) for each item whose box overlaps `box`, in no order that means anything.
+    /// Calls found(item) for each item whose box overlaps `box`; the order is unspecified.
     template <class Found>
     void query(const Box& box, Found&& found)
     {
@@ -45,8 +45,8 @@ private:
     {
         Box box;
         std::uint32_t parent = kNone;
-        std::uint32_t left = kNone, right = kNone;  // none: a leaf
-        std::uint32_t item = 0;                     // of a leaf
+        std::uint32_t left = kNone, right = kNone;  // kNone: this is a leaf
+        std::uint32_t item = 0;                     // of a leaf only
     };
     struct Task  // items [first, end) become the subtree at `node`
     {

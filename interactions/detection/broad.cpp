@@ -8,17 +8,17 @@ namespace plab::detection
 {
 namespace
 {
-/// Boxes are larger than shapes by this share of their size: no rounding may lose a pair that touches.
+/// Fraction by which tight boxes are larger than their shapes, so that rounding loses no touching pair.
 constexpr double kMargin = 1e-6;
-/// What the search holds is larger still, by this share, so that small motions need no search.
+/// Fraction by which boxes in the search structure are larger still, so that small motions need no new search.
 constexpr double kSlack = 0.1;
-/// And by this share of the margin that is asked for.
+/// The same, as a fraction of the requested margin.
 constexpr double kSlackOfMargin = 2;
-/// A box that came to be this many times as large as asked for is made anew.
+/// A box that has become this many times as large as requested is replaced.
 constexpr double kMostSlack = 4;
-/// m: nothing reaches further than this.
+/// m: no box extends further than this.
 constexpr double kLargest = 1e30;
-/// Half extents along the axes of W of a box with half extents h, turned by q.
+/// Half extents, along the axes of W, of a box with half extents h rotated by q.
 Vec3 turned_half(const Quat& q, const Vec3& h)
 {
     const Mat3 R = rotation_matrix(q);
@@ -54,7 +54,7 @@ void BroadPhase::add(const Collider& collider, std::uint32_t member, Membership 
         search_->add_box(index, membership);
 }
 
-/// Whether what the search holds covers the box with its margin, and is not many times too large for it.
+/// Whether the box in the search structure covers the tight box with its margin, and is not far too large for it.
 bool BroadPhase::fits(const Part& part) const
 {
     const double most = 2 * kMostSlack * (largest(part.tight.upper - part.tight.lower) + 2 * growth_);
@@ -95,7 +95,8 @@ void BroadPhase::move(std::uint32_t index, const Collider& collider, const Pose&
     part.tight = {center - half, center + half};
 }
 
-/// A box is grown by half the margin, and so is a half-space: with some slack, so that small changes of the margin need no search.
+/// Boxes and half-spaces are each grown by half the margin, with some slack so that small changes of the margin need no new
+/// search.
 void BroadPhase::raise_half_spaces()
 {
     if (growth_ <= raised_ && (growth_ == 0 || raised_ <= 4 * kSlackOfMargin * growth_)) return;
@@ -120,7 +121,7 @@ bool BroadPhase::near(const Part& a, const Part& b) const
 void BroadPhase::search()
 {
     search_->find(near_);
-    // The order in which pairs are found depends on who moved last; it ends here.
+    // The order of the pairs depends on which part moved last; sorting removes that dependence.
     const auto key = [&](const Pair& p) { return std::tuple(parts_[p.first].member, parts_[p.second].member, p.first, p.second); };
     std::sort(near_.begin(), near_.end(), [&](const Pair& x, const Pair& y) { return key(x) < key(y); });
     near_.erase(std::unique(near_.begin(), near_.end()), near_.end());

@@ -1,4 +1,5 @@
-/// Which pairs of shapes are near one another: bounding boxes in a tree of our own, or in one of ODE's collision spaces.
+/// The broad phase: which pairs of shapes are near one another, by bounding boxes in pLab's own tree or in one of ODE's
+/// collision spaces.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +15,24 @@
 namespace plab::detection
 {
 
-/// One box per part (a shape on a body), along the axes of W. The search holds a box that is a tenth larger and is asked again
-/// only when a part has left it: trial after trial of one impact costs no search. The answer is filtered with the tight
-/// boxes, so it is a function of the present poses, whatever the search was asked when, and the same for every kind of search.
+/// Keeps one axis-aligned box in W per part (a shape on a body). The search structure holds a box enlarged by a tenth and is
+/// queried again only when a part has left its enlarged box, so the trials that locate an impact cost no search. The result is
+/// then filtered with the tight boxes. It is therefore a function of the present poses alone, independent of when the structure
+/// was queried, and the same for every kind of search.
 class BroadPhase
 {
 public:
     using Pair = PartPair;
 
-    /// `kind`: "tree", or an ODE space: "simple", "sweep_and_prune", "quadtree". `parts`: how many will be added.
+    /// `kind`: "tree", or an ODE space: "simple", "sweep_and_prune", "quadtree". `parts`: the number of parts that will be
+    /// added.
     void reset(const std::string& kind, std::size_t parts);
-    /// Parts are numbered in the order of this call; `member` (the body) must not decrease.
+    /// Parts are numbered in the order of these calls; `member` (the body) must not decrease.
     void add(const Collider& collider, std::uint32_t member, Membership membership);
     void move(std::uint32_t part, const Collider& collider, const Pose& X_WS);
-    /// Pairs (i, j), i < j, whose tight boxes are no further apart than `margin` (m); by members, then parts.
+    /// Pairs (i, j), i < j, whose tight boxes are at most `margin` (m) apart; ordered by members, then parts.
     const std::vector<Pair>& find_pairs(double margin = 0);
-    /// Gives the tight box of a part, grown by `growth` (m), to a sweep.
+    /// Passes the tight box of a part, grown by `growth` (m), to a sweep.
     void offer(std::uint32_t part, double growth, NearSweep& sweep) const;
 
 private:
@@ -38,7 +41,7 @@ private:
         std::uint32_t member = 0;
         bool collides = false;
         bool unbounded = false;
-        Vec3 normal;        // of an unbounded one: the half-space normal . p <= offset
+        Vec3 normal;        // for unbounded parts: the half-space normal . p <= offset
         double offset = 0;  // m
         Box tight, wide;
     };
@@ -51,10 +54,10 @@ private:
     std::unique_ptr<PairSearch> search_;
     std::vector<Part> parts_;
     std::vector<std::uint32_t> half_spaces_;  // parts
-    double raised_ = 0;                       // m, by which the search holds half-spaces that are larger than they are
+    double raised_ = 0;                       // m, by which half-spaces are enlarged in the search structure
     std::vector<Pair> near_, pairs_;
     bool stale_ = true;
-    double growth_ = 0;  // m, by which the tight boxes are grown in the present question
+    double growth_ = 0;  // m, by which the tight boxes are grown in the present query
 };
 
 }  // namespace plab::detection

@@ -1,4 +1,4 @@
-/// A shape as detection needs it: its geometry and hull.
+/// A shape in the form that collision detection needs: its geometry, and a hull or surface built from it.
 #pragma once
 
 #include <array>
@@ -14,21 +14,21 @@ namespace plab::detection
 
 enum class ColliderKind : std::uint8_t
 {
-    None,  ///< for drawing only, a hull without volume, or a compound (its parts collide): never touches
+    None,  ///< for drawing only, a hull without volume, or a compound (whose parts collide instead): never collides
     Sphere,
     Plane,
     Box,
     Hull,
     Capsule,
     Cylinder,
-    Bowl,  ///< surfaces (plab/surface.h): they meet solids, but neither one another nor planes
+    Bowl,  ///< from here on surfaces (plab/surface.h): they collide with solids, but neither with one another nor with planes
     Bore,
     Triangles,
 };
 inline bool is_surface(ColliderKind kind) { return kind >= ColliderKind::Bowl; }
 
-/// Built once per shape and shared by all bodies that name it. Keeps the geometry that it was built from, so that a
-/// change of a shape's parameter is seen by comparison.
+/// Built once per shape and shared by all bodies that use it. Keeps the geometry that it was built from, so that a changed
+/// parameter of the shape is detected by comparison.
 class Collider
 {
 public:
@@ -37,13 +37,13 @@ public:
     bool built_from(const Geometry& geometry) const;
     ColliderKind kind() const { return kind_; }
     const Pose& pose() const { return source_.pose; }  ///< X_BS
-    const Vec3& size() const { return source_.size; }  ///< of bowls and bores: x radius, z reach
+    const Vec3& size() const { return source_.size; }  ///< of bowls and bores: x is the radius, z the reach
     const Hull& hull() const { return hull_; }         ///< of meshes
     const TriangleSurface& triangles() const { return triangles_; }
     /// Why a shape that should collide does not; empty if nothing is wrong.
     const std::string& complaint() const { return complaint_; }
 
-    /// Half extents and centre in S of a box around the shape; not for planes.
+    /// Half extents and centre, in S, of a box around the shape; undefined for planes.
     Vec3 bound_half() const;
     Vec3 bound_center() const;
 

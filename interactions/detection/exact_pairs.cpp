@@ -10,11 +10,11 @@ namespace plab::detection
 {
 namespace
 {
-/// Upwards, for centres that coincide and so have no direction between them.
-constexpr Vec3 kNoDirection{0, 0, 1};
+/// Fallback direction, upwards, for coincident centres.
+constexpr Vec3 kNoNormal{0, 0, 1};
 
-/// A sphere whose centre is `out` m (< 0: inside) from the nearest point of a solid's surface; n points from solid to
-/// sphere.
+/// A sphere whose centre is at the distance `out` (m, < 0: inside) from the nearest point of a solid's surface; n points from
+/// the solid to the sphere.
 ContactPoint sphere_contact_point(double radius, const Vec3& nearest, const Vec3& n, double outside)
 {
     const double depth = radius - outside;
@@ -26,7 +26,7 @@ void sphere_sphere(double radius_a, const Vec3& a, double radius_b, const Vec3& 
 {
     const Vec3 r = b - a;
     const double distance = length(r);
-    const Vec3 n = distance > 0 ? r / distance : kNoDirection;
+    const Vec3 n = distance > 0 ? r / distance : kNoNormal;
     const double depth = (radius_a + radius_b) - distance;
     out.add({a + n * (radius_a - 0.5 * depth), n, depth, 0});
 }

@@ -8,57 +8,57 @@ namespace plab::detection
 namespace
 {
 constexpr double kEpsilon = 2.3e-16;
-using Index = std::uint16_t;
+using PointIndex = std::uint16_t;
 
-/// A convex polytope inside A - B, as triangles that know their neighbours.
+/// A convex polytope inside A - B: triangles with adjacency.
 class Polytope
 {
 public:
     Polytope(const Solid& A, const Solid& B) : A_(A), B_(B), scale_(A.extent() + B.extent()) {}
     bool start();
-    /// The outward direction in which A - B reaches least far from the origin.
+    /// The outward direction along which the boundary of A - B is nearest to the origin.
     Vec3 grow(double tolerance);
     bool converged() const { return converged_; }
 
 private:
-    static constexpr std::size_t kMostPoints = 128, kMostFaces = 640;  // dead faces keep their place
+    static constexpr std::size_t kMostPoints = 128, kMostFaces = 640;  // removed faces keep their index
     struct Face
     {
-        std::array<Index, 3> corner, beside;  ///< beside[i]: across the edge from corner[i] to the next
+        std::array<PointIndex, 3> corner, beside;  ///< beside[i]: across the edge from corner[i] to the next
         Vec3 normal;
         double offset = 0;
         bool alive = true;
     };
     struct Rim
     {
-        Index from, to, beyond;  ///< an edge of the hole, and the face on its far side
+        PointIndex from, to, beyond;  ///< an edge of the hole, and the face on its far side
     };
 
-    Index add_point(const Vec3& d);
-    bool add_face(Index a, Index b, Index c);
+    PointIndex add_point(const Vec3& d);
+    bool add_face(PointIndex a, PointIndex b, PointIndex c);
     bool link_first();
     std::size_t nearest() const;
     bool collect_rim(std::size_t seed, const Vec3& w);
-    bool close_rim(Index eye);
+    bool close_rim(PointIndex eye);
 
     const Solid& A_;
     const Solid& B_;
     double scale_;
     std::array<Vec3, kMostPoints> points_;
     std::array<Face, kMostFaces> faces_;
-    std::array<Index, kMostFaces> open_;
+    std::array<PointIndex, kMostFaces> open_;
     std::array<Rim, kMostPoints> rim_, ordered_;
     std::size_t count_ = 0, face_count_ = 0, rim_count_ = 0;
     bool converged_ = true;
 };
 
-Index Polytope::add_point(const Vec3& d)
+PointIndex Polytope::add_point(const Vec3& d)
 {
     points_[count_] = support_of(A_, B_, d).w;
-    return static_cast<Index>(count_++);
+    return static_cast<PointIndex>(count_++);
 }
 
-bool Polytope::add_face(Index a, Index b, Index c)
+bool Polytope::add_face(PointIndex a, PointIndex b, PointIndex c)
 {
     if (face_count_ == kMostFaces) return false;
     Face& f = faces_[face_count_++];
@@ -71,7 +71,7 @@ bool Polytope::add_face(Index a, Index b, Index c)
     return true;
 }
 
-/// A tetrahedron of supports: as long, then as wide, then as thick as the axes at hand find it.
+/// Starts with a tetrahedron of support points: it is made as long, then as wide, then as thick as the axes tried allow.
 bool Polytope::start()
 {
     const auto further = [&](const Vec3& d, const Vec3& from)
@@ -109,7 +109,7 @@ bool Polytope::link_first()
             for (std::size_t g = 0; g < 4; ++g)
                 for (std::size_t j = 0; j < 3; ++j)
                     if (faces_[f].corner[i] == faces_[g].corner[(j + 1) % 3] && faces_[f].corner[(i + 1) % 3] == faces_[g].corner[j])
-                        faces_[f].beside[i] = static_cast<Index>(g);
+                        faces_[f].beside[i] = static_cast<PointIndex>(g);
     return true;
 }
 
@@ -121,13 +121,13 @@ std::size_t Polytope::nearest() const
     return best;
 }
 
-/// Takes away the patch of faces that see w; what borders on it is the rim.
+/// Removes the faces that are visible from w; the edges to the remaining faces form the rim of the hole.
 bool Polytope::collect_rim(std::size_t seed, const Vec3& w)
 {
     std::size_t open = 0;
     rim_count_ = 0;
     faces_[seed].alive = false;
-    open_[open++] = static_cast<Index>(seed);
+    open_[open++] = static_cast<PointIndex>(seed);
     for (std::size_t k = 0; k < open; ++k)
     {
         const Face& f = faces_[open_[k]];
@@ -148,8 +148,8 @@ bool Polytope::collect_rim(std::size_t seed, const Vec3& w)
     return rim_count_ >= 3;
 }
 
-/// A cone from the rim, which must be one closed loop, to the new point.
-bool Polytope::close_rim(Index eye)
+/// Closes the hole by triangles from the rim, which must be one closed loop, to the new point.
+bool Polytope::close_rim(PointIndex eye)
 {
     ordered_[0] = rim_[0];
     for (std::size_t k = 1; k < rim_count_; ++k)
@@ -160,16 +160,16 @@ bool Polytope::close_rim(Index eye)
         ordered_[k] = *next;
     }
     if (ordered_[rim_count_ - 1].to != ordered_[0].from) return false;
-    const auto first = static_cast<Index>(face_count_);
+    const auto first = static_cast<PointIndex>(face_count_);
     for (std::size_t k = 0; k < rim_count_; ++k)
     {
         const Rim& r = ordered_[k];
         if (!add_face(r.from, r.to, eye)) return false;
         const std::size_t next = (k + 1) % rim_count_, last = (k + rim_count_ - 1) % rim_count_;
-        faces_[first + k].beside = {r.beyond, static_cast<Index>(first + next), static_cast<Index>(first + last)};
+        faces_[first + k].beside = {r.beyond, static_cast<PointIndex>(first + next), static_cast<PointIndex>(first + last)};
         Face& beyond = faces_[r.beyond];
         for (std::size_t i = 0; i < 3; ++i)
-            if (beyond.corner[i] == r.to && beyond.corner[(i + 1) % 3] == r.from) beyond.beside[i] = static_cast<Index>(first + k);
+            if (beyond.corner[i] == r.to && beyond.corner[(i + 1) % 3] == r.from) beyond.beside[i] = static_cast<PointIndex>(first + k);
     }
     return true;
 }
@@ -188,7 +188,7 @@ Vec3 Polytope::grow(double tolerance)
             converged_ = false;
             break;
         }
-        const Index eye = add_point(n);
+        const PointIndex eye = add_point(n);
         const double reach = dot(n, points_[eye]);
         if (reach < least) least = reach, best = n;
         if (least - faces_[f].offset <= std::max(tolerance * std::fabs(least), 4 * kEpsilon * scale_)) break;
@@ -201,7 +201,7 @@ Vec3 Polytope::grow(double tolerance)
     return best;
 }
 
-/// B, moved.
+/// B, translated.
 Solid moved(const Solid& B, const Vec3& by)
 {
     Solid out = B;
@@ -216,7 +216,7 @@ Overlap refine(const Solid& A, const Solid& B, const Vec3& n)
 {
     constexpr int kMost = 16;
     const double scale = A.extent() + B.extent(), slack = 8 * kEpsilon * scale;
-    // Far enough for the nearest points to be well known, near enough to see the same features.
+    // Far enough apart for accurate closest points, near enough to meet the same features.
     const double delta = 1e-3 * scale;
     const Support s = support_of(A, B, n);
     Overlap out{s.a, s.b, n, dot(n, s.w), true};
@@ -225,7 +225,7 @@ Overlap refine(const Solid& A, const Solid& B, const Vec3& n)
         const Vec3 shift = (out.depth + delta) * out.normal;
         const NearestPair apart = nearest_pair(A, moved(B, shift));
         if (!apart.apart) break;
-        if (i == 0) out.a = apart.a, out.b = apart.b - shift;  // a support may be any corner of a face
+        if (i == 0) out.a = apart.a, out.b = apart.b - shift;  // a support point may be any corner of a face
         const double depth = depth_along(A, B, apart.normal);
         if (!(depth <= out.depth + slack)) break;
         const bool settled = length(apart.normal - out.normal) <= 8 * kEpsilon;

@@ -7,10 +7,10 @@ namespace plab::detection
 {
 namespace
 {
-constexpr double kEpsilon = 2.3e-16;
+constexpr double kGjkEpsilon = 2.3e-16;
 constexpr int kMostRounds = 96;
 
-/// Which corners of a simplex a point comes from, with their weights.
+/// A point of a simplex, as a convex combination of some of its corners.
 struct Part
 {
     Vec3 p;
@@ -51,7 +51,7 @@ void try_triangle(const Corners& s, std::uint8_t i, std::uint8_t j, std::uint8_t
     try_segment(s, i, j, best), try_segment(s, j, k, best), try_segment(s, k, i, best);
 }
 
-/// True if the origin is inside; else the nearest part of the surface is offered.
+/// Returns true if the origin is inside; otherwise offers the nearest point of the surface.
 bool try_tetrahedron(const Corners& s, Part& best)
 {
     constexpr std::array<std::array<std::uint8_t, 4>, 4> kFaces{{{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}}};
@@ -69,7 +69,7 @@ bool try_tetrahedron(const Corners& s, Part& best)
     return inside;
 }
 
-/// Reduces the simplex to the part that is nearest to the origin.
+/// Reduces the simplex to the vertices that span its point nearest to the origin.
 void reduce(Simplex& s)
 {
     Part best;
@@ -95,7 +95,7 @@ bool holds(const Simplex& s, const Vec3& w)
     return std::any_of(s.at.begin(), s.at.begin() + static_cast<std::ptrdiff_t>(s.count), [&](const Support& k) { return k.w == w; });
 }
 
-/// Solves M x = r by elimination with full pivoting; directions in which M is singular get nothing.
+/// Solves M x = r by elimination with full pivoting; components of x in singular directions are 0.
 Vec3 solve_where_regular(Mat3 M, Vec3 r)
 {
     std::array<int, 3> column{0, 1, 2};
@@ -131,7 +131,7 @@ Vec3 solve_where_regular(Mat3 M, Vec3 r)
 struct ClosestPoints
 {
     ClosestPoint a, b;
-    double squared = 0;  ///< of the distance
+    double squared = 0;  ///< distance squared
 };
 
 class Polish
@@ -168,7 +168,8 @@ private:
     Facelet face_a_, face_b_;
 };
 
-/// Alternating projections never part the points; Newton's step makes them quick where they crawl.
+/// Alternating projections never increase the distance, but may converge slowly; a Newton step is taken where it does at least
+/// as well.
 ClosestPoints Polish::from(const Vec3& p_start) const
 {
     constexpr int kMost = 24;
@@ -177,12 +178,12 @@ ClosestPoints Polish::from(const Vec3& p_start) const
     for (int i = 0; i < kMost; ++i)
     {
         const Vec3 step = now.a.p - p;
-        if (length(step) <= 2 * kEpsilon * scale_) break;
+        if (length(step) <= 2 * kGjkEpsilon * scale_) break;
         const Vec3 newton = solve_where_regular(Mat3::identity() - now.a.J * now.b.J, step);
         const ClosestPoints ahead = closest_points_of(p + newton), plain = closest_points_of(now.a.p);
         const bool better = is_finite(newton) && ahead.squared <= plain.squared;
         p = better ? p + newton : now.a.p;
-        if (better && length(newton) <= 2 * kEpsilon * scale_) break;
+        if (better && length(newton) <= 2 * kGjkEpsilon * scale_) break;
         now = better ? ahead : plain;
     }
     return now;
@@ -220,14 +221,14 @@ GjkResult gjk(const Solid& A, const Solid& B, double tolerance)
     for (int i = 0; i < kMostRounds; ++i)
     {
         const double distance = length(s.nearest);
-        if (distance <= 4 * kEpsilon * scale)
+        if (distance <= 4 * kGjkEpsilon * scale)
         {
             s.encloses = true;
             return out;
         }
         const Support next = support_of(A, B, -s.nearest);
         const double gain = distance - dot(s.nearest, next.w) / distance;
-        if (gain <= std::max(tolerance, kEpsilon * distance) || holds(s, next.w)) return out;
+        if (gain <= std::max(tolerance, kGjkEpsilon * distance) || holds(s, next.w)) return out;
         const Simplex before = s;
         s.at[s.count++] = next;
         reduce(s);
@@ -246,7 +247,7 @@ NearestPair nearest_pair(const Solid& A, const Solid& B)
 {
     const double scale = A.extent() + B.extent();
     const bool curved = A.curved() || B.curved();
-    const GjkResult found = gjk(A, B, (curved ? 1e-7 : 2 * kEpsilon) * scale);
+    const GjkResult found = gjk(A, B, (curved ? 1e-7 : 2 * kGjkEpsilon) * scale);
     NearestPair out;
     if (found.simplex.encloses) return out;
 
@@ -254,7 +255,7 @@ NearestPair nearest_pair(const Solid& A, const Solid& B)
     const ClosestPoints closest_points = polish.from(found.simplex.nearest_a);
     out.a = closest_points.a.p, out.b = closest_points.b.p;
     const double distance = std::sqrt(closest_points.squared);
-    if (closest_points.a.flat == 3 || closest_points.b.flat == 3 || distance <= 4 * kEpsilon * scale) return out;
+    if (closest_points.a.flat == 3 || closest_points.b.flat == 3 || distance <= 4 * kGjkEpsilon * scale) return out;
     out.normal = polish.normal_of(closest_points);
     out.gap = dot(out.normal, out.b - out.a);
     out.apart = out.gap > 0;

@@ -6,8 +6,8 @@ namespace
 {
 using Index = std::uint32_t;
 
-/// Cosine between normals of faces that are in one plane: an angle of 1.4e-6, more than vertices of 7 digits make.
-constexpr double kFlat = 1 - 1e-12;
+/// Cosine between the normals of coplanar faces. The angle is 1.4e-6, more than vertices rounded to 7 digits cause.
+constexpr double kFlatHull = 1 - 1e-12;
 
 void find_bounds(Hull& hull)
 {
@@ -27,11 +27,11 @@ void find_edges(Hull& hull)
         for (std::size_t i = 0; i < 3; ++i)
         {
             const Index a = hull.faces[f][i], b = hull.faces[f][(i + 1) % 3];
-            if (a < b && dot(hull.normals[f], hull.normals[hull.beside[f][i]]) <= kFlat) hull.edges.push_back({a, b});
+            if (a < b && dot(hull.normals[f], hull.normals[hull.beside[f][i]]) <= kFlatHull) hull.edges.push_back({a, b});
         }
 }
 
-/// The faces that lie in the plane of `seed` and hang together with it get its number.
+/// Gives one number to all faces that are coplanar with `seed` and connected to it.
 std::vector<std::size_t> joined_faces(const Hull& hull, std::size_t seed, std::vector<std::uint8_t>& taken)
 {
     std::vector<std::size_t> out{seed};
@@ -39,14 +39,14 @@ std::vector<std::size_t> joined_faces(const Hull& hull, std::size_t seed, std::v
     for (std::size_t k = 0; k < out.size(); ++k)
         for (const Index next : hull.beside[out[k]])
         {
-            if (taken[next] || dot(hull.normals[seed], hull.normals[next]) <= kFlat) continue;
+            if (taken[next] || dot(hull.normals[seed], hull.normals[next]) <= kFlatHull) continue;
             taken[next] = 1;
             out.push_back(next);
         }
     return out;
 }
 
-/// The border of joined faces; empty if it is not one closed line.
+/// The border of merged faces; empty if it is not one closed loop.
 std::vector<Index> border_of(const Hull& hull, const std::vector<std::size_t>& joined)
 {
     std::map<Index, Index> rim;

@@ -1,4 +1,4 @@
-/// The convex hull of a mesh as collision needs it.
+/// The convex hull of a mesh, with the adjacency that collision needs.
 #pragma once
 
 #include "plab/convex_hull.h"
@@ -6,15 +6,15 @@
 namespace plab::detection
 {
 
-/// A convex polyhedron with the edges and polygons of its triangles.
+/// A convex polyhedron, with the edges and polygons formed by its triangles.
 struct Hull : ConvexHull
 {
-    std::vector<std::array<std::uint32_t, 2>> edges;  ///< those between faces that are not in one plane
-    /// Faces with those in the same plane joined: polygon i is loop[loop_end[i - 1] .. loop_end[i]), counter-clockwise.
+    std::vector<std::array<std::uint32_t, 2>> edges;  ///< edges between triangles that are not coplanar
+    /// Coplanar triangles are merged to polygons: polygon i is loop[loop_end[i - 1] .. loop_end[i]), counter-clockwise.
     std::vector<std::uint32_t> loop, loop_end;
     std::vector<Vec3> loop_normals;
     Vec3 lower, upper;  ///< bounds, m
-    Vec3 center;        ///< mean of the vertices, m; inside
+    Vec3 center;        ///< mean of the vertices, m; it is inside
 };
 
 Result<Hull> make_hull(std::span<const Vec3> points);

@@ -13,14 +13,15 @@ namespace plab::detection
 {
 namespace
 {
-/// A face takes part if it faces the other solid within 0.1 rad, or within 1.2 rad where the other's face does so.
-constexpr double kParallel = 0.995, kLeaning = 0.3;
-/// Shares of the solids' size: corners on the border count as inside, as far as no depth feels it (kDepthError), so that
-/// stacks of equal boxes keep their features; points that near to another are the same.
-constexpr double kOnBorder = 1e-9, kDepthError = 1e-15, kSamePlace = 1e-6;
+/// Cosines. A face takes part if it faces the other solid within 0.1 rad, or within 1.2 rad if the face of the other does so
+/// within 0.1 rad.
+constexpr double kParallelFaces = 0.995, kLeaning = 0.3;
+/// As fractions of the solids' size. Corners that are outside by at most kOnBorder count as inside, as long as this changes no
+/// depth by more than kDepthError: stacks of equal boxes thus keep their features. Points closer than kSamePoint are merged.
+constexpr double kOnBorder = 1e-9, kDepthError = 1e-15, kSamePoint = 1e-6;
 constexpr std::uint32_t kCornerMask = (1u << 18) - 1, kEdgeMask = (1u << 9) - 1;
 
-/// Takes points of A and B that lie over one another.
+/// Collects pairs of points of A and B that lie opposite one another along the normal.
 class Collector
 {
 public:
@@ -30,7 +31,7 @@ public:
         if (!few) spread_.emplace(n, out.margin());
     }
 
-    /// `fresh`: no point before can be in the same place.
+    /// `fresh`: the caller knows that no earlier point can be in the same place.
     void offer(const Vec3& on_a, const Vec3& on_b, std::uint32_t feature, bool fresh = false)
     {
         const double gap = dot(n_, on_b - on_a) - (radius_a_ + radius_b_);
@@ -41,7 +42,7 @@ public:
         if (fresh || !is_taken(point)) out_.add({point, n_, -gap, feature});
     }
     double deepest() const { return deepest_; }
-    /// m; where the surfaces lean to one another by `sine`.
+    /// Tolerance at borders, m, for surfaces at an angle with this sine.
     double tolerance(double sine) const { return std::min(kOnBorder, kDepthError / sine) * size_; }
     void finish()
     {
@@ -52,7 +53,7 @@ public:
 private:
     bool is_taken(const Vec3& point) const
     {
-        const double near = kSamePlace * size_;
+        const double near = kSamePoint * size_;
         for (const ContactPoint& t : out_.all().subspan(first_))
             if (length_squared(t.point - point) < near * near) return true;
         return false;
@@ -61,26 +62,26 @@ private:
     double radius_a_, radius_b_;
     Vec3 n_;
     ContactPoints& out_;
-    std::optional<Spread> spread_;  // where many points may come
+    std::optional<Spread> spread_;  // used where there may be many points
     std::size_t first_;
     double size_;
     double deepest_ = -HUGE_VAL;
 };
 
-/// Where the line through p along n meets the plane of a flat patch.
+/// The intersection of the line through p along n with the plane of a flat supporting face.
 Vec3 dropped(const Vec3& p, const Vec3& n, const SupportingFace& onto)
 {
     return p + n * (dot(onto.normal, onto.origin() - p) / dot(onto.normal, n));
 }
 
-/// Sine of the angle between a line or a flat patch X and the flat patch Y.
+/// Sine of the angle between X (a line or a flat face) and the flat face Y.
 double lean_of(const SupportingFace& X, const SupportingFace& Y)
 {
     if (X.kind == SupportingFace::Kind::Line) return std::fabs(dot(normalized(X.corners[1].p - X.corners[0].p), Y.normal));
     return length(cross(X.normal, Y.normal));
 }
 
-/// Edges of X (a line or a face) on the flat patch Y.
+/// Clips the edges of X (a line or a face) against the flat face Y.
 void lay_edges(const SupportingFace& X, const SupportingFace& Y, bool x_is_a, Collector& out)
 {
     const Vec3& n = out.normal();
@@ -114,7 +115,7 @@ void lay_edges(const SupportingFace& X, const SupportingFace& Y, bool x_is_a, Co
     }
 }
 
-/// Corners of X (a face, or the points that stand for a rim) on the flat patch Y.
+/// Projects the corners of X (a face, or the points that represent a rim) onto the flat face Y.
 void lay_corners(const SupportingFace& X, const SupportingFace& Y, bool x_is_a, Collector& out)
 {
     const Vec3& n = out.normal();
@@ -133,10 +134,10 @@ void lay_corners(const SupportingFace& X, const SupportingFace& Y, bool x_is_a, 
     for (std::uint32_t i = rim.count; i-- > 0;) lay(rim.p[i], rim.id[i] + (X.upper ? 8 : 0));
 }
 
-/// The planes that bound a face and the way to it along n, as four numbers each.
+/// The planes through the edges of a face, and the plane of the face along n, as four numbers each.
 struct FaceFrame
 {
-    Vec3 along;  ///< its distance from p along n is level - along . p
+    Vec3 along;  ///< the distance from p to the face along n is level - along . p
     double level = 0;
     std::array<double, kMostCorners> limit;  ///< p is inside edge k if corners[k].inward . p >= limit[k]
 
@@ -146,7 +147,7 @@ struct FaceFrame
     }
 };
 
-/// Face on face: as lay_edges(X on Y) and lay_corners(Y on X), with each corner dropped and measured once.
+/// Face on face: equivalent to lay_edges(X on Y) and lay_corners(Y on X), but projects and measures each corner once.
 void lay_faces(const SupportingFace& X, const SupportingFace& Y, Collector& out)
 {
     const Vec3& n = out.normal();
@@ -182,10 +183,10 @@ void lay_faces(const SupportingFace& X, const SupportingFace& Y, Collector& out)
     }
 }
 
-/// Where the rims of two ends cross, seen along the normal; taken as circles, which they are when they face one another.
+/// The crossings of two rims, seen along the normal. The rims are treated as circles, which is right when the ends are parallel.
 void lay_rims(const SupportingFace& X, const SupportingFace& Y, Collector& out)
 {
-    if (-dot(X.normal, Y.normal) < kParallel) return;
+    if (-dot(X.normal, Y.normal) < kParallelFaces) return;
     const Vec3& n = out.normal();
     const Vec3 center = X.origin(), across = dropped(Y.origin(), n, X) - center;
     const double r = X.solid->size().x, s = Y.solid->size().x, d = length(across);
@@ -199,12 +200,12 @@ void lay_rims(const SupportingFace& X, const SupportingFace& Y, Collector& out)
     }
 }
 
-/// Two edges side by side: the ends of what they share.
+/// Two nearly parallel edges: the ends of the part that they share.
 void lay_lines(const SupportingFace& X, const SupportingFace& Y, Collector& out)
 {
     const Vec3 a = X.corners[0].p, u = X.corners[1].p - a, b = Y.corners[0].p, v = Y.corners[1].p - b;
     const double uu = length_squared(u), vv = length_squared(v);
-    if (length_squared(cross(u, v)) > (1 - kParallel) * 2 * uu * vv) return;
+    if (length_squared(cross(u, v)) > (1 - kParallelFaces) * 2 * uu * vv) return;
     const auto lay = [&](const SupportingFace& P, const Vec3& q, const Vec3& w, double ww, bool p_is_a)
     {
         for (const FaceCorner& c : P.corners)
@@ -232,7 +233,7 @@ void lay_patches(const SupportingFace& X, const SupportingFace& Y, Collector& ou
     if (Y.kind == Kind::Line && X.kind == Kind::Face) lay_edges(Y, X, false, out);
 }
 
-/// The nearest points of the edges of two boxes whose product is the normal.
+/// The closest points of two box edges whose cross product is the normal.
 Separation edge_pair(const Solid& A, const Solid& B, const BoxAxis& axis)
 {
     const Vec3 a = A.support(axis.normal), b = B.support(-axis.normal);
@@ -276,7 +277,7 @@ RimPoints rim_points(const Solid& c, bool upper, const Vec3& direction)
     for (; out.count < 4; ++out.count) out.p[out.count] = middle + c.size().x * fixed[out.count], out.id[out.count] = out.count;
     const Vec3 across = direction - dot(direction, u) * u;
     const double sine = length(across);
-    // An end that is level has no furthest point: what rounding chose would jump about.
+    // A level end has no furthest point: the choice would depend on rounding and jump from step to step.
     if (sine > 1e-12) out.p[out.count] = middle + (c.size().x / sine) * across, out.id[out.count++] = RimPoints::kFurthest;
     return out;
 }
@@ -285,14 +286,14 @@ void add_manifold(const Solid& A, const Solid& B, const Separation& s, ContactPo
 {
     if (!(s.gap < out.margin() || s.gap < 0)) return;
     std::array<FaceCorner, kMostCorners> room_a, room_b;
-    SupportingFace X = supporting_face(A, s.normal, kParallel, room_a), Y = supporting_face(B, -s.normal, kParallel, room_b);
+    SupportingFace X = supporting_face(A, s.normal, kParallelFaces, room_a), Y = supporting_face(B, -s.normal, kParallelFaces, room_b);
     if (X.flat() && !Y.flat()) Y = supporting_face(B, -s.normal, kLeaning, room_b);
     if (Y.flat() && !X.flat()) X = supporting_face(A, s.normal, kLeaning, room_a);
     const bool few =
         X.corners.size() + Y.corners.size() <= 8 && X.kind != SupportingFace::Kind::Disc && Y.kind != SupportingFace::Kind::Disc;
     Collector collector(A, B, s.normal, few, out);
     lay_patches(X, Y, collector);
-    // Corners on corners, edges that cross: nothing is as near as the nearest points.
+    // Corner on corner, or crossing edges: no other point is as near as the closest points.
     const double enough = std::max(1e-3 * std::fabs(s.gap), 1e-12 * (A.extent() + B.extent()));
     if (collector.deepest() < -s.gap - enough)
         collector.offer(s.point_a - A.radius() * s.normal, s.point_b + B.radius() * s.normal, kNearestFeature);
@@ -306,7 +307,7 @@ void box_box(const Solid& A, const Solid& B, ContactPoints& out)
     if (!(axis.gap < out.margin() || axis.gap < 0)) return;
     std::array<FaceCorner, 4> room_a, room_b;
     const SupportingFace X = box_face(A, axis.normal, room_a), Y = box_face(B, -axis.normal, room_b);
-    const bool parallel = dot(X.normal, axis.normal) >= kParallel || dot(Y.normal, axis.normal) <= -kParallel;
+    const bool parallel = dot(X.normal, axis.normal) >= kParallelFaces || dot(Y.normal, axis.normal) <= -kParallelFaces;
     if (axis.edge_a >= 0 && !parallel) return add_manifold(A, B, edge_pair(A, B, axis), out);
     Collector collector(A, B, axis.normal, true, out);
     lay_patches(X, Y, collector);
@@ -317,7 +318,7 @@ void box_box(const Solid& A, const Solid& B, ContactPoints& out)
         const Separation s = edge_pair(A, B, axis);
         return collector.offer(s.point_a, s.point_b, kNearestFeature);
     }
-    // Corner beside corner: further apart than any axis tells.
+    // Corner beside corner: the distance is larger than the gap along any of the axes.
     if (axis.gap >= 0 && collector.deepest() == -HUGE_VAL) add_manifold(A, B, separation_of(A, B), out);
 }
 

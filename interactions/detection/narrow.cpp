@@ -13,8 +13,8 @@ namespace plab::detection
 {
 namespace
 {
-/// Pairs are computed in this order, whatever order they are given in, so that (b, a) is the mirror of (a, b) to the last
-/// bit: by kind (planes and surfaces last), then by size and pose.
+/// Pairs are computed in this order, whatever order they are passed in, so that the result for (b, a) is the exact mirror image
+/// of that for (a, b): by kind (planes and surfaces last), then by size and pose.
 bool in_order(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b)
 {
     const auto rank = [](const Collider& c)
@@ -50,7 +50,7 @@ void collide_with_plane(const Collider& a, const Pose& X_a, const Pose& X_plane,
     }
 }
 
-/// Of round and pointed solids: one point.
+/// Pairs that touch in a single point, such as those with a sphere.
 void add_nearest(const Separation& s, ContactPoints& out) { out.add({(s.point_a + s.point_b) * 0.5, s.normal, -s.gap, 0}); }
 
 void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, ContactPoints& out)
@@ -61,7 +61,7 @@ void collide_ordered(const Collider& a, const Pose& X_a, const Collider& b, cons
     if (a.kind() == Sphere && b.kind() == Sphere) return sphere_sphere(a.size().x, X_a.p, b.size().x, X_b.p, out);
     if (a.kind() == Sphere && b.kind() == Box) return sphere_box(a.size().x, X_a.p, b.size(), X_b, out);
     const Solid A(a, X_a), B(b, X_b);
-    // Balls around them that are apart settle most pairs.
+    // A test of bounding spheres rejects most pairs.
     const double reach = A.extent() + A.radius() + B.extent() + B.radius() + out.margin();
     if (length_squared(B.center() - A.center()) > reach * reach) return;
     if (a.kind() == Sphere) return add_nearest(separation_of(A, B), out);

@@ -1,4 +1,4 @@
-/// Two shapes at two poses: where they touch and how deep.
+/// The narrow phase: where two shapes at two poses touch, and how deep.
 #pragma once
 
 #include "collider.h"
@@ -7,14 +7,16 @@
 namespace plab::detection
 {
 
-/// Half-spaces and surfaces meet neither one another nor themselves; what has no volume meets nobody.
+/// Whether two kinds of shapes collide. Half-spaces and surfaces do not collide with themselves or one another; shapes without
+/// volume do not collide at all.
 bool meets(ColliderKind a, ColliderKind b);
 
-/// Right to rounding while the shapes are apart; of overlapping ones `gap` is minus a depth that goes to zero with the overlap.
+/// The signed distance. Accurate to rounding while the shapes are separated; for overlapping shapes `gap` is minus a depth that
+/// goes to zero with the overlap.
 Separation separation(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b);
 
-/// Adds the points where `a` at X_a and `b` at X_b overlap. Both poses are relative to an origin near by, so that
-/// distances keep their digits far from the origin of W. The answer depends on nothing but the arguments.
+/// Adds the contact points of `a` at X_a and `b` at X_b. Both poses are relative to a nearby origin, so that distances keep
+/// their digits far from the origin of W. The result depends on the arguments only.
 void collide(const Collider& a, const Pose& X_a, const Collider& b, const Pose& X_b, ContactPoints& out);
 
 }  // namespace plab::detection

@@ -37,7 +37,7 @@ const NearSweep::HalfSpace* NearSweep::half_space(std::uint32_t part) const
 const std::vector<NearSweep::Pair>& NearSweep::find_all()
 {
     pairs_.clear();
-    // Bodies move little between looks: insertion sorts what is nearly sorted in one pass.
+    // Bodies move little between two calls, and insertion sort sorts nearly sorted data in one pass.
     for (std::size_t i = 1; i < order_.size(); ++i)
     {
         const std::uint32_t moving = order_[i];
@@ -73,7 +73,7 @@ const std::vector<NearSweep::Pair>& NearSweep::find_of(std::span<const std::uint
         }
         if (!bounded(i)) continue;
         const Box a = boxes_[i];
-        // Of two that are both asked for, the first one names the pair.
+        // If both parts of a pair are in `few`, the first one reports it.
         for (std::uint32_t j = 0; j < boxes_.size(); ++j)
             if (overlap(a, boxes_[j]) && bounded(j) && j != i && (asked_[j] == 0 || i < j)) pairs_.push_back(std::minmax(i, j));
         for (const HalfSpace& h : half_spaces_)

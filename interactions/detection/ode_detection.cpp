@@ -33,25 +33,26 @@ void OdeRows::describe(Schema& s)
         .default_type("Resolution/Bisection");
     s.role(response, "response", {Facet::Component}, "answers contacts").family("Response/").default_type("Response/Impulse");
     s.param(space, "space", unit::one,
-            "search for overlapping bounds: a tree of boxes (hash, of older scenes, is that too) or a space of ODE; changes no result")
+            "broad-phase search: pLab's tree of boxes (hash, in older scenes, means the same) or one of ODE's "
+            "spaces; the choice changes no result")
         .or_else("tree")
         .one_of({"tree", "hash", "simple", "sweep_and_prune", "quadtree"});
-    s.output(pairs, "pairs", unit::one, "pairs of shapes whose bounds overlapped, in the last look");
-    s.output(penetration, "penetration", unit::metre, "deepest overlap in the last look").reported_as_error();
-    s.scratch(scene, "scene", "geometries of ODE, one per body and shape; made anew from bodies and shapes when needed");
+    s.output(pairs, "pairs", unit::one, "number of shape pairs with overlapping bounding boxes in the last detection pass");
+    s.output(penetration, "penetration", unit::metre, "deepest overlap in the last detection pass").reported_as_error();
+    s.scratch(scene, "scene", "collision geometry, one per body and shape; rebuilt from bodies and shapes when needed");
 }
 
 void prepare(Row row, OdeRows& rows) { rows.scene[row].reset(); }
 
 Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes, ContactSink& sink)
 {
-    if (!start_ode()) return reason("the ODE library did not start");
+    if (!start_ode()) return reason("the ODE library could not be initialised");
     auto& scene = rows.scene[row];
     if (!scene) scene = std::make_unique<OdeScene>();
     if (scene->update(context, rows.space[row], rows.between[row], rows.against[row], bodies, shapes, sink))
         report_complaints(context, row, *scene);
     scene->detect(context, bodies, sink);
-    if (!sink.reach().empty()) return {};  // who is near was asked, nobody looked for contacts
+    if (!sink.motion_margin().empty()) return {};  // this query asked for candidate pairs, not for contacts
     if (!sink.only_persistent()) rows.pairs[row] = static_cast<std::int64_t>(scene->pairs());
     rows.penetration[row] = scene->penetration();
     return {};
@@ -59,8 +60,8 @@ Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bo
 
 Result<void> measure_gap(Row row, OdeRows& rows, const Bodies& bodies, GapQuery& query)
 {
-    if (!start_ode()) return reason("the ODE library did not start");
-    if (!rows.scene[row]) return reason("a gap can be measured after a look only");
+    if (!start_ode()) return reason("the ODE library could not be initialised");
+    if (!rows.scene[row]) return reason("a gap can be measured only after a detection pass");
     rows.scene[row]->measure(query, bodies);
     return {};
 }

@@ -1,4 +1,5 @@
-/// CDetection/ODE: finds contacts among bodies with ODE's collision spaces.
+/// CDetection/ODE: finds the contacts among bodies. The broad phase is pLab's own tree or one of ODE's collision spaces; the
+/// whole narrow phase is pLab's own.
 #pragma once
 
 #include <memory>
@@ -23,9 +24,9 @@ struct OdeRows
     void describe(Schema& schema);
 };
 
-/// Phase::Prepare: forgets what was built; bodies and shapes may not be ready yet, so detect builds.
+/// Phase::Prepare: discards what was built. Bodies and shapes may not be complete yet, so detect() builds it again.
 void prepare(Row row, OdeRows& rows);
-/// Phase::Gap: after a look in the same step.
+/// Phase::Gap: must follow a detection pass in the same step.
 Result<void> measure_gap(Row row, OdeRows& rows, const Bodies& bodies, GapQuery& query);
 /// Phase::Detect.
 Result<void> detect(const StepContext& context, Row row, OdeRows& rows, const Bodies& bodies, const Shapes& shapes, ContactSink& sink);

@@ -5,7 +5,7 @@ namespace plab::detection
 
 bool start_ode()
 {
-    // Closed when the plugin goes; all spaces are gone by then, with the worlds that held them.
+    // Closed when the plugin is unloaded; by then all spaces are gone, together with the worlds that held them.
     struct Ode
     {
         bool started = dInitODE2(0) != 0;

@@ -1,4 +1,4 @@
-/// Owners of ODE's handles: the only way in which this plugin holds them.
+/// Owning handles of ODE objects: this plugin holds ODE objects in no other way.
 #pragma once
 
 #include <ode/ode.h>
@@ -19,8 +19,8 @@ struct SpaceDestroyer
 using GeomHandle = std::unique_ptr<dxGeom, GeomDestroyer>;
 using SpaceHandle = std::unique_ptr<dxSpace, SpaceDestroyer>;
 
-/// Starts the library once per process and gives the calling thread what it needs there. ODE is never closed: worlds
-/// in other threads may still use it, and it owns nothing but caches.
+/// Initialises ODE once per process, and its data for the calling thread. Worlds in other threads may use it for as long as the
+/// plugin is loaded.
 bool start_ode();
 
 }  // namespace plab::detection

@@ -8,8 +8,8 @@ namespace plab::detection
 {
 namespace
 {
-/// Which shapes of the two bodies, and which of their corners. Bodies with more than 64 shapes wrap around; flush keeps
-/// features of one pair of bodies apart even then.
+/// Encodes the shapes of the two bodies and the feature within that pair of shapes. Numbers wrap around for bodies with more
+/// than 64 shapes; flush() keeps the features of one pair of bodies distinct even then.
 std::uint32_t feature_of(std::uint32_t slot_a, std::uint32_t slot_b, std::uint32_t local)
 {
     return ((slot_a & 63u) << 26) | ((slot_b & 63u) << 20) | (local % kFeatures);
@@ -20,7 +20,7 @@ bool same_shapes(const RefList& now, std::span<const std::uint32_t> built)
     return std::equal(now.begin(), now.end(), built.begin(), built.end(), [](const Ref& r, std::uint32_t s) { return r.index == s; });
 }
 
-/// Pairs of simple shapes that a pair counts for, as far as its hulls and triangles make it dearer than one.
+/// The extra cost of a pair with hulls or triangles, as a number of pairs of simple shapes.
 double further_pairs_of(const Collider& a, const Collider& b, std::size_t triangles)
 {
     constexpr double kVertex = 1.0 / 64;
@@ -69,7 +69,7 @@ void OdeScene::add_members(const RefList& bodies, bool between, const Bodies& ta
     for (const Ref& r : bodies)
     {
         std::uint32_t& index = member_of_body_[r.index];
-        if (index != kNoIndex) continue;  // between and against: between says more
+        if (index != kNoIndex) continue;  // a body in both roles counts as one of `between`
         index = static_cast<std::uint32_t>(members_.size());
         members_.push_back({r.index, {between, table.dynamic(r.index)}, 0, 0, 0, 0, {}, {}});
     }
@@ -80,7 +80,8 @@ void OdeScene::add_colliders(const Bodies& bodies, const Shapes& shapes)
     for (const Member& m : members_)
         for (const Ref& shape : bodies.shapes[m.body])
         {
-            // A compound too, though it does not collide itself: a change of it is seen by its collider.
+            // Compounds have a collider too although they do not collide themselves: it serves to detect a change of the
+            // compound.
             const std::vector<std::uint32_t>& of_compound = shapes.geometry[shape.index].parts;
             shape_of_collider_.push_back(shape.index);
             shape_of_collider_.insert(shape_of_collider_.end(), of_compound.begin(), of_compound.end());
@@ -143,7 +144,7 @@ void OdeScene::move_member(Member& m, const Bodies& bodies)
 
 void OdeScene::move_parts(const Bodies& bodies, bool all)
 {
-    // Compared rather than asked who is active: a request or a rewind moves bodies too.
+    // Poses are compared, since not only the solver moves bodies: requests and rewinds do so as well.
     for (Member& m : members_)
         if (all || !(m.position == bodies.position[m.body] && m.orientation == bodies.orientation[m.body])) move_member(m, bodies);
 }
@@ -196,7 +197,8 @@ void OdeScene::look(std::uint32_t part_a, std::uint32_t part_b, const Vec3& shif
     const Part &pa = parts_[part_a], &pb = parts_[part_b];
     const Member &ma = members_[pa.member], &mb = members_[pb.member];
     const Collider &ca = colliders_[pa.collider], &cb = colliders_[pb.collider];
-    // Everything is seen from the centre of mass of a, so that two bodies far from W's origin keep their digits.
+    // All poses are relative to the centre of mass of a, so that two bodies far from the origin of W lose no digits between
+    // them.
     const Vec3 origin = bodies.position[ma.body];
     const Pose X_a = place(pa, {}, bodies);
     const Pose X_b = place(pb, (bodies.position[mb.body] - origin) + shift, bodies);
@@ -254,18 +256,18 @@ void OdeScene::measure(GapQuery& query, const Bodies& bodies) const
 
 void OdeScene::report_near(const StepContext& context, ContactSink& sink)
 {
-    const std::span<const double> reach = sink.reach();
+    const std::span<const double> motion_margin = sink.motion_margin();
     const bool all = context.active_bodies.empty();
     asked_.clear();
     for (const Member& m : members_)
     {
         if (!all && context.active_bodies[m.body] == 0) continue;
-        for (std::uint32_t p = m.first_part; p < m.end_part; ++p) broad_.offer(p, reach[m.body], sweep_), asked_.push_back(p);
+        for (std::uint32_t p = m.first_part; p < m.end_part; ++p) broad_.offer(p, motion_margin[m.body], sweep_), asked_.push_back(p);
     }
     const auto& near = all ? sweep_.find_all() : sweep_.find_of(asked_);
     near_.clear();
     for (const auto& [p, q] : near) near_.emplace_back(parts_[p].member, parts_[q].member);
-    // Bodies of several parts may have come up several times.
+    // Pairs of bodies with several parts may occur several times.
     std::sort(near_.begin(), near_.end());
     near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
     for (const auto& [i, j] : near_)
@@ -274,7 +276,7 @@ void OdeScene::report_near(const StepContext& context, ContactSink& sink)
 
 void OdeScene::detect(const StepContext& context, const Bodies& bodies, ContactSink& sink)
 {
-    if (!sink.reach().empty()) return report_near(context, sink);
+    if (!sink.motion_margin().empty()) return report_near(context, sink);
     penetration_ = 0, further_pairs_ = 0;
     margin_ = sink.margin();
     collect_persistent(context, sink);

@@ -1,4 +1,4 @@
-/// The bodies and shapes of one CDetection/ODE, as ODE's collision space and the narrow phase need them.
+/// The bodies and shapes of one CDetection/ODE, prepared for the broad and the narrow phase.
 #pragma once
 
 #include <string>
@@ -12,24 +12,24 @@
 namespace plab::detection
 {
 
-/// What one component keeps: made from bodies and shapes alone, so it needs no saving; rebuilt whenever they differ
-/// from what it was made from.
+/// The data of one component. It is derived from bodies and shapes alone, so it is not part of a snapshot; it is rebuilt
+/// whenever they differ from what it was built from.
 class OdeScene
 {
 public:
-    /// Brings parts and poses up to date. Returns whether it had to be rebuilt. A context that advances some bodies only
-    /// comes after a look at all in the same step: then nothing but their poses can be new.
+    /// Brings parts and poses up to date; returns whether a rebuild was necessary. A context that advances only some bodies must
+    /// follow a full detection pass in the same step: then only the poses of those bodies can have changed.
     bool update(const StepContext& context, const std::string& space, const RefList& between, const RefList& against, const Bodies& bodies,
                 const Shapes& shapes, const ContactSink& order);
-    /// Contacts of all pairs of which `context` advances one, standing pairs first; where the sink gives a reach, the
-    /// pairs that may meet instead.
+    /// Reports the contacts of all pairs with at least one body that `context` advances, persistent pairs first. If the sink has
+    /// motion margins, reports the pairs that may collide within the step instead.
     void detect(const StepContext& context, const Bodies& bodies, ContactSink& sink);
-    /// How far the two bodies of the query are apart at their present poses: over all pairs of their shapes. Infinite
-    /// where none of them collide. The scene is the one of the last update(): only poses may have changed since.
+    /// The distance of the two bodies of the query at their present poses: the minimum over all pairs of their shapes; infinite
+    /// if none of these collide. Uses the scene of the last update(); only poses may have changed since.
     void measure(GapQuery& query, const Bodies& bodies) const;
 
     std::size_t pairs() const { return pairs_; }
-    double penetration() const { return penetration_; }  ///< m, deepest overlap of the last look
+    double penetration() const { return penetration_; }  ///< m, deepest overlap in the last detection pass
     const std::vector<Collider>& colliders() const { return colliders_; }
     const std::vector<std::uint32_t>& shapes() const { return shape_of_collider_; }
 
@@ -40,7 +40,7 @@ private:
         Membership membership;
         std::uint32_t first_part = 0, end_part = 0;
         std::uint32_t first_shape = 0, end_shape = 0;  // in body_shapes_
-        Vec3 position;                                 // as moved last
+        Vec3 position;                                 // pose at the last update
         Quat orientation;
     };
     struct Part  // a shape on a body, or a part of a compound
@@ -74,7 +74,7 @@ private:
     void query_near(const StepContext& context, const Bodies& bodies, ContactSink& sink);
     void flush(const Member& a, const Member& b, double shift, ContactSink& sink);
 
-    // What it was made from.
+    // What the scene was built from.
     std::string space_;
     RefList between_, against_;
     std::vector<std::uint32_t> body_shapes_;        // by member
@@ -85,7 +85,7 @@ private:
     std::vector<Collider> colliders_;
     BroadPhase broad_;
 
-    // Scratch of one look.
+    // Scratch data of one detection pass.
     std::vector<std::uint32_t> member_of_body_;
     std::vector<PersistentQuery> persistent_;
     ContactPoints contact_points_;
@@ -94,10 +94,10 @@ private:
     std::vector<std::uint32_t> asked_;    // parts of the bodies that are advanced
     std::vector<BroadPhase::Pair> near_;  // members
     std::size_t pairs_ = 0;
-    std::size_t parts_met_ = 0;  // of the present pair of bodies
-    double further_pairs_ = 0;   // as ContactSink::took has it
+    std::size_t parts_met_ = 0;  // shape pairs of the present pair of bodies
+    double further_pairs_ = 0;   // for ContactSink::took
     double penetration_ = 0;
-    double margin_ = 0;  // m, of the present look
+    double margin_ = 0;  // m, of the present detection pass
 };
 
 }  // namespace plab::detection

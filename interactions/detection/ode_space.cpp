@@ -12,10 +12,10 @@ namespace
 SpaceHandle make_space(std::string_view kind)
 {
     if (kind == "sweep_and_prune") return SpaceHandle(dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ));
-    return SpaceHandle(dSimpleSpaceCreate(nullptr));  // the quadtree takes its place when its bounds are known
+    return SpaceHandle(dSimpleSpaceCreate(nullptr));  // the quadtree replaces it once its bounds are known
 }
 
-/// ODE lets two geometries meet if the category bits of one are in the collide bits of the other.
+/// In ODE, two geometries may collide if a category bit of one is among the collide bits of the other.
 void set_groups(dxGeom* geom, Membership m)
 {
     enum : unsigned long
@@ -71,8 +71,8 @@ void OdeSpace::set_half_space(std::uint32_t part, const Vec3& normal, double off
     dGeomPlaneSetParams(geoms_[part].get(), normal.x, normal.y, normal.z, offset);
 }
 
-/// A quadtree over the bounds of what there is, deep enough for a few parts in a leaf. Parts that leave the bounds stay
-/// at its root, where everything meets them: slower, not wrong. So it is made anew only when the scene has outgrown it.
+/// A quadtree over the bounds of all parts, deep enough for a few parts per leaf. Parts that leave the bounds stay at its root
+/// and are tested against everything: slower, but correct. It is therefore rebuilt only when the scene has outgrown it.
 void OdeSpace::fit_tree()
 {
     constexpr int kDeepest = 6;

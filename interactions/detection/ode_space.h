@@ -1,6 +1,6 @@
-/// Pairs of overlapping boxes by ODE's collision spaces.
+/// Finds pairs of overlapping boxes with ODE's collision spaces.
 ///
-/// ODE's hash space is not used: in 0.16.2 it loses pairs that overlap.
+/// ODE's hash space is not offered: in version 0.16.2 it misses overlapping pairs.
 #pragma once
 
 #include "ode_handles.h"
@@ -26,7 +26,7 @@ private:
     void adopt(std::uint32_t part, dxGeom* geom, Membership membership);
     void fit_tree();
 
-    SpaceHandle space_;              // before the geometries: they leave it as they go
+    SpaceHandle space_;              // declared before the geometries, whose destructors remove them from it
     std::vector<GeomHandle> geoms_;  // by part
     std::vector<Box> boxes_;         // by part; empty for half-spaces
     bool quadtree_ = false;

@@ -1,4 +1,4 @@
-/// Which of many boxes overlap: a tree of our own, or one of ODE's collision spaces.
+/// Interface of the searches for overlapping boxes: pLab's own tree, or one of ODE's collision spaces.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace plab::detection
 
 using PartPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Groups that may meet. `between` meets everything else; `against` alone meets only `between`. Two bodies that nothing
-/// moves do not meet.
+/// Groups that may collide: a part of `between` with every other part, a part of `against` only with those of `between`. Two
+/// bodies that nothing moves do not collide.
 struct Membership
 {
     bool between = false;
@@ -29,20 +29,20 @@ class PairSearch
 public:
     virtual ~PairSearch() = default;
 
-    /// A part with a box, or a half-space; the next index is 0, 1, 2 ... unless parts are left out.
+    /// Adds a part with a box, or a half-space. Indices ascend from 0; some may be left out.
     virtual void add_box(std::uint32_t part, Membership membership) = 0;
     virtual void add_half_space(std::uint32_t part, Membership membership) = 0;
-    /// Before the first find() of a part, and whenever it moves.
+    /// Must be called before the first find(), and whenever the part moves.
     virtual void set_box(std::uint32_t part, const Box& box) = 0;
     /// Half-space normal . p <= offset (m), in W.
     virtual void set_half_space(std::uint32_t part, const Vec3& normal, double offset) = 0;
-    /// Brings `pairs`, the answer of the last call or empty, up to date: all (i, j), i < j, whose boxes overlap and that may meet, each at
-    /// least once, in any order. A box and a half-space count as a pair if the box reaches it.
+    /// Updates `pairs`, which must hold the result of the last call or be empty, to all (i, j), i < j, whose boxes overlap and
+    /// that may collide; each at least once, in any order. A box and a half-space form a pair if the box reaches into it.
     virtual void find(std::vector<PartPair>& pairs) = 0;
 };
 
-/// `kind`: "tree" (of older files: "hash"), or an ODE space: "simple", "sweep_and_prune" or "quadtree". `parts`: one more than the largest
-/// index.
+/// `kind`: "tree" ("hash" in older files), or an ODE space: "simple", "sweep_and_prune" or "quadtree". `parts`: one more than
+/// the largest index.
 std::unique_ptr<PairSearch> make_pair_search(std::string_view kind, std::size_t parts);
 
 }  // namespace plab::detection

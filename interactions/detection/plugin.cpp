@@ -5,15 +5,23 @@ PLAB_PLUGIN("detection", registrar)
 {
     using namespace plab;
     registrar
-        .component<detection::OdeRows>("CDetection/ODE", "finds contacts of rigid bodies with the Open Dynamics Engine's collision spaces")
-        .command<detection::prepare>(Phase::Prepare, "CDetection/Prepare", "forgets the geometries; they are made anew at the next look")
+        .component<detection::OdeRows>(
+            "CDetection/ODE",
+            "finds the contacts of rigid bodies: broad phase by pLab's own tree of boxes or by a collision space "
+            "of the Open Dynamics Engine (ODE), narrow phase entirely by pLab")
+        .command<detection::prepare>(Phase::Prepare, "CDetection/Prepare",
+                                     "discards the collision geometry; the next detection pass rebuilds it")
         .host_command(Phase::Prepare, "CDetection/Add", "adds the bodies' shapes to the space; done inside Handle")
         .host_command(Phase::Advance, "CDetection/Update", "moves the geometries with their bodies; done inside Handle")
         .command<detection::detect>(Phase::Detect, "CDetection/Handle", "finds where bodies touch")
-        .command<detection::measure_gap>(Phase::Gap, "CDetection/Gap", "measures how far two bodies are apart")
-        .cost("one bounding volume per shape; hash and sweep_and_prune about linear in bodies")
+        .command<detection::measure_gap>(Phase::Gap, "CDetection/Gap", "measures the distance between two bodies")
+        .cost(
+            "one bounding box per shape; tree: about log n per moved shape; sweep_and_prune: about linear in the "
+            "number of shapes")
         .limits(
-            "half-spaces and surfaces meet neither one another nor themselves; meshes collide as their convex hulls or as surfaces; no "
-            "continuous collision")
-        .source("ODE 0.16.2 (box-box, spaces); Snethen, XenoCollide, Game Programming Gems 7 (2008) for hulls");
+            "half-spaces and surfaces do not collide with themselves or one another; meshes collide as their "
+            "convex hulls or as surfaces; no continuous collision detection (a resolution locates impacts)")
+        .source(
+            "ODE 0.16.2 for its collision spaces; Gilbert, Johnson, Keerthi (1988) for distances; van den "
+            "Bergen, GDC (2001) for depths; Gottschalk, Lin, Manocha, SIGGRAPH (1996) for box and box");
 }

@@ -1,11 +1,12 @@
-// The inside of a bowl or bore.
+// Contacts with the inside of a bowl (a part of a sphere) or a bore (a cylinder) of radius R. c and p are relative to its
+// centre, or perpendicular to its axis.
 //
-//   gap of a ball  = R - |c| - r  (bore: the distance from the axis for |c|), or its distance to the circle of the rim
-//   gap of a solid = R - max |p| over its corners: |p| is convex, so no other point is further out
+//   gap of a ball  = R - |c| - r  (or its distance to the circle of the rim)
+//   gap of a solid = R - max |p| over its corners: |p| is convex, so its maximum over the solid is at a corner
 //
-// An edge that crosses the plane of the opening: q there, e along it, t along the rim. They are apart along
-// m = e x t / |e x t|, towards the wall, by (rim - q) . m: exact where they touch, and with circles for lines wrong by
-// gap^2 / (2 R), which is taken off.
+// An edge of the solid may cross the plane of the opening, at a point q, and touch the rim. With e along the edge and t along
+// the rim, the two are apart along m = e x t / |e x t|, directed towards the wall, by (rim - q) . m. This is exact where they
+// touch. As the rim is a circle rather than a line, it is wrong by gap^2 / (2 R) otherwise, which is subtracted.
 #include <algorithm>
 #include <cmath>
 
@@ -16,10 +17,11 @@ namespace plab::detection
 namespace
 {
 
-/// Sine up to which the end of a cylinder lies level in a bowl; a hundredth of it: up to which a cylinder lies along a bore.
+/// Sine up to which the end of a cylinder counts as level in a bowl; a hundredth of it: up to which a cylinder lies along a
+/// bore.
 constexpr double kLevel = 0.1;
 
-/// The circle where the surface ends.
+/// The circle at which the surface ends.
 struct Rim
 {
     double radius = 0, z = 0;
@@ -40,7 +42,7 @@ public:
     bool is_bowl() const { return bowl_; }
     double radius() const { return radius_; }
     std::span<const Rim> rims() const { return {rims_.data(), count_}; }
-    /// From the centre or the axis outwards.
+    /// Outward direction from the centre or the axis.
     Vec3 from_middle(const Vec3& p) const { return bowl_ ? p : Vec3{p.x, p.y, 0}; }
     Vec3 outwards(const Vec3& p) const
     {
@@ -48,7 +50,7 @@ public:
         const double size = length(r);
         return size > 0 ? r / size : (bowl_ ? Vec3{0, 0, -1} : Vec3{1, 0, 0});
     }
-    /// Whether the nearest point of the whole sphere or cylinder belongs to the surface.
+    /// Whether the nearest point of the complete sphere or cylinder belongs to the surface.
     bool faces(const Vec3& p) const
     {
         if (!bowl_) return std::fabs(p.z) <= reach_;
@@ -74,7 +76,7 @@ void meet_ball(const Vec3& c, double radius, std::uint32_t feature, const RoundW
     {
         const Vec3 n = wall.outwards(c);
         const double outside = wall.radius() - length(wall.from_middle(c)), gap = outside - radius;
-        // What is behind the wall altogether has not come from inside.
+        // A ball that is entirely behind the wall has not come from inside.
         if (outside >= -radius && gap < out.limit()) out.offer({gap, c + radius * n, c + outside * n, n, feature});
         return;
     }
@@ -87,8 +89,9 @@ void meet_ball(const Vec3& c, double radius, std::uint32_t feature, const RoundW
     }
 }
 
-/// Of a rim of K (middle m, radius a, square to u) the point furthest from the axis of a bore: r^2 is a sum of cosines of one
-/// and two angles, climbed by w -> direction of (m + a w) across the axis, then Newton.
+/// The point on a rim of K (centre m, radius a, perpendicular to u) that is furthest from the axis of a bore. r^2 is a sum of
+/// cosines of the angle and of twice the angle; it is maximised by the iteration w -> direction of (m + a w) across the axis,
+/// then by Newton's method.
 Vec3 furthest_of_rim(const Vec3& m, double a, const Vec3& u, const Vec3& start)
 {
     const auto across = [&](const Vec3& d) { return d - dot(d, u) * u; };
@@ -112,7 +115,7 @@ Vec3 furthest_of_rim(const Vec3& m, double a, const Vec3& u, const Vec3& start)
     return m + a * w;
 }
 
-/// The points of K that may be furthest out.
+/// The points of K that may be furthest from the centre or axis.
 template <class Visit>
 void visit_outermost(const Solid& K, const RoundWall& wall, Visit&& visit)
 {
@@ -123,14 +126,14 @@ void visit_outermost(const Solid& K, const RoundWall& wall, Visit&& visit)
         const Vec3 m = K.pose().p + (end == 1 ? K.size().z : -K.size().z) * u, out = wall.outwards(m);
         if (wall.is_bowl())
         {
-            // An end that lies level in a bowl touches with all of its rim.
+            // An end that is level in a bowl touches with its whole rim.
             const RimPoints rim = rim_points(K, end == 1, wall.from_middle(m) == Vec3{} ? Vec3{} : out);
             const bool level = length_squared(cross(out, u)) < kLevel * kLevel;
             for (std::uint32_t i = rim.count; i-- > 0;)
                 if (level || rim.id[i] == RimPoints::kFurthest) visit(rim.p[i], 8 * end + rim.id[i]);
             continue;
         }
-        // Across a bore a rim may touch at two places.
+        // In a bore, a rim may touch at two places.
         const Vec3 side = cross(u, Vec3{0, 0, 1});
         if (length_squared(side) < kLevel * kLevel * 1e-4)
         {
@@ -187,7 +190,7 @@ void meet_edges(const Solid& K, const RoundWall& wall, MeetingSink& out)
             return;
         case Core::Cylinder:
         {
-            // The line along the barrel that is furthest out where it crosses.
+            // The line along the barrel that is furthest from the centre where it crosses the opening.
             const Vec3 u = K.axis(2), out_of_middle = wall.outwards(K.pose().p),
                        across = normalized(out_of_middle - dot(out_of_middle, u) * u);
             const Vec3 aside = K.pose().p + h.x * across;
@@ -203,7 +206,7 @@ void meet_round_wall(const Solid& K, const Collider& collider, MeetingSink& out)
 {
     const RoundWall wall(collider);
     if (K.core() == Core::Point) return meet_ball(K.pose().p, K.radius(), 0, wall, out);
-    if (length(wall.from_middle(K.center())) >= wall.radius()) return;  // its middle is behind the wall
+    if (length(wall.from_middle(K.center())) >= wall.radius()) return;  // the centre of K is behind the wall
     visit_outermost(K, wall,
                     [&](const Vec3& p, std::uint32_t number)
                     {
@@ -211,7 +214,7 @@ void meet_round_wall(const Solid& K, const Collider& collider, MeetingSink& out)
                         if (K.core() == Core::Segment) return meet_ball(p, K.radius(), feature, wall, out);
                         if (!wall.faces(p))
                         {
-                            // On its way in: no nearer to the wall than to the rim.
+                            // Excludes edges on their way in: those nearer to the wall than to the rim.
                             for (const Rim& rim : wall.rims())
                             {
                                 const Vec3 closest = on_rim(rim, p);

@@ -10,13 +10,13 @@ namespace plab::detection
 {
 namespace
 {
-/// Upwards, for centres that coincide and so have no direction between them.
+/// Fallback direction, upwards, for coincident centres.
 constexpr Vec3 kNoDirection{0, 0, 1};
 
 Separation flipped(const Separation& s) { return {s.gap, s.point_b, s.point_a, -s.normal}; }
 
-/// Two points that are nearest, with the radii around them; `n_instead` stands in where they coincide. What joins them
-/// is square to `along` (unit, or 0), which rounding hides where they nearly coincide.
+/// Two closest points with radii around them; `n_instead` is the normal if they coincide. The line between them is perpendicular
+/// to `along` (unit, or 0); this is enforced, as rounding would hide it where they nearly coincide.
 Separation of_points(const Vec3& a, double radius_a, const Vec3& b, double radius_b, const Vec3& n_instead, const Vec3& along = {})
 {
     const Vec3 across = (b - a) - dot(b - a, along) * along;
@@ -26,15 +26,15 @@ Separation of_points(const Vec3& a, double radius_a, const Vec3& b, double radiu
     return {distance - (radius_a + radius_b), a + radius_a * n, b - radius_b * n, n};
 }
 
-/// The nearest points of two segments (V. Lumelsky, On fast computation of distance between line segments, 1985), by
-/// trying the crossing and the four ends.
+/// The closest points of two segments (V. Lumelsky, On fast computation of distance between line segments, 1985): tries the
+/// interior crossing and the four ends.
 Separation segment_segment(const Solid& A, const Solid& B)
 {
     const Vec3 u = A.axis(2), v = B.axis(2), r = B.pose().p - A.pose().p;
     const double la = A.size().z, lb = B.size().z;
     const Vec3 n = cross(u, v);
     const double nn = length_squared(n);
-    constexpr double kParallel = 1e-24;  // square of the sine
+    constexpr double kParallel = 1e-24;  // squared sine
     double best = HUGE_VAL;
     Vec3 pa, pb;
     const auto offer = [&](double s, double t)
@@ -46,7 +46,7 @@ Separation segment_segment(const Solid& A, const Solid& B)
     {
         const double s = dot(cross(r, v), n) / nn, t = dot(cross(r, u), n) / nn;
         if (std::fabs(s) < la && std::fabs(t) < lb && nn < 1e-6)
-            offer(s, t);  // the product is known to too few digits to be the normal
+            offer(s, t);  // the cross product is too inaccurate to serve as the normal
         else if (std::fabs(s) < la && std::fabs(t) < lb)
         {
             const Vec3 a = A.pose().p + s * u, b = B.pose().p + t * v;
@@ -57,7 +57,8 @@ Separation segment_segment(const Solid& A, const Solid& B)
     }
     for (const double s : {-la, la}) offer(s, std::clamp(dot(A.pose().p + s * u - B.pose().p, v), -lb, lb));
     for (const double t : {-lb, lb}) offer(std::clamp(dot(B.pose().p + t * v - A.pose().p, u), -la, la), t);
-    // Of parallel ones all points side by side are as near: the middle of those, so that neither end is preferred.
+    // For parallel segments, all points side by side are equally near. The middle of that range is chosen, so that neither end
+    // is preferred.
     if (nn <= kParallel)
     {
         const double along = dot(u, r), low = std::max(-la, along - lb), high = std::min(la, along + lb);
@@ -69,7 +70,8 @@ Separation segment_segment(const Solid& A, const Solid& B)
     return of_points(pa, A.radius(), pb, B.radius(), nn > 0 ? n / std::sqrt(nn) : any_perpendicular(u));
 }
 
-/// From a point inside a convex polyhedron or box to its nearest face: distance to it (< 0) and normal, in S.
+/// From a point inside a polyhedron, box or cylinder to its nearest face: signed distance to it (< 0) and normal, in S. Outside,
+/// the largest signed distance to a face.
 void leave(const Solid& S, const Vec3& c, double& outside, Vec3& n)
 {
     if (S.core() == Core::Hull)
@@ -92,7 +94,7 @@ void leave(const Solid& S, const Vec3& c, double& outside, Vec3& n)
     if (across - S.size().x > outside) outside = across - S.size().x, n = across > 0 ? Vec3{c.x / across, c.y / across, 0} : Vec3{1, 0, 0};
 }
 
-/// The nearest point of a hull to a point outside lies on a face that sees it.
+/// The closest point of a hull to a point outside lies on a face that is visible from that point.
 ClosestPoint closest_point_on_hull(const Solid& S, const Vec3& q)
 {
     const Hull& hull = S.hull();
@@ -138,15 +140,16 @@ Separation of_overlap(const Solid& A, const Solid& B)
     Overlap o = overlap_of(A, B);
     if (A.core() == Core::Box && B.core() == Core::Box)
     {
-        // The axis is exact; the polytope tells the points.
+        // The separating axis is exact; the polytope supplies the points.
         const auto R = [](const Solid& s) { return rotation_matrix(s.pose().q); };
         const BoxAxis axis = find_box_axis(A.size(), R(A), A.pose().p, B.size(), R(B), B.pose().p, HUGE_VAL);
         if (-axis.gap <= o.depth) o.normal = axis.normal, o.depth = -axis.gap;
     }
     return {-o.depth, o.a, o.b, o.normal};
 }
-/// Nearest points prove themselves: no two planes square to the normal can be further apart than the solids are. Where
-/// the gap is so small that they do not, the direction is looked for with B further away.
+/// Checks the closest points: the gap between two parallel planes that separate the solids is a lower bound of the distance, and
+/// closest points are exact if the planes perpendicular to their normal reach it. Where the gap is so small that they do not,
+/// the direction is searched for with B moved further away.
 Separation of_gap(const Solid& A, const Solid& B, const NearestPair& near)
 {
     const auto gap_along = [&](const Vec3& n) { return -dot(n, support_of(A, B, n).w); };

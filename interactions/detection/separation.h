@@ -1,4 +1,4 @@
-/// Signed distance of two solids: closed forms where there are any, else nearest points or least depth.
+/// Signed distance of two solids: closed forms where they exist, otherwise closest points (GJK) or penetration depth (EPA).
 #pragma once
 
 #include "contact_points.h"
@@ -7,9 +7,9 @@
 namespace plab::detection
 {
 
-/// Of the solids with their rounding radii.
+/// Of the solids including their rounding radii.
 Separation separation_of(const Solid& a, const Solid& b);
-/// Of a solid and the half-space below z of X_plane; exact.
+/// Of a solid and the half-space z <= 0 of X_plane; exact.
 Separation separation_from_plane(const Solid& a, const Pose& X_plane);
 
 }  // namespace plab::detection

@@ -1,4 +1,5 @@
-/// A convex solid as the general methods (GJK, expanding polytope, manifolds) see it.
+/// A convex solid as the general methods (GJK, expanding polytope, manifolds) use it: a core, such as a segment or a box, with a
+/// rounding radius around it.
 #pragma once
 
 #include "collider.h"
@@ -15,29 +16,29 @@ enum class Core : std::uint8_t
     Hull,
 };
 
-/// The nearest point of a solid (or of a part of its surface) to a point outside.
+/// The closest point of a solid (or of a part of its surface) to a point outside.
 struct ClosestPoint
 {
     Vec3 p;
-    Mat3 J;        ///< derivative of p by the point outside; symmetric, eigenvalues in [0, 1)  or 1
-    int flat = 0;  ///< dimensions of the surface there that are known exactly: 0 corner, 1 along `axis`, 2 square to `axis`, 3 inside
+    Mat3 J;        ///< derivative of p with respect to the point outside; symmetric, eigenvalues in [0, 1]
+    int flat = 0;  ///< dimensions of the surface that are known exactly at p: 0 corner, 1 along `axis`, 2 perpendicular to `axis`, 3 inside
     Vec3 axis;     ///< unit: tangent if flat = 1, outward normal if flat = 2
 };
 
-/// Part of a hull's surface: up to three of its vertices, in the common frame.
+/// A part of a hull's surface: up to three of its vertices, in the common frame.
 struct Facelet
 {
     std::array<Vec3, 3> corner;
     int count = 0;
 };
 
-/// All points within `radius` of a core at a pose. Refers to its collider.
+/// All points within `radius` of a core at a pose. Keeps a reference to its collider.
 class Solid
 {
 public:
-    /// Not for planes and surfaces.
+    /// Must not be a plane or a surface.
     Solid(const Collider& collider, const Pose& X);
-    /// A segment without thickness from a to b.
+    /// A segment without thickness, from a to b.
     static Solid rod(const Vec3& a, const Vec3& b);
 
     Core core() const { return core_; }
@@ -47,7 +48,7 @@ public:
     const Pose& pose() const { return X_; }
     Vec3 axis(int k) const { return {R_(0, k), R_(1, k), R_(2, k)}; }
     bool curved() const { return core_ == Core::Cylinder; }
-    /// m: no point of the core is further from `center`.
+    /// m: the distance of no point of the core from `center` exceeds this.
     double extent() const { return extent_; }
     const Vec3& center() const { return center_; }
     void move(const Vec3& by) { X_.p += by, center_ += by; }
@@ -59,7 +60,7 @@ public:
 
     /// The point of the core furthest in direction d.
     Vec3 support(const Vec3& d) const;
-    /// The point of the core nearest to q; of a hull, that of `facelet`.
+    /// The closest point of the core to q; for a hull, only the facelet is considered.
     ClosestPoint closest_point(const Vec3& q, const Facelet& facelet) const;
 
 private:
@@ -76,7 +77,7 @@ private:
     Mat3 R_;
 };
 
-/// The point of a facelet nearest to q.
+/// The closest point of a facelet to q.
 ClosestPoint closest_point_on_facelet(const Vec3& q, const Facelet& facelet);
 
 }  // namespace plab::detection

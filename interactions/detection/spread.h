@@ -1,4 +1,4 @@
-/// Picks the few points of contact that matter out of many.
+/// Reduces many contact points to the few that matter.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,12 @@
 namespace plab::detection
 {
 
-/// Keeps the deepest point and the outermost one in each of 8 directions across the normal: what holds a body upright.
+/// Keeps the deepest point, and the outermost one in each of 8 directions across the normal: these resist tilting in every
+/// direction.
 class Spread
 {
 public:
-    /// Points with a gap up to `margin` (m) count.
+    /// Points with a gap of up to `margin` (m) are considered.
     Spread(const Vec3& normal, double margin) : t1_(any_perpendicular(normal)), t2_(cross(normal, t1_)), margin_(margin) {}
 
     void offer(const ContactPoint& contact_point)
@@ -33,7 +34,7 @@ public:
         any_ = true;
     }
     double deepest() const { return any_ ? best_[kDeepest].value : -HUGE_VAL; }
-    /// Adds what was kept, each feature once, in the order of features.
+    /// Adds the kept points, each feature once, ordered by feature.
     void take(ContactPoints& out)
     {
         if (!any_) return;

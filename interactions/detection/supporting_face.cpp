@@ -7,7 +7,7 @@ namespace plab::detection
 {
 namespace
 {
-constexpr double kSquare = 0.1;  ///< sine up to which an edge counts as square to a direction
+constexpr double kSquare = 0.1;  ///< sine up to which an edge counts as perpendicular to a direction
 
 double sign_of(double x) { return x < 0 ? -1.0 : 1.0; }
 
@@ -75,7 +75,7 @@ SupportingFace cylinder_patch(const Solid& c, const Vec3& d, double least_cosine
     return line_of(c, room, side - c.size().z * u, 4, side + c.size().z * u, 12);
 }
 
-/// The polygon of a hull with the normal that is nearest to d; the number of polygons if none is near enough.
+/// The polygon of a hull whose normal is nearest to d; the number of polygons if none is near enough.
 std::size_t find_polygon(const Hull& hull, const Vec3& d_S, double least_cosine)
 {
     std::size_t best = hull.loop_normals.size();
@@ -128,7 +128,7 @@ SupportingFace hull_patch(const Solid& solid, const Vec3& d, double least_cosine
                    (*best)[1]);
 }
 
-/// Narrows `cut` to where g0 + t (g1 - g0) >= 0; an end that is out by no more than the tolerance counts as in.
+/// Restricts `cut` to where g0 + t (g1 - g0) >= 0; an end that is outside by at most the tolerance counts as inside.
 void narrow(SupportingFace::Cut& cut, double g0, double g1, double tolerance, int edge)
 {
     const bool out0 = g0 < -tolerance, out1 = g1 < -tolerance;
@@ -204,7 +204,7 @@ SupportingFace box_face(const Solid& box, const Vec3& d, std::span<FaceCorner> r
     const Vec3 axis_u = box.axis(u), axis_v = box.axis(v), normal = box.axis(k) * (upper ? 1.0 : -1.0);
     const Vec3 middle = box.pose().p + normal * h[k];
     const std::uint32_t base = upper ? 1u << k : 0u;
-    // Counter-clockwise seen from outside: u before v on the upper side.
+    // Counter-clockwise as seen from outside: on the upper side, u comes before v.
     constexpr std::array<std::array<int, 2>, 4> kRound{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
     for (std::size_t i = 0; i < 4; ++i)
     {

@@ -1,4 +1,4 @@
-/// The part of a solid's surface that faces a direction: a corner, an edge, a face or the end of a cylinder.
+/// The supporting face of a solid in a direction: the corner, edge, face or cylinder end that faces this direction.
 #pragma once
 
 #include "solid.h"
@@ -9,8 +9,8 @@ namespace plab::detection
 struct FaceCorner
 {
     Vec3 p;
-    Vec3 inward;           ///< faces: unit, square to the edge that begins here, in the face's plane
-    std::uint32_t id = 0;  ///< of the corner, and of the edge that begins here
+    Vec3 inward;           ///< faces: unit, perpendicular to the edge that begins here, in the plane of the face
+    std::uint32_t id = 0;  ///< number of the corner, and of the edge that begins here
 };
 
 struct SupportingFace
@@ -23,15 +23,15 @@ struct SupportingFace
         Disc,
     };
     Kind kind = Kind::Corner;
-    bool upper = false;             ///< disc: the end at +z
-    Vec3 normal;                    ///< of faces and discs: unit, outwards
-    std::span<FaceCorner> corners;  ///< of lines and faces, counter-clockwise seen from outside
-    const Solid* solid = nullptr;   ///< whose it is
+    bool upper = false;             ///< disc: whether it is the end at +z
+    Vec3 normal;                    ///< of faces and discs: unit, outward
+    std::span<FaceCorner> corners;  ///< of lines and faces; counter-clockwise as seen from outside
+    const Solid* solid = nullptr;   ///< the solid that it belongs to
 
     bool flat() const { return kind >= Kind::Face; }
     /// A point of its plane.
     Vec3 origin() const;
-    /// The part [begin, end] of p + t (q - p), t in [0, 1], that lies over a flat patch; which edges cut it (-1: none).
+    /// The part [begin, end] of p + t (q - p), t in [0, 1], that lies over a flat face, and the edges that cut it (-1: none).
     struct Cut
     {
         double begin = 0, end = 1;
@@ -42,17 +42,17 @@ struct SupportingFace
     bool covers(const Vec3& p, double tolerance) const;
 };
 
-/// The part of an edge that lies over a face, from how far its two ends are inside of each of the face's edges (m). An end
-/// that is out by no more than `tolerance` counts as in.
+/// The part of an edge that lies over a face, from the distances (m, > 0: inside) of its two ends from each edge of the face. An
+/// end that is outside by at most `tolerance` counts as inside.
 SupportingFace::Cut cut_by(std::span<const double> inside_begin, std::span<const double> inside_end, double tolerance);
 
-/// Faces of hulls with more corners than this are seen with every second, third ... corner.
+/// Hull faces with more corners than this are represented by every second, third ... corner.
 inline constexpr std::size_t kMostCorners = 32;
 
-/// In direction d (unit, outwards). Faces count if the cosine between their normal and d is at least `least_cosine`, edges
-/// if they are square to d within 0.1. Corners are put into `room` (at least kMostCorners; 4 for boxes).
+/// In direction d (unit, outward). A face counts if the cosine between its normal and d is at least `least_cosine`, an edge if
+/// it is perpendicular to d within 0.1 (sine). Corners are stored in `room` (at least kMostCorners; 4 for boxes).
 SupportingFace supporting_face(const Solid& solid, const Vec3& d, double least_cosine, std::span<FaceCorner> room);
-/// The face of a box that faces d most.
+/// The face of a box whose normal is closest to d.
 SupportingFace box_face(const Solid& box, const Vec3& d, std::span<FaceCorner> room);
 
 }  // namespace plab::detection

@@ -10,12 +10,12 @@ namespace plab::detection
 namespace
 {
 
-/// Cosine between normals of one side of a contact.
+/// Cosine between normals that count as one side of a contact.
 constexpr double kOneSide = 0.995;
-/// Share of the size of the solid within which two places are one.
+/// Fraction of the solid's size within which two places count as the same.
 constexpr double kSamePlace = 1e-6;
 
-/// Gathers what touches, each place and feature once; of many on one side the deepest and the outermost.
+/// Collects contact points, each place and each feature once; if there are many on one side, the deepest and the outermost.
 class Gathering final : public MeetingSink
 {
 public:
@@ -49,7 +49,7 @@ public:
 private:
     static constexpr std::size_t kMany = 9;
 
-    /// Sides in the order in which they were found; what no room is left for is the last sides'.
+    /// Sides are processed in the order in which they were found; if space runs out, the last ones lose points.
     void thin_out()
     {
         std::array<ContactPoint, 64> all = contact_points_;
@@ -73,7 +73,7 @@ private:
     double margin_, near_;
 };
 
-/// Keeps the nearest.
+/// Keeps the nearest candidate.
 class Nearest final : public MeetingSink
 {
 public:
@@ -90,8 +90,8 @@ void meet(const Solid& K, const Collider& surface, MeetingSink& out)
     surface.kind() == ColliderKind::Triangles ? meet_triangles(K, surface, out) : meet_round_wall(K, surface, out);
 }
 
-/// A ball goes from triangle to triangle: its contacts are numbered within patches of triangles that go over into one another,
-/// so that one that slides keeps its number.
+/// A sliding ball moves from triangle to triangle. Its contacts are numbered by patches of smoothly connected triangles, so that
+/// the number stays the same while it slides.
 void number_by_patch(std::span<ContactPoint> contact_points, const TriangleSurface& surface)
 {
     std::array<std::uint32_t, 64> patch{};

@@ -1,6 +1,6 @@
-/// A solid against a surface: the inside of a bowl or bore in closed form, triangles by their faces, edges and corners.
+/// A solid against a surface: the inside of a bowl or bore in closed form; triangle meshes by their faces, edges and corners.
 ///
-/// Both answer in the frame S of the surface. Normals point from the solid into what lies behind the surface.
+/// Both work in the frame S of the surface. Normals point from the solid into the material behind the surface.
 #pragma once
 
 #include "contact_points.h"
@@ -19,7 +19,7 @@ struct Meeting
     std::uint32_t feature = 0;
 };
 
-/// Takes what is nearer than limit().
+/// Receives candidates that are nearer than limit().
 class MeetingSink
 {
 public:
@@ -27,27 +27,27 @@ public:
     virtual double limit() const = 0;  ///< m
     virtual void offer(const Meeting& meeting) = 0;
     void note_triangles(std::size_t more) { triangles_ += more; }
-    std::size_t triangles() const { return triangles_; }  ///< gone through
+    std::size_t triangles() const { return triangles_; }  ///< number examined
 
 private:
     std::size_t triangles_ = 0;
 };
 
-/// Bowls and bores. A ball meets the wall and the rim; of other solids the corners and round ends meet the wall, and edges
-/// that cross the opening meet the rim. The rim has no face of its own that something could lie on.
+/// Bowls and bores. A ball may touch the wall and the rim. Of other solids, corners and round ends may touch the wall, and edges
+/// that cross the opening the rim. The rim has no face on which something could lie.
 void meet_round_wall(const Solid& K, const Collider& wall, MeetingSink& out);
-/// Triangles: a ball by its nearest points (each of them a least distance), others by their corners over faces, and by
-/// edges and corners of the surface that stand out (separation.h).
+/// Triangles. A ball touches at its closest points (local minima of the distance). Other solids touch with their corners on
+/// faces, or at sharp edges and corners of the surface (separation.h).
 void meet_triangles(const Solid& K, const Collider& surface, MeetingSink& out);
 
-/// K in the frame W of X_surface; both as narrow.h has it.
+/// K in the frame W of X_surface; both as in narrow.h.
 void collide_with_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface, ContactPoints& out);
-/// Infinite for what is behind the surface altogether, or out of its way.
+/// The gap is infinite if the solid is completely behind the surface or beyond its border.
 Separation separation_from_surface(const Collider& a, const Pose& X_a, const Collider& surface, const Pose& X_surface);
 
-/// Calls visit(corner, number) for the corners of a solid that may be the furthest in direction d: of boxes and hulls all, of
-/// capsules the centres of both ends, of cylinders points of the rims (manifold.h),
-/// the furthest one first.
+/// Calls visit(corner, number) for the corners of a solid that may be furthest in direction d, the furthest one first for
+/// cylinders: all corners of boxes and hulls, the centres of both ends of capsules, points on the rims of cylinders
+/// (manifold.h).
 template <class Visit>
 void visit_corners(const Solid& K, const Vec3& d, Visit&& visit)
 {

@@ -42,7 +42,7 @@ void TreeSearch::set_half_space(std::uint32_t part, const Vec3& normal, double o
     note_moved(part);
 }
 
-/// Everything against everything: by one query per box, each pair from its part of lower index.
+/// Searches for all pairs: one query per box; each pair is reported by its part of lower index.
 void TreeSearch::find_all(std::vector<PartPair>& pairs)
 {
     pairs.clear();
@@ -58,7 +58,8 @@ void TreeSearch::find_all(std::vector<PartPair>& pairs)
                 pairs.push_back(std::minmax(h.part, i));
 }
 
-/// Pairs of what has moved are forgotten and searched for again; of two that moved, the first one names the pair.
+/// Removes the pairs of parts that have moved and searches for them again; of two moved parts, the one of lower index reports
+/// the pair.
 void TreeSearch::find_moved(std::vector<PartPair>& pairs)
 {
     std::erase_if(pairs, [&](const PartPair& p) { return is_moved_[p.first] != 0 || is_moved_[p.second] != 0; });
@@ -80,7 +81,7 @@ void TreeSearch::find_moved(std::vector<PartPair>& pairs)
 
 void TreeSearch::find(std::vector<PartPair>& pairs)
 {
-    // Where many have moved, and after as many moves as there are boxes, a tree from scratch is cheaper and better.
+    // If many boxes have moved, or after as many moves as there are boxes, a rebuilt tree is cheaper and better.
     moves_since_build_ += moved_.size();
     const bool rebuild = fresh_ || 4 * moved_.size() > bounded_.size() || moves_since_build_ > bounded_.size();
     if (rebuild)

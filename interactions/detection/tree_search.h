@@ -1,4 +1,4 @@
-/// Pairs of overlapping boxes by a tree: only what has moved is searched for again.
+/// Finds pairs of overlapping boxes with a bounding-box tree; searches again only for boxes that have moved.
 #pragma once
 
 #include "box_tree.h"
@@ -37,7 +37,7 @@ private:
     std::vector<std::uint32_t> bounded_;   // parts with a box
     std::vector<std::uint32_t> moved_;     // since the last find()
     std::vector<HalfSpace> half_spaces_;
-    bool fresh_ = true;  // no tree yet
+    bool fresh_ = true;  // no tree has been built yet
     std::size_t moves_since_build_ = 0;
 };
 

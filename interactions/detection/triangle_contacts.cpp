@@ -1,12 +1,12 @@
-// Solids on triangles.
+// Contacts of solids with triangle meshes.
 //
-// A ball touches where its distance to the surface has a least value: over a face, at an edge that is convex (its direction
-// lies between the normals of both sides), at a corner that sticks out of all its edges. Inner edges of what is flat or
-// concave are none of these, so nothing catches on them.
+// A ball touches where its distance to the surface has a local minimum: over a face; at a convex edge, if the direction lies
+// between the normals of both sides; at a corner that protrudes from all its edges. Inner edges of flat or concave regions are
+// none of these, so a sliding ball does not catch on them.
 //
-// Of two solids that touch either a corner of one lies on a face of the other, or edges cross. So: corners of K over faces,
-// along the face's normal; and K against each edge that stands out, as against a thin rod, along a direction that leads away
-// from the surface on both sides of that edge.
+// If two polyhedra touch, either a corner of one lies on a face of the other, or two edges cross. Therefore two tests suffice:
+// corners of the solid K over faces, along the face normal; and K against each sharp edge, treated as a thin rod, along a
+// direction that leads away from the surface on both sides of that edge.
 #include <algorithm>
 #include <cmath>
 
@@ -19,17 +19,18 @@ namespace
 {
 
 using Surface = TriangleSurface;
-/// Sine by which a direction may lead into the surface.
+/// Sine of the angle by which a direction may lead into the surface.
 constexpr double kAlong = 1e-9;
-/// Share of the solid's size by which a corner may be beside a face: rounding, so that none falls between two faces.
+/// Fraction of the solid's size by which a corner may lie beside a face: allows for rounding, so that no corner falls between
+/// two faces.
 constexpr double kBeside = 1e-13;
-/// A corner that is inside touches all faces that are at most this many times as deep as the nearest one, or less deep than
-/// this share of its size: floor and wall of a concave corner.
+/// A corner that is inside touches all faces that are at most this many times as deep as the nearest one, or less deep than this
+/// fraction of the size: floor and wall of a concave corner.
 constexpr double kMuchNearer = 4, kShallow = 1e-4;
-/// Share of the solid's size within which a point is the end of an edge.
+/// Fraction of the solid's size within which a point counts as the end of an edge.
 constexpr double kAtEnd = 1e-12;
 
-/// Where a triangle is nearest to a point (C. Ericson, Real-time collision detection, 2005, 5.1.5).
+/// The point of a triangle nearest to a given point (C. Ericson, Real-time collision detection, 2005, 5.1.5).
 struct TriangleClosestPoint
 {
     enum class At : std::uint8_t
@@ -40,7 +41,7 @@ struct TriangleClosestPoint
     };
     Vec3 p;
     At at = At::Face;
-    std::size_t which = 0;  ///< corner or edge of the triangle
+    std::size_t which = 0;  ///< which corner or edge of the triangle
 };
 
 TriangleClosestPoint closest_point_on(const Surface& s, const Surface::Triangle& t, const Vec3& q)
@@ -59,11 +60,11 @@ TriangleClosestPoint closest_point_on(const Surface& s, const Surface::Triangle&
     return {q - dot(t.normal, aq) * t.normal, Face, 0};
 }
 
-/// The place of the surface nearest to a point.
+/// The point of the surface nearest to a given point.
 class NearestPlace
 {
 public:
-    /// Looks no further than `most` (m).
+    /// Searches no further than `most` (m).
     NearestPlace(const Surface& s, const Vec3& c, double most) : s_(s), c_(c)
     {
         double least = most;
@@ -79,7 +80,7 @@ public:
             });
     }
     bool found() const { return nearest_ != Surface::kNone; }
-    std::size_t visited() const { return visited_; }  ///< triangles
+    std::size_t visited() const { return visited_; }  ///< number of triangles
     std::uint32_t triangle() const { return nearest_; }
     const Vec3& point() const { return closest_.p; }
     double distance() const { return length(c_ - closest_.p); }
@@ -92,7 +93,7 @@ public:
         const Surface::Edge& e = edge_there();
         return e.border() ? t.normal : normalized(triangle(e.side[0]).normal + triangle(e.side[1]).normal);
     }
-    /// From the surface to the point in front of it.
+    /// Direction from the surface to the point in front of it.
     Vec3 direction() const { return flat_there() || !(distance() > 0) ? triangle(nearest_).normal : (c_ - closest_.p) / distance(); }
 
 private:
@@ -104,7 +105,7 @@ private:
         if (closest_.at == TriangleClosestPoint::At::Edge) return edge_there().border();
         return s_.border_corner(triangle(nearest_).corner[closest_.which]);
     }
-    /// Whether the place is as flat as a face.
+    /// Whether the surface is flat there, i.e. no sharp edge or corner.
     bool flat_there() const
     {
         if (closest_.at == TriangleClosestPoint::At::Face) return true;
@@ -119,7 +120,7 @@ private:
     TriangleClosestPoint closest_;
 };
 
-/// A ball at c, in front of the surface or at most as deep as its radius behind it.
+/// A ball at c, in front of the surface or behind it by at most its radius.
 class BallOnTriangles
 {
 public:
@@ -133,12 +134,12 @@ public:
         const double distance = nearest.distance();
         if (nearest.behind())
         {
-            // What is behind altogether has not come from the front.
+            // A ball completely behind the surface has not come from the front.
             const Vec3 n = distance > 0 ? (c_ - nearest.point()) / distance : -nearest.normal();
             if (distance <= radius_) offer(-distance, n, nearest.point(), nearest.triangle());
             return;
         }
-        // The nearest place is always one; rounding may leave it to no face.
+        // The nearest place is always a contact; rounding may assign it to no face.
         const double outside = dot(nearest.direction(), c_ - nearest.point());
         offer(outside, -nearest.direction(), nearest.point(), nearest.triangle());
         const double reach = radius_ + out_.limit();
@@ -153,7 +154,7 @@ public:
     }
 
 private:
-    /// `outside`: of the centre, m; `n` leads from the centre to the surface.
+    /// `outside`: distance of the centre, m; `n` points from the centre to the surface.
     void offer(double outside, const Vec3& n, const Vec3& closest, std::uint32_t t)
     {
         const double gap = outside - radius_;
@@ -194,7 +195,7 @@ private:
     MeetingSink& out_;
 };
 
-/// Any other solid.
+/// Contacts of any solid other than a ball.
 class SolidOnTriangles
 {
 public:
@@ -230,8 +231,8 @@ private:
                       });
     }
 
-    /// Whether a corner of K, `depth` behind a face, is inside of what the surface bounds, and came in there: not where another
-    /// face is much nearer, be it in front of that or behind it.
+    /// Whether a corner of K, `depth` behind a face, is inside the material and entered through this face. It is not if another
+    /// face is much nearer, whether the corner is in front of that face or behind it.
     bool lies_behind(const Vec3& p, double depth) const
     {
         const NearestPlace nearest(s_, p, depth);
@@ -240,7 +241,7 @@ private:
         return nearest.behind() && depth <= std::max(kMuchNearer * nearest.distance(), kShallow * size_);
     }
 
-    /// Both ends of the edge are further than the limit beyond one side of K: seen from K's own axes.
+    /// Whether both ends of the edge are beyond the same side of K by more than the limit, along one of K's own axes.
     bool out_of_reach(const Vec3& a, const Vec3& b) const
     {
         const double limit = out_.limit() + K_.radius();
@@ -267,8 +268,8 @@ private:
         return false;
     }
 
-    /// Whether K, seen along m, lies away from the surface: square to no side's inward direction, at an end of the edge along
-    /// no other edge.
+    /// Whether direction m leads away from the surface: it must not point into either side, nor, at an end of the edge, along
+    /// another edge.
     bool leads_away(const Surface::Edge& e, const Vec3& m, const Vec3& at) const
     {
         for (std::size_t i = 0; i < (e.border() ? 1u : 2u); ++i)

@@ -12,11 +12,11 @@ namespace
 {
 using Index = std::uint32_t;
 
-constexpr Index kLeaf = 4;         ///< triangles
-constexpr double kFlat = 1e-9;     ///< sine of the bend of an edge that counts as none
-constexpr double kSmooth = 0.707;  ///< cosine of the bend between triangles of one patch
+constexpr Index kLeaf = 4;         ///< triangles per leaf
+constexpr double kFlat = 1e-9;     ///< sine: an edge with a smaller bend counts as flat
+constexpr double kSmooth = 0.707;  ///< cosine: triangles of one patch bend by less than this angle
 
-/// The first of vertices at the very same place stands for all of them.
+/// Of vertices at exactly the same place, the first represents all.
 std::vector<Index> first_at_same_place(std::span<const Vec3> vertices)
 {
     std::vector<Index> order(vertices.size()), out(vertices.size());
@@ -62,8 +62,8 @@ void TriangleSurface::join(std::span<const Vec3> vertices, std::span<const std::
 namespace
 {
 
-/// For each half edge 3 t + i (from corner i of triangle t to the next one) the one that runs the other way, or kNone. False: an edge has
-/// more than two sides, or two that run the same way.
+/// For each half edge 3 t + i (from corner i of triangle t to the next one): the opposite half edge, or kNone. Returns false if
+/// an edge has more than two sides, or two half edges in the same direction.
 bool pair_half_edges(std::span<const TriangleSurface::Triangle> triangles, std::size_t points, std::vector<Index>& partner)
 {
     const auto ends = [&](Index half)
@@ -73,7 +73,7 @@ bool pair_half_edges(std::span<const TriangleSurface::Triangle> triangles, std::
     };
     const auto halves = static_cast<Index>(3 * triangles.size());
     partner.assign(halves, TriangleSurface::kNone);
-    // Sorted by the lower end, and within that by the other: in time in proportion to the triangles.
+    // Sorted by the lower corner, and within that by the other: the time is proportional to the number of triangles.
     std::vector<Index> begin(points + 1, 0), sorted(halves);
     for (Index h = 0; h < halves; ++h) ++begin[std::min(ends(h).first, ends(h).second) + 1];
     std::inclusive_scan(begin.begin(), begin.end(), begin.begin());
@@ -97,7 +97,7 @@ bool pair_half_edges(std::span<const TriangleSurface::Triangle> triangles, std::
 
 }  // namespace
 
-/// Numbers in the order in which triangles name them.
+/// Numbers corners in the order in which the triangles use them.
 bool TriangleSurface::find_edges()
 {
     std::vector<Index> partner;
@@ -143,7 +143,7 @@ void TriangleSurface::find_corners()
         }
 }
 
-/// Numbers in the order of the first triangle of each patch.
+/// Numbers patches in the order of their first triangles.
 void TriangleSurface::find_patches()
 {
     std::vector<std::uint8_t> seen(triangles_.size(), 0);
@@ -167,13 +167,13 @@ void TriangleSurface::find_patches()
     }
 }
 
-/// Halves by number along the longest side of each box.
+/// Splits into halves of equal number along the longest side of each box.
 void TriangleSurface::build_tree()
 {
     struct Extent
     {
         Vec3 lower, upper;
-        Vec3 sum;  // of the corners: three times the middle
+        Vec3 sum;  // sum of the corners, three times the centroid
     };
     std::vector<Extent> extents(triangles_.size());
     for (std::size_t t = 0; t < extents.size(); ++t)

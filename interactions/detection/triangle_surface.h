@@ -1,4 +1,4 @@
-/// Triangles as a surface to collide with: who is whose neighbour, which edges stand out, and a tree of boxes over them.
+/// A triangle mesh as a surface to collide with: adjacency, sharp edges, and a bounding-box tree over the triangles.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace plab::detection
 {
 
-/// Frame S of the shape, m. The front is where corners are seen counter-clockwise; solids come from there.
+/// In the frame S of the shape, m. The front is the side from which corners appear counter-clockwise; solids collide from there.
 class TriangleSurface
 {
 public:
@@ -21,20 +21,20 @@ public:
     struct Triangle
     {
         std::array<std::uint32_t, 3> corner{}, edge{};  ///< edge i runs from corner i to the next one
-        std::array<Vec3, 3> inward;                     ///< unit, in the plane, square to edge i
-        Vec3 normal;                                    ///< unit, to the front
-        std::uint32_t patch = 0;                        ///< triangles that go over into one another without a sharp bend
+        std::array<Vec3, 3> inward;                     ///< unit, in the plane, perpendicular to edge i
+        Vec3 normal;                                    ///< unit, towards the front
+        std::uint32_t patch = 0;                        ///< number of a group of adjacent triangles without a sharp bend between them
     };
     struct Edge
     {
         std::uint32_t a = 0, b = 0;                       ///< corners
-        std::array<std::uint32_t, 2> side{kNone, kNone};  ///< triangles; a border has only the first
-        std::array<Vec3, 2> inward;                       ///< of each side: in its plane, square to the edge
-        bool sharp = false;                               ///< convex by more than rounding, or a border: it can be touched by itself
+        std::array<std::uint32_t, 2> side{kNone, kNone};  ///< triangles; a border edge has only the first
+        std::array<Vec3, 2> inward;                       ///< for each side: in its plane, perpendicular to the edge
+        bool sharp = false;                               ///< convex by more than rounding, or a border: a solid can touch this edge itself
         bool border() const { return side[1] == kNone; }
     };
 
-    /// Refuses what has no triangle with an area, or edges of more than two triangles.
+    /// Fails if no triangle has an area, or if an edge belongs to more than two triangles.
     static Result<TriangleSurface> make(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles);
 
     const Vec3& point(std::uint32_t corner) const { return points_[corner]; }
@@ -43,20 +43,20 @@ public:
     const Vec3& lower() const { return nodes_.front().lower; }
     const Vec3& upper() const { return nodes_.front().upper; }
 
-    /// Whether direction m leads away from the surface at a corner: along no edge that ends there.
+    /// Whether direction m leads away from the surface at a corner, i.e. towards no edge that ends there.
     bool leaves_corner(std::uint32_t corner, const Vec3& m, double tolerance) const;
-    /// Some edge at this corner is sharp.
+    /// Whether some edge at this corner is sharp.
     bool sharp_corner(std::uint32_t corner) const { return sharp_corner_[corner] != 0; }
-    /// Some edge at this corner has one side only.
+    /// Whether some edge at this corner has one side only.
     bool border_corner(std::uint32_t corner) const { return border_corner_[corner] != 0; }
-    /// The mean of the normals around a corner, each weighted by its angle (Baerentzen, Aanaes, Signed distance computation
-    /// using the angle weighted pseudonormal, IEEE TVCG 11(3), 2005): the sign of the distance to a corner.
+    /// The mean of the normals around a corner, each weighted by its angle. It gives the sign of the distance to a corner
+    /// (Baerentzen, Aanaes, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11(3), 2005).
     const Vec3& corner_normal(std::uint32_t corner) const { return corner_normal_[corner]; }
 
-    /// Calls visit(triangle) for all whose boxes meet [lower, upper], in the tree's order.
+    /// Calls visit(triangle) for all triangles in leaves whose boxes overlap [lower, upper], in the order of the tree.
     template <class Visit>
     void visit_box(const Vec3& lower, const Vec3& upper, Visit&& visit) const;
-    /// Calls visit(triangle) for those that may be nearer to `center` than limit(), nearer boxes first.
+    /// Calls visit(triangle) for the triangles that may be nearer to `center` than limit(), nearer boxes first.
     template <class Limit, class Visit>
     void visit_near(const Vec3& center, Limit&& limit, Visit&& visit) const;
 
@@ -65,7 +65,7 @@ private:
     {
         Vec3 lower, upper;
         std::uint32_t first = 0,
-                      count = 0;  ///< leaf: triangles in order_; else count = 0 and `first` is the left child, first + 1 the right
+                      count = 0;  ///< leaf: range in order_; inner node: count = 0, children `first` and first + 1
     };
     static constexpr std::size_t kDepth = 64;
 

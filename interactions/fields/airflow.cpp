@@ -11,7 +11,7 @@ namespace
 constexpr Unit kMetrePerRadian{"m/rad", {{1, 0, 0, -1}}};
 constexpr Unit kSquareMetre{"m^2", {{2, 0, 0, 0}}};
 
-/// 1 at 0, 0 from 1 on, level at both.
+/// 1 at 0, 0 from 1 on, with zero slope at both.
 double smooth_edge(double x)
 {
     if (x >= 1) return 0;
@@ -31,17 +31,17 @@ Jet jet_of(Row row, const AirflowRows& airflow, const Shafts& shafts)
 
 void AirflowRows::describe(Schema& schema)
 {
-    schema.role(driver, "driver", {Facet::Shaft}, "the fan's shaft; it blows along its axis where it turns forwards");
+    schema.role(driver, "driver", {Facet::Shaft}, "the fan's shaft; the fan blows along its axis when it turns forwards");
     schema.role(between, "between", {Facet::Body}, "bodies that the air can carry").writes().independent();
-    schema.param(pitch, "pitch", kMetrePerRadian, "way of the air through the fan per turn by one radian").nonzero();
+    schema.param(pitch, "pitch", kMetrePerRadian, "distance that the air moves through the fan per radian of rotation").nonzero();
     schema.param(radius, "radius", unit::metre, "of the fan").positive();
-    schema.param(half_angle, "half_angle", unit::radian, "by which the jet widens far from the fan; a free round jet's is about 0.2")
+    schema.param(half_angle, "half_angle", unit::radian, "half of the jet's opening angle far from the fan; about 0.2 for a free round jet")
         .or_else(0.2)
         .not_negative()
         .at_most(1.4);
     schema.param(air_density, "air_density", unit::kilogram_per_metre3, "of the air").or_else(1.2).positive();
     schema.param(drag_coefficient, "drag_coefficient", unit::one, "of the bodies; a ball's is about 0.47").or_else(0.47).not_negative();
-    schema.param(area, "area", kSquareMetre, "that a body turns to the air").not_negative();
+    schema.param(area, "area", kSquareMetre, "cross-section of a body that faces the air").not_negative();
 }
 
 Air air_at(const Jet& jet, const Vec3& p_W)

@@ -5,7 +5,7 @@ namespace plab::fields
 
 void LoadRows::describe(Schema& schema)
 {
-    schema.role(between, "between", {Facet::Body, Facet::Shaft}, "bodies and shafts that are loaded, each with all of it")
+    schema.role(between, "between", {Facet::Body, Facet::Shaft}, "bodies and shafts that are loaded, each with the full load")
         .writes()
         .independent();
     schema.param(force, "force", unit::newton, "on each body, in the world, at its centre of mass").or_else({});

@@ -1,6 +1,7 @@
 /// Field/Load: a constant force and torque, in W, on bodies; a constant torque on shafts. N, N m.
 ///
-/// F acts at the centre of mass, M about it; a shaft takes `shaft_torque` about its axle. A dead load: it does not turn with the body.
+/// F acts at the centre of mass, and M is a torque about it; a shaft takes `shaft_torque` about its axle. A dead load: it does
+/// not turn with the body.
 #pragma once
 
 #include "plab/registrar.h"

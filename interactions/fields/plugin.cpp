@@ -25,7 +25,7 @@ PLAB_PLUGIN("fields", registrar)
         .limits("explicit: a step must be shorter than about m/c");
     registrar.component<AirflowRows>("Field/Airflow", "the cone of air that a fan blows")
         .family("Field/Airflow")
-        .command<apply_airflow>(Phase::Force, "Field/Apply", "carries the bodies in the cone along with the air")
-        .limits("one way: the fan does not feel the air; bodies do not shade one another")
+        .command<apply_airflow>(Phase::Force, "Field/Apply", "drags the bodies in the cone along with the air")
+        .limits("one-way: the fan does not feel the air; bodies do not shield one another")
         .source("S. B. Pope, Turbulent flows, section 5.1 (round jet)");
 }

@@ -16,7 +16,8 @@ enum Kind : std::uint8_t
     kLower,
 };
 
-/// Two doubles at a time: the compiler does not find that by itself. Each sum keeps its order.
+/// Explicit pairs of doubles, since the compiler does not vectorise these loops by itself. Each sum keeps its order, and so its
+/// result.
 using Two = double __attribute__((vector_size(16)));
 
 Two load_two(const double* from)
@@ -28,7 +29,7 @@ Two load_two(const double* from)
 
 void store_two(double* to, Two value) { std::memcpy(to, &value, sizeof value); }
 
-/// Two rows of a, from row i, times b; sums in the order of b's rows.
+/// Two rows of a, from row i, times b; the sums run in the order of b's rows.
 struct TwoRows
 {
     Two first[3], second[3];
@@ -100,7 +101,7 @@ void swap_rows(Block& a, std::size_t i, std::size_t j)
                          a.begin() + static_cast<std::ptrdiff_t>(6 * j));
 }
 
-/// Gauss-Jordan with row pivots. False if singular.
+/// Gauss-Jordan elimination with row pivoting. Returns false if the block is singular.
 bool invert(Block& a)
 {
     Block inverse{};
@@ -137,7 +138,8 @@ void BlockMatrix::shape(std::uint32_t n, std::span<const Edge> edges)
     diagonal_.resize(n), upper_.resize(earlier_.size()), lower_.resize(earlier_.size());
 }
 
-/// Least degree first, the lowest number among equals; the neighbours of who leaves become neighbours of one another.
+/// Minimum-degree order, the lowest number first among equals. The neighbours of an eliminated node become neighbours of one
+/// another.
 void BlockMatrix::order_nodes()
 {
     if (neighbours_.size() < size_) neighbours_.resize(size_);
@@ -146,7 +148,8 @@ void BlockMatrix::order_nodes()
     for (std::uint32_t i = 0; i < size_; ++i) std::sort(neighbours_[i].begin(), neighbours_[i].end());
     order_.clear(), begin_.clear(), earlier_.clear(), later_.clear();
     rank_.assign(size_, UINT32_MAX);
-    // A heap with the least on top; a node stands in it once for each degree that it has had.
+    // A heap with the smallest degree on top; a node has one entry for each degree that it has had, and outdated entries are
+    // skipped.
     const auto later = [](const Degree& x, const Degree& y) { return x > y; };
     heap_.clear();
     const auto note = [&](std::uint32_t i)
@@ -211,7 +214,7 @@ void BlockMatrix::clear()
 
 void BlockMatrix::eliminate(std::uint32_t place)
 {
-    // upper becomes D^-1 U; what stays is A_ij - L_i D^-1 U_j.
+    // upper becomes D^-1 U; the remaining matrix becomes A_ij - L_i D^-1 U_j.
     const std::uint32_t from = begin_[place], to = begin_[place + 1];
     for (std::uint32_t q = from; q < to; ++q) upper_[q] = product(diagonal_[order_[place]], upper_[q]);
     const Target* target = targets_.data() + first_target_[place];

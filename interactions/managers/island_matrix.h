@@ -1,4 +1,11 @@
-/// M + J^T G J over the movers of an island: the matrix of every Newton step here.
+/// The matrix M + J^T G J over the movers of an island, which every Newton step of this folder factors.
+///
+/// M is block-diagonal: mass and inertia of each mover. J maps the movers' velocities to the relative velocities of the contact
+/// points and to the rates of the rows. G is the derivative of the contact law, with one 3 x 3 block per point and one number
+/// per row: how strongly the impulse reacts to a change of velocity. A point between movers a and b adds to the diagonal blocks
+/// of both and to the pair of blocks (a, b). The pattern of the matrix is thus the contact graph, and a stack gives a
+/// block-tridiagonal one. Since terms are added to the masses, and masses are never subtracted from one another, large mass
+/// ratios lose no digits.
 #pragma once
 
 #include "block_matrix.h"
@@ -10,14 +17,15 @@ namespace plab::managers
 class IslandMatrix
 {
 public:
-    /// The graph of who touches whom. Free if it did not change.
+    /// Sets the pattern to the contact graph of the problem. Cheap if it has not changed.
     void shape(const Problem& problem);
-    /// M alone.
+    /// Resets the matrix to M alone.
     void start(const Problem& problem);
-    /// Adds J^T G J of a point; G in contact coordinates.
+    /// Adds J^T G J of one point; G is in contact coordinates (t1, t2, n).
     void add(const Problem& problem, std::size_t point, const Mat3& G);
     void add(const Problem& problem, std::size_t line, double g);
-    /// x = (M + J^T G J)^-1 x. False if that does not exist in doubles, or the step is given up.
+    /// x = (M + J^T G J)^-1 x. Returns false if the matrix is singular, the result is not finite, or the step has been
+    /// interrupted.
     bool solve(std::span<Column6> x);
 
 private:
@@ -34,10 +42,10 @@ inline void add(Column6& c, const Vec3& push, const Vec3& turn)
 {
     c[0] += push.x, c[1] += push.y, c[2] += push.z, c[3] += turn.x, c[4] += turn.y, c[5] += turn.z;
 }
-/// J^T j into the movers' columns.
+/// Adds J^T j to the columns of the movers.
 void add_push(std::span<Column6> columns, const Point& p, const Vec3& j);
 void add_push(std::span<Column6> columns, const Line& line, double j);
-/// J x, contact coordinates.
+/// J x, in contact coordinates.
 Vec3 relative_velocity_of(std::span<const Column6> columns, const Point& p);
 double rate_of(std::span<const Column6> columns, const Line& line);
 

@@ -27,13 +27,13 @@ Vec3 Lagrangian::tau_of(const Problem& problem, std::size_t i, const Vec3& u) co
     return p.impulse - (u + Vec3{0, 0, bias_[i] - p.least}) * rho_[i];
 }
 
-/// The point of the cone |j_t| <= mu j_n that is nearest to tau; and rho times its derivative.
+/// The point of the cone |j_t| <= mu j_n that is nearest to tau, and rho times the derivative of this projection.
 Vec3 Lagrangian::project(const Problem& problem, std::size_t i, const Vec3& tau, Mat3* G) const
 {
     const double rho = rho_[i], mu = problem.points[i].friction;
     if (G) *G = {};
     const double size = mu > 0 ? std::hypot(tau.x, tau.y) : 0.0;
-    // At the edge a contact counts as one: a pile at rest starts as a whole.
+    // A point exactly on the boundary counts as active, so that a pile at rest starts with all its contacts.
     if (size <= mu * tau.z && tau.z >= 0)
     {
         if (G) *G = mu > 0 ? Mat3::diagonal(rho, rho, rho) : Mat3::diagonal(0, 0, rho);
@@ -58,7 +58,8 @@ double Lagrangian::project_line(const Line& line, double tau, double rho, double
     return std::clamp(tau, line.least, line.most);
 }
 
-/// step_ = -gradient at the present v, and with a matrix its Hessian; the largest |gradient| as a speed, m/s.
+/// Sets step_ to minus the gradient at the present v and, if a matrix is given, fills it with the Hessian; returns the largest
+/// |gradient| as a speed, m/s.
 double Lagrangian::gradient(const Problem& problem, IslandMatrix* matrix)
 {
     for (std::size_t i = 0; i < problem.movers.size(); ++i)
@@ -92,7 +93,8 @@ double Lagrangian::gradient(const Problem& problem, IslandMatrix* matrix)
     return largest;
 }
 
-/// Where everything that touches holds fast: tells more of who presses on whom than a start with nothing.
+/// Solves with all touching contacts sticking. This shows how loads pass through the island, which makes it a better start than
+/// zero impulses.
 void Lagrangian::weld(Problem& problem, IslandMatrix& matrix)
 {
     matrix.start(problem);
@@ -101,7 +103,7 @@ void Lagrangian::weld(Problem& problem, IslandMatrix& matrix)
     {
         const Point& p = problem.points[i];
         const Vec3 u = problem.relative_velocity(p);
-        // Gaps that open, or would not close, stay out.
+        // Gaps that open, or would not close, are left out.
         if (rho_[i] == 0 || (p.impulse.z <= 0 && u.z - p.least > 1e-6 * (std::fabs(u.z) + std::fabs(p.least)))) continue;
         const double grip = p.frictional() ? rho_[i] : 0.0;
         matrix.add(problem, i, Mat3::diagonal(grip, grip, rho_[i]));
@@ -120,7 +122,7 @@ void Lagrangian::weld(Problem& problem, IslandMatrix& matrix)
     move(problem, 1);
 }
 
-/// Derivative of the function along the step at v + t step.
+/// Derivative of the minimised function along the step, at v + t step.
 double Lagrangian::slope(const Problem& problem, double t)
 {
     double sum = 0;
@@ -144,7 +146,7 @@ double Lagrangian::slope(const Problem& problem, double t)
     return sum;
 }
 
-/// Where along the step the function is least: false position on its slope, which grows with t.
+/// The step length t that minimises the function along the step: false position on its slope, which increases with t.
 double Lagrangian::search(const Problem& problem, double at_zero)
 {
     constexpr int kTrials = 12;

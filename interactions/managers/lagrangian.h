@@ -1,12 +1,17 @@
-/// From any start to the neighbourhood of the contact law: an augmented Lagrangian in the movers' speeds.
+/// An augmented Lagrangian method in the movers' velocities. From any starting point it gets close enough to a solution of the
+/// contact law for Newton's method (newton.h), which converges only locally, to finish.
 ///
 ///   v = argmin 1/2 |v - v0|_M^2 + sum of |P(tau)|^2 / 2 rho,    tau = j - rho (u - least + mu s n)
 ///
-/// with P onto the cone |j_t| <= mu j_n and s = |u_t| of the round before: convex and smooth, so Newton's method with a
-/// line search gets there from anywhere. Then j = P(tau), s = |u_t|, and again; where that stands still the shift mu s
-/// has made Coulomb's law of the convex one.
-/// Sources: Rockafellar, SIAM J. Control 12 (1974); De Saxce, Feng (1998) and Acary, Cadoux, Lemarechal, Malick (2011)
-/// for the shift; Castro et al., IEEE T-RO 38 (2022), for Newton's method in speeds with line search.
+/// P projects onto the friction cone |j_t| <= mu j_n, and s = |u_t| is the slip speed of the previous round. With s fixed, the
+/// function to be minimised is convex and smooth, so Newton's method with a line search converges from anywhere. Then the
+/// impulses are updated, j = P(tau), the slip speeds too, s = |u_t|, and the next round begins.
+///
+/// Why the term mu s n: without it the minimum obeys an associated flow rule. A sliding contact would then separate at the speed
+/// mu |u_t| instead of sliding along the surface. The shift by mu s cancels exactly that separation. At a fixed point of the
+/// rounds the solution therefore satisfies Coulomb's law itself.
+/// Sources: Rockafellar, SIAM J. Control 12 (1974); De Saxce, Feng (1998) and Acary, Cadoux, Lemarechal, Malick (2011) for the
+/// shift; Castro et al., IEEE T-RO 38 (2022), for Newton's method in velocities with line search.
 #pragma once
 
 #include "island_matrix.h"
@@ -17,8 +22,9 @@ namespace plab::managers
 class Lagrangian
 {
 public:
-    /// One outer round from the present impulses; `matrix` holds the problem's graph already. Adds its Newton steps to
-    /// `steps`; false if they did not suffice.
+    /// One outer round from the present impulses; rho is kappa / K_nn. `matrix` must have the pattern of the problem already.
+    /// With `from_welded` the round starts from the solution in which all contacts stick. Adds the Newton steps taken to
+    /// `steps`; returns false if the minimisation did not converge.
     bool round(Problem& problem, IslandMatrix& matrix, double kappa, bool from_welded, double tolerance, int& steps);
 
 private:
@@ -39,7 +45,7 @@ private:
     void take_impulses(Problem& problem);
 
     std::vector<double> rho_, bias_, line_rho_;
-    std::vector<Vec3> velocities_, velocity_steps_;  // at the present v, and along the step
+    std::vector<Vec3> velocities_, velocity_steps_;  // at the present v, and their change along the step
     std::vector<double> rates_, rate_steps_;
     std::vector<Column6> step_, force_;
 };

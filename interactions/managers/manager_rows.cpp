@@ -12,12 +12,12 @@ namespace plab::managers
 namespace
 {
 
-/// What a step of some hundred contacts still ends with in minutes.
+/// With this many iterations, a step of some hundred contacts still ends within minutes.
 constexpr double kMostIterations = 1e6;
 
 constexpr Unit kHertz{"1/s", {{0, 0, -1, 0}}};
 
-/// Share of the points that close and start without a guess: they need more sweeps than others.
+/// The fraction of points that are closing but have no initial impulse: they need more sweeps than others.
 double unknown_share(const Problem& problem)
 {
     const auto is_new = [&](const Point& p)
@@ -26,7 +26,7 @@ double unknown_share(const Problem& problem)
     return problem.points.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(problem.points.size());
 }
 
-/// Sweeps of Gauss-Seidel.
+/// Finds impulses by Gauss-Seidel sweeps.
 class Sweeps final : public Method
 {
 public:
@@ -73,7 +73,7 @@ private:
     Solving how_;
 };
 
-/// Of a body's size a step (or of a rad): a violation that is told of.
+/// As a fraction of a body's size per step (or of a rad): smaller violations are not reported.
 constexpr double kMatters = 0x1p-23;
 
 int whole(std::int64_t n) { return static_cast<int>(std::min<std::int64_t>(n, 1'000'000)); }
@@ -84,7 +84,7 @@ void report(Island& island, const Verdict& verdict)
     island.converged = verdict.converged, island.fell_back = verdict.fell_back;
 }
 
-/// Work that was given up leaves its memory half written.
+/// An interrupted solve leaves its memory in an undefined state, so it is cleared.
 template <class Memory>
 void forget_if_given_up(const Island& island, Memory& memory)
 {
@@ -95,13 +95,14 @@ void forget_if_given_up(const Island& island, Memory& memory)
 
 void Account::describe(Schema& s)
 {
-    s.output(residual, "residual", unit::metre_per_second, "largest violation left of what contacts and rows ask of speeds")
+    s.output(residual, "residual", unit::metre_per_second, "largest remaining violation of the velocity conditions of contacts and rows")
         .reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps, sub-steps' sweeps or Newton steps in the last step");
     s.output(contacts, "contacts", unit::one, "contact points in the last step");
-    s.output(fallbacks, "fallbacks", unit::one, "islands that another algorithm had to finish in the last step");
-    s.output(step, "step", unit::one, "the step that these figures are of; -1: none yet").or_else(-1);
-    s.output(last_failure, "last_failure", unit::one, "the last step that did not converge; -1: none. An event tells of the first in a row")
+    s.output(fallbacks, "fallbacks", unit::one, "islands for which a fallback algorithm had to finish the last step");
+    s.output(step, "step", unit::one, "the step that these outputs refer to; -1: none yet").or_else(-1);
+    s.output(last_failure, "last_failure", unit::one,
+             "the last step that did not converge; -1: none. An event reports the first of consecutive ones")
         .or_else(-1);
 }
 
@@ -117,14 +118,14 @@ void Account::add(const StepContext& context, Row row, const Island& island, dou
     contacts[row] += static_cast<std::int64_t>(island.contacts.size());
     fallbacks[row] += island.fell_back ? 1 : 0;
     residual[row] = std::max(residual[row], island.residual);
-    // What moves nobody by 2^-23 of its size in a step is left to the output.
+    // A violation that moves no body by more than 2^-23 of its size in a step appears in the output only, without an event.
     const double size = island.bodies.empty() ? 1 : island.size;
     if (island.converged || island.residual * island.h <= kMatters * size) return;
     const bool reported = last_failure[row] >= 0 && last_failure[row] + 1 >= context.tick;
     if (!reported)
         context.emit(row, "manager.not_converged", Severity::Warning,
-                     "contacts are left " + rounded_text(island.residual) + " m/s from what they ask for, " + number_text(tolerance) +
-                         " would do; allow more iterations, or take a smaller dt or a more exact manager",
+                     "contacts violate their conditions by " + rounded_text(island.residual) + " m/s; the tolerance is " +
+                         number_text(tolerance) + " m/s; allow more iterations, use a smaller dt, or choose a more exact manager",
                      {island.residual, tolerance});
     last_failure[row] = context.tick;
 }
@@ -132,28 +133,31 @@ void Account::add(const StepContext& context, Row row, const Island& island, dou
 void SequentialRows::describe(Schema& s)
 {
     s.param(max_iterations, "max_iterations", unit::one,
-            "sweeps over the contacts and rows for speeds; up to ten times as many where contacts are new")
+            "sweeps over the contacts and rows for velocities; up to ten times as many where contacts are new")
         .or_else(20)
         .positive()
         .at_most(kMostIterations);
-    s.param(position_iterations, "position_iterations", unit::one, "sweeps that part overlap")
+    s.param(position_iterations, "position_iterations", unit::one, "sweeps that correct overlap")
         .or_else(10)
         .not_negative()
         .at_most(kMostIterations);
     s.param(tolerance, "tolerance", unit::metre_per_second,
-            "violation that may be left; ends the sweeps, and above it the step counts as not converged")
+            "remaining violation at which the sweeps end; a step with a larger one counts as not converged")
         .or_else(1e-6)
         .positive();
     s.param(slop, "slop", unit::metre,
-            "overlap that is left, and gaps that hold as if closed: what trembles less than this keeps its contacts")
+            "overlap that is tolerated, and gaps held as if closed: contacts that vibrate by less than this "
+            "persist")
         .or_else(5e-5)
         .not_negative();
     s.param(overlap_share, "overlap_share", unit::one,
-            "part of the overlap beyond slop that is parted in a step; much of it at once lifts what rests above, and feeds its rocking")
+            "fraction of the overlap beyond slop that is corrected in one step; a large one lifts the bodies "
+            "that rest above and excites rocking")
         .or_else(0.2)
         .positive()
         .at_most(1);
-    s.param(relaxation, "relaxation", unit::one, "share of each correction that is made; above 1 converges faster, or not at all")
+    s.param(relaxation, "relaxation", unit::one,
+            "fraction of each correction that is applied; values above 1 converge faster, or not at all")
         .or_else(1)
         .positive()
         .at_most(1.9);
@@ -174,17 +178,22 @@ void solve_sequential(const StepContext& context, Row row, SequentialRows& rows,
 void DirectRows::describe(Schema& s)
 {
     s.param(tolerance, "tolerance", unit::metre_per_second,
-            "violation that counts as none; never less than rounding leaves: 1e-11 in a wall of 1000 bricks")
+            "violation that counts as zero; never less than the rounding error, about 1e-11 in a wall of 1000 "
+            "bricks")
         .or_else(1e-13)
         .positive();
-    s.param(max_steps, "max_steps", unit::one, "Newton steps before sweeps have to finish").or_else(80).positive().at_most(10000);
+    s.param(max_steps, "max_steps", unit::one, "maximum number of Newton steps; after these, sweeps finish")
+        .or_else(80)
+        .positive()
+        .at_most(10000);
     s.param(max_iterations, "max_iterations", unit::one,
-            "sweeps at a time where Newton's method does not converge, up to four times; and in islands beyond max_contacts")
+            "sweeps in a row where Newton's method does not converge, up to four times; also in islands with "
+            "more than max_contacts")
         .or_else(100)
         .positive()
         .at_most(kMostIterations);
     s.param(max_contacts, "max_contacts", unit::one,
-            "islands with more contact points are left to sweeps: one factorisation would cost too much")
+            "islands with more contact points are solved by sweeps: a factorisation would cost too much")
         .or_else(20000)
         .positive()
         .at_most(1e6);
@@ -213,21 +222,23 @@ void solve_direct(const StepContext& context, Row row, DirectRows& rows, Bodies&
 
 void SoftStepRows::describe(Schema& s)
 {
-    s.param(substeps, "substeps", unit::one, "parts of the step, each with one sweep and the relaxing ones")
+    s.param(substeps, "substeps", unit::one, "number of sub-steps, each with one sweep followed by the relaxation sweeps")
         .or_else(8)
         .positive()
         .at_most(1000);
-    s.param(relax_iterations, "relax_iterations", unit::one, "sweeps after each move that take out the speed of parting")
+    s.param(relax_iterations, "relax_iterations", unit::one,
+            "sweeps after each move that remove the velocity added by the correction of overlap")
         .or_else(1)
         .not_negative()
         .at_most(100);
-    s.param(hertz, "hertz", kHertz, "stiffness of contacts as a frequency; never more than a quarter of the sub-steps' rate")
+    s.param(hertz, "hertz", kHertz, "stiffness of contacts as a natural frequency; limited to a quarter of the rate of the sub-steps")
         .or_else(60)
         .positive();
-    s.param(damping_ratio, "damping_ratio", unit::one, "damping of that oscillation").or_else(10).not_negative();
-    s.param(push_speed, "push_speed", unit::metre_per_second, "overlap is parted no faster than this").or_else(3).positive();
+    s.param(damping_ratio, "damping_ratio", unit::one, "damping ratio of that oscillation").or_else(10).not_negative();
+    s.param(push_speed, "push_speed", unit::metre_per_second, "largest speed at which overlap is pushed out").or_else(3).positive();
     s.param(tolerance, "tolerance", unit::metre_per_second,
-            "speed at which overlap may go on closing; above it contacts are not held, and the step counts as not converged")
+            "largest speed at which overlap may still grow; with a larger one the contacts count as not held and "
+            "the step as not converged")
         .or_else(1e-2)
         .positive();
     account.describe(s);

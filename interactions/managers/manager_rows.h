@@ -1,4 +1,5 @@
-/// Manager/*: who advances islands of contacts and one-sided rows. One step each call of Phase::Solve.
+/// The component types Manager/*: each advances islands of contacts and one-sided rows. Each call of Phase::Solve takes one step
+/// of one island.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 namespace plab::managers
 {
 
-/// What every manager says of its last step, summed over its islands.
+/// The outputs that every manager reports for its last step, summed over its islands.
 struct Account
 {
     Column<std::int64_t> iterations, contacts, fallbacks;
@@ -21,7 +22,7 @@ struct Account
 
     void describe(Schema& schema);
 
-    /// Trials leave no trace: they have nobody to tell events to.
+    /// Does nothing in trial steps: these are rewound, so they must leave neither outputs nor events behind.
     void add(const StepContext& context, Row row, const Island& island, double tolerance);
 };
 

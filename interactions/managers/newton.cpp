@@ -8,11 +8,11 @@ namespace plab::managers
 namespace
 {
 
-/// kappa of law_of: what a held contact's stiffness is, beside 1 / K.
+/// kappa of law_of: the stiffness rho of an active contact is kappa / K.
 constexpr double kLeastStiffness = 1e6, kMostStiffness = 1e12;
 
-/// What one step asks of a point: dj = change - G du. Who presses and who slips is read off tau with rho = 1 / K, at which
-/// impulses and speeds weigh alike; what presses or sticks is held by rho = kappa / K.
+/// The linearised law of a point: dj = change - G du. Whether the point presses, sticks or slides is decided from tau with rho =
+/// 1 / K, for which impulses and velocities have the same weight; the active directions then use the stiffer rho = kappa / K.
 void law_of(const Point& p, const Vec3& u, double kappa, Vec3& change, Mat3& G)
 {
     const double rho = 1 / p.K(2, 2), stiff = kappa * rho;
@@ -21,7 +21,7 @@ void law_of(const Point& p, const Vec3& u, double kappa, Vec3& change, Mat3& G)
     const double normal = p.impulse.z - rho * (u.z - p.least);
     if (normal <= 0) return;
     G(2, 2) = stiff;
-    // Written so that a held contact's change is -rho u itself, without the digits of j.
+    // Written so that the change of an active contact is -rho u itself: the digits of j do not enter.
     change.z = -stiff * (u.z - p.least);
     if (!p.frictional()) return;
     const double x = p.impulse.x - rho * u.x, y = p.impulse.y - rho * u.y, size = std::hypot(x, y);
@@ -32,8 +32,9 @@ void law_of(const Point& p, const Vec3& u, double kappa, Vec3& change, Mat3& G)
         change.x = -stiff * u.x, change.y = -stiff * u.y;
         return;
     }
-    // Along the slip mu j_n; across it the direction of tau turns with j and u. There j is rho u, as tau has no such part: so
-    // the digits of j are not multiplied by a share that is large where slip begins.
+    // Along the slip direction the friction is mu j_n; across it, the direction of tau turns with j and u. Across the slip
+    // direction j equals rho u, since tau has no component there. Substituting rho u keeps the rounding errors of j from being
+    // amplified by `share`, which is large where sliding begins.
     const double c = x / size, s = y / size, beta = radius / size;
     const double along = p.friction * (p.impulse.z + change.z) - (c * p.impulse.x + s * p.impulse.y);
     const double share = std::min(1 / (1 - beta), kappa), turn = rho * beta * share;
@@ -43,7 +44,7 @@ void law_of(const Point& p, const Vec3& u, double kappa, Vec3& change, Mat3& G)
     G(0, 2) = p.friction * c * stiff, G(1, 2) = p.friction * s * stiff;
 }
 
-/// Root of the sum of squares: smooth enough to compare steps by.
+/// Square root of the sum of the squared violations: smooth enough to compare steps by.
 double total_violation(const Problem& problem)
 {
     double sum = 0;
@@ -53,7 +54,7 @@ double total_violation(const Problem& problem)
     return std::sqrt(sum);
 }
 
-/// Whether no point is further than that from the law; `total` is total_violation's.
+/// Whether each point is within `tolerance` of the law; `total` is the result of total_violation.
 bool settled(const Problem& problem, double total, double tolerance)
 {
     if (total <= tolerance) return true;
@@ -63,7 +64,8 @@ bool settled(const Problem& problem, double total, double tolerance)
 
 bool is_large(const Problem& problem) { return problem.points.size() + problem.lines.size() > 256; }
 
-/// Loads add up over the island's contacts. Where they are many, some hold nothing and change their state with every rounding.
+/// Number of summands for Problem::rounding: loads add up over the contacts of the island. In large islands some contacts carry
+/// no load and change their state with every rounding error.
 double terms_of(const Problem& problem)
 {
     return (is_large(problem) ? 4096 : 16) * static_cast<double>(problem.points.size() + problem.lines.size());
@@ -119,7 +121,7 @@ void NewtonSolver::go(Problem& problem, double share)
     problem.apply_impulses();
 }
 
-/// The whole step if it does not lead away, or a part of it that does not.
+/// Takes the whole step if it does not diverge, otherwise a part of it.
 double NewtonSolver::advance(Problem& problem, double now)
 {
     constexpr int kHalvings = 4;
@@ -161,8 +163,8 @@ bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
         const double before = now;
         now = advance(problem, now);
         ++out.steps, ++since_best;
-        // Slow where masses differ much: then the contacts have to be taken as stiffer. Not at the floor of rounding, where it
-        // would multiply what depths of redundant contacts disagree by.
+        // Convergence is slow where masses differ much: the contacts then need a larger stiffness. Not once the residual is at
+        // the level of rounding, where a larger stiffness would amplify the disagreement between redundant contacts.
         if (now > 0.05 * before && now > how.tolerance) kappa = std::min(kMostStiffness, kappa * kGrowth);
         if (!(now < best)) continue;
         if (now < 0.5 * best) since_best = 0;
@@ -170,7 +172,7 @@ bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
         remember(problem);
     }
     if (!(now <= best)) recall(problem);
-    // What rounding leaves is known once the impulses are.
+    // How much rounding leaves can be estimated only once the impulses are known.
     Solving within = how;
     within.tolerance = std::max(how.tolerance, problem.rounding(terms_of(problem)));
     if (!settled(problem, best, within.tolerance)) return false;
@@ -178,14 +180,15 @@ bool NewtonSolver::newton(Problem& problem, const Solving& how, Solved& out)
     return true;
 }
 
-/// What is left of tolerance, or of the rounding of the largest impulse, is a load that a lighter body does not see: steps
-/// beyond it take each contact to the rounding of its own.
+/// A residual within the tolerance, or within the rounding error of the largest impulse, may still be a load that a much lighter
+/// body would notice. Further steps take each contact down to its own rounding error.
 void NewtonSolver::polish(Problem& problem, double best, double kappa, const Solving& how, Solved& out)
 {
     constexpr double kFine = 1e-2;
     const double coarse = problem.rounding() / how.finest;
     const int most = coarse > 1 ? 3 : 1;
-    // As much stiffer as rounding is coarser: a heavy body gets there, and redundant contacts keep their shares.
+    // Raises the stiffness in the ratio in which rounding is coarser than asked for: heavy bodies then converge, and redundant
+    // contacts keep their shares.
     if (coarse > 1) kappa = std::max(kappa, std::min(kMostStiffness, kLeastStiffness * coarse));
     for (int i = 0; i < most && best > kFine * how.finest; ++i, ++out.steps)
     {
@@ -198,7 +201,7 @@ void NewtonSolver::polish(Problem& problem, double best, double kappa, const Sol
     }
 }
 
-/// Rounds of the augmented Lagrangian, ever stiffer, until Newton's method on the law itself takes over.
+/// Rounds of the augmented Lagrangian with growing stiffness, until Newton's method on the law itself converges.
 void NewtonSolver::approach(Problem& problem, const Solving& how, Solved& out)
 {
     constexpr double kFirst = 100, kGrowth = 4, kMost = 6400;
@@ -206,7 +209,7 @@ void NewtonSolver::approach(Problem& problem, const Solving& how, Solved& out)
     const double guess = total_violation(problem);
     remember(problem);
     guess_points_ = best_points_, guess_lines_ = best_lines_;
-    // At first as if everything held fast: that is all there is to most things that lie.
+    // The first round starts as if all contacts stuck: for most piles at rest this is already the solution.
     (void)lagrangian_.round(problem, matrix_, 1e5, true, how.tolerance, out.steps);
     out.converged = newton(problem, how, out);
     if (out.converged) return;
@@ -225,7 +228,7 @@ void NewtonSolver::approach(Problem& problem, const Solving& how, Solved& out)
     }
 }
 
-/// Gauss-Seidel, and Newton's method again from where it got: each gets away from where the other is stuck.
+/// Alternates Gauss-Seidel sweeps with Newton's method: each can leave a point at which the other stagnates.
 void NewtonSolver::finish_by_sweeps(Problem& problem, const Solving& how, Solved& out)
 {
     constexpr int kRounds = 4, kNewtonSteps = 12;
@@ -242,8 +245,8 @@ void NewtonSolver::finish_by_sweeps(Problem& problem, const Solving& how, Solved
     }
 }
 
-/// What rests drifts off its solution by rounding, a little in each step. Where that shows, some sweeps take the most of it away:
-/// Newton's method would change the state of contacts that hardly press to and fro.
+/// An island at rest drifts off its solution by rounding, a little in each step. When the drift exceeds the tolerance, a few
+/// sweeps remove most of it. Newton's method would instead switch the state of barely loaded contacts back and forth.
 bool NewtonSolver::settles_by_sweeps(Problem& problem, double guess, const Solving& how, Solved& out)
 {
     constexpr double kNear = 100;
@@ -269,7 +272,7 @@ Solved NewtonSolver::solve(Problem& problem, const Solving& how)
     const double guess = total_violation(problem);
     if (settled(problem, guess, exact.tolerance))
     {
-        // Good as far as rounding lets one see: a heavy body may see further.
+        // The result is as good as rounding of the largest impulse allows, but light bodies may need more.
         if (problem.rounding() > how.tolerance && guess > how.tolerance)
             matrix_.shape(problem), polish(problem, guess, kLeastStiffness, how, out);
     }

@@ -1,16 +1,26 @@
-/// The contact law of a whole island at once, exactly: semismooth Newton on the law's fixed point equation.
+/// Solves the contact law of a whole island exactly: a semismooth Newton method on the law's fixed-point equation.
 ///
-/// With tau = j - rho (u - least) and P the law's projection (tau_n to >= 0, then tau_t to the disc mu P_n: Coulomb's
-/// cone itself, no polyhedron and no convex stand-in), the law reads j = P(tau). One step solves
+/// Let tau = j - rho (u - least), and let P be the projection of the law: tau_n is clamped to >= 0, then tau_t is projected onto
+/// the disc of radius mu P_n. This is Coulomb's cone itself, neither a polyhedral nor a convexified approximation. The contact
+/// law is then equivalent to j = P(tau). P is only piecewise smooth: its pieces are the states separated, sticking and sliding.
+/// A semismooth Newton method linearises the piece in which each point currently is. One step solves
 ///
 ///   (M + J^T G J) dv = J^T (P(tau) - j),    dj = P(tau) - j - G J dv,    G = rho P'(tau)
 ///
-/// over the movers' 6-vectors: a matrix of blocks over the graph of who touches whom, so stacks cost O(n), and masses
-/// are added, never subtracted from one another: ratios of 1e8 keep their digits. rho is kappa / K of each point. What
-/// contacts share without being told how (a table with four legs) is split as it was in the guess, and equally where
-/// there was none: of all solutions the one nearest to the guess, in the norm that 1/rho weighs.
-/// Sources: Alart, Curnier, CMAME 92 (1991), eq. 3.6; Rockafellar (1976) for the proximal term; Acary, Bourrich,
-/// Siconos (2018), section 5, for Newton's method on it.
+/// over the 6-vectors of the movers. The matrix (island_matrix.h) has the sparsity of the contact graph, so a stack costs O(n).
+/// Masses are added and never subtracted from one another, so mass ratios of 1e8 keep their digits. rho is kappa / K of each
+/// point.
+///
+/// How contacts share a load may be undetermined (a table with four legs). The term in rho then acts as a proximal
+/// regularisation and picks, of all solutions, the one nearest to the initial guess in the norm weighted by 1/rho: the split
+/// stays as it was, and is equal where there was no guess.
+///
+/// Newton's method converges only near a solution. solve() therefore takes the cheapest method that works: (1) nothing, if the
+/// last impulses still satisfy the law; (2) some sweeps, for a large island that has only drifted by rounding; (3) Newton's
+/// method from the last impulses; (4) rounds of the augmented Lagrangian (lagrangian.h), each followed by Newton's method; (5)
+/// Gauss-Seidel sweeps alternating with Newton's method, reported as `fell_back`.
+/// Sources: Alart, Curnier, CMAME 92 (1991), eq. 3.6; Rockafellar (1976) for the proximal term; Acary, Bourrich, Siconos (2018),
+/// section 5, for the Newton method applied to it.
 #pragma once
 
 #include "lagrangian.h"
@@ -22,22 +32,23 @@ namespace plab::managers
 struct Solving
 {
     double tolerance = 1e-12;  ///< m/s
-    int most_steps = 80;       ///< Newton steps, of both kinds
-    int most_sweeps = 100;     ///< Gauss-Seidel where Newton's method does not get there
-    double finest = 1e-12;     ///< m/s: what was asked for; rounding may raise `tolerance`
+    int most_steps = 80;       ///< Newton steps, those of the augmented Lagrangian included
+    int most_sweeps = 100;     ///< Gauss-Seidel sweeps where Newton's method does not converge
+    double finest = 1e-12;     ///< m/s: the tolerance that was asked for; rounding may raise `tolerance`
 };
 struct Solved
 {
     int steps = 0, sweeps = 0;
     double residual = 0;  ///< m/s, see violation()
     bool converged = false;
-    bool fell_back = false;  ///< sweeps had to finish
+    bool fell_back = false;  ///< Gauss-Seidel sweeps were needed
 };
 
 class NewtonSolver
 {
 public:
-    /// From the present impulses to the law's; movers' speeds agree with them before and afterwards.
+    /// Changes the present impulses to those of the contact law. The velocities of the movers agree with the impulses before and
+    /// afterwards.
     Solved solve(Problem& problem, const Solving& how);
 
 private:

@@ -8,7 +8,7 @@ namespace plab::managers
 namespace
 {
 
-/// Largest eigenvalue of the tangential 2 x 2 part.
+/// Largest eigenvalue of the tangential 2 x 2 part of K.
 double slip_mobility(const Mat3& K)
 {
     const double mean = 0.5 * (K(0, 0) + K(1, 1)), half = 0.5 * (K(0, 0) - K(1, 1));
@@ -59,7 +59,8 @@ void Problem::turn_with(const Bodies& bodies)
         const Mat3 R = rotation_matrix(bodies.orientation[b]), R_T = transposed(R);
         movers[i].inverse_inertia = R * bodies.inverse_inertia_B[b] * R_T;
         anchors[i].inertia = R * bodies.inertia_B[b] * R_T;
-        // Momenta stay where bodies turn freely: spins without impulses are those of what impulses have not given.
+        // The momentum is constant while a body turns freely; the spin without impulses is what the impulses have not
+        // contributed to it.
         anchors[i].w = bodies.angular_velocity[b] - movers[i].inverse_inertia * anchors[i].written;
     }
     for (Point& p : points) set_mobility(p);
@@ -114,7 +115,7 @@ void Problem::add_point(const Contact& c, const Bodies& bodies)
     p.friction = c.friction;
     set_mobility(p);
     if (!(p.K(2, 2) > 0)) return;
-    // The normal may have turned since, and friction may be another: a guess within the law.
+    // The normal may have turned since, and the friction may have changed: the initial impulse is projected onto the cone.
     p.impulse = to_contact(p, c.impulse);
     p.impulse.z = std::max(0.0, p.impulse.z);
     p.impulse = within_disc(p.impulse, p.friction * p.impulse.z);
@@ -150,7 +151,7 @@ void Problem::load(const Island& island, const Bodies& bodies, const Shafts& sha
     add_shafts(island, shafts);
     for (const Contact& c : island.contacts) add_point(c, bodies);
     for (std::uint32_t i = 0; i < island.rows.size(); ++i) add_line(island.rows[i], i);
-    // Only these entries were written: the maps stay empty from island to island.
+    // Only these entries were written, so the maps are empty again for the next island at little cost.
     for (const std::uint32_t b : island.bodies) mover_of_body_[b] = kNoIndex;
     for (const std::uint32_t s : island.shafts) mover_of_shaft_[s] = kNoIndex;
 }
@@ -249,7 +250,7 @@ void Problem::write_speeds(Bodies& bodies, Shafts& shafts)
             shafts.speed[m.host] = movers[i].w.x;
             continue;
         }
-        // The momentum is the state: it changes by the impulses themselves.
+        // The angular momentum is the state: it changes by the impulses themselves.
         bodies.velocity[m.host] = movers[i].v;
         if (m.turn == m.written) continue;
         bodies.add_angular_impulse(m.host, m.turn - m.written);
@@ -293,7 +294,8 @@ double Problem::rounding(double terms) const
     return std::max(0x1p-46 * speed, 0x1p-50 * std::sqrt(terms) * given);
 }
 
-// What holds is judged by its speed itself: beside a large impulse a small one is lost to rounding.
+// Active contacts are judged by their velocity itself: next to a large impulse, a small change of impulse would be lost to
+// rounding.
 double violation(const Point& p, const Vec3& u)
 {
     if (!(p.K(2, 2) > 0)) return 0;

@@ -1,10 +1,11 @@
-/// An island as managers compute with it: movers, contact points and scalar rows, with impulses as unknowns.
+/// An island in the form in which managers compute with it: movers, contact points and scalar rows, with impulses as unknowns.
 ///
-/// Contact coordinates are (t1, t2, n), n from a to b; u = velocity of b's point less that of a's, m/s:
+/// Contact coordinates are (t1, t2, n), with n from a to b; u = velocity of b's point relative to a's, m/s:
 ///
 ///   u = E (v_b + w_b x r_b - v_a - w_a x r_a) + given,   du = K dj,   K = E (sum of (1/m) 1 - [r] I^-1 [r]) E^T
 ///
-/// j acts on b, -j on a, N s. M and J stay apart: nothing here divides one mass by another.
+/// The impulse j (N s) acts on b, and -j on a. M and J are kept separate instead of forming the matrix J M^-1 J^T of all
+/// contacts: no mass is ever divided by another one.
 #pragma once
 
 #include <array>
@@ -19,90 +20,92 @@
 namespace plab::managers
 {
 
-/// What the innermost loops touch of a body, or of a shaft (angular.x alone).
+/// What the innermost loops need of a body, or of a shaft (which uses w.x alone).
 struct Mover
 {
     Vec3 v;  ///< m/s
-    Vec3 w;  ///< rad/s, W; a shaft: x
+    Vec3 w;  ///< rad/s, in W; a shaft: x only
     double inverse_mass = 0;
-    Mat3 inverse_inertia;  ///< W; a shaft: (0,0)
+    Mat3 inverse_inertia;  ///< in W; a shaft: only element (0,0)
 };
 
-/// The rest of it.
+/// The remaining data of a mover, kept apart so that the inner loops touch less memory.
 struct Anchor
 {
-    std::uint32_t host = kNoIndex;  ///< row of Bodies or Shafts
+    std::uint32_t host = kNoIndex;  ///< row in Bodies or Shafts
     bool shaft = false;
     double mass = 1;
     Mat3 inertia;     ///< W
-    Vec3 v, w;        ///< speeds without impulses
-    Vec3 push, turn;  ///< N s, N m s: what the impulses come to
-    Vec3 written;     ///< N m s: how much of `turn` the table has already
+    Vec3 v, w;        ///< velocities without the impulses of this solve
+    Vec3 push, turn;  ///< N s, N m s: sum of the impulses on this mover
+    Vec3 written;     ///< N m s: the part of `turn` that has been written to the table already
 };
 
 struct Point
 {
-    std::uint32_t a = kNoIndex, b = kNoIndex;  ///< movers; kNoIndex: does not move by impulses
+    std::uint32_t a = kNoIndex, b = kNoIndex;  ///< movers; kNoIndex: impulses do not move this side
     Vec3 n, t1, t2;                            ///< W
-    Vec3 r_a, r_b;                             ///< m, from the centres of mass, W
-    Vec3 given;                                ///< m/s: what bodies that are no movers add to u
+    Vec3 r_a, r_b;                             ///< m, from the centres of mass to the point, in W
+    Vec3 given;                                ///< m/s: contribution to u of bodies that are not movers
     Mat3 K;                                    ///< 1/kg
     double slip_mobility = 0;                  ///< 1/kg, largest eigenvalue of K's tangential part
     double friction = 0;
     double least = 0;  ///< m/s: u_n >= least
-    Vec3 impulse;      ///< N s
+    Vec3 impulse;      ///< N s, in contact coordinates
 
     bool frictional() const { return friction > 0; }
 };
 
-/// A joint's, limit's or motor's row: sum of linear . v + angular . w + given >= or = target.
+/// A row of a joint, limit or motor: sum of linear . v + angular . w + given = target, or >= target if it is one-sided.
 struct Line
 {
-    std::uint32_t row = 0;    ///< in Island::rows
-    std::uint32_t count = 0;  ///< of movers that take part
+    std::uint32_t row = 0;    ///< index in Island::rows
+    std::uint32_t count = 0;  ///< number of movers that take part
     std::array<std::uint32_t, ConstraintRow::kMostBlocks> mover{};
     std::array<Vec3, ConstraintRow::kMostBlocks> linear, angular;
     double given = 0;
     double mobility = 0;  ///< J M^-1 J^T
     double target = 0;
-    double least = 0, most = 0;  ///< N s or N m s
+    double least = 0, most = 0;  ///< bounds of the impulse, N s or N m s
     double impulse = 0;
 };
 
 class Problem
 {
 public:
-    /// Geometry, masses and warm starts. `targets` and speeds are still to be set.
+    /// Sets geometry, masses and initial impulses (warm start). Targets and velocities are still to be set.
     void load(const Island& island, const Bodies& bodies, const Shafts& shafts);
-    /// Inertias, mobilities and spins without impulses at the present attitudes, after bodies have turned freely. Contact points stay where
-    /// they were found, seen from the centres of mass: what is round touches with another point of it when it has turned.
+    /// Updates inertias, mobilities and the spins without impulses to the present attitudes, after bodies have turned freely.
+    /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with
+    /// another of its points, so the point must not turn with it.
     void turn_with(const Bodies& bodies);
-    /// Speeds without impulses from the tables; given parts of u with them.
+    /// Reads the velocities without impulses, and the given parts of u, from the tables.
     void read_speeds(const Bodies& bodies, const Shafts& shafts);
-    /// Speeds at rest, and none given: for displacements instead of speeds.
+    /// Sets all velocities and given parts to zero, for a solve in displacements instead of velocities.
     void rest();
-    /// Impulses of all points and lines to nothing.
+    /// Sets the impulses of all points and lines to zero.
     void clear_impulses();
     void scale_impulses(double share);
-    /// Movers' speeds = speeds without impulses + what the present impulses do, summed in a fixed order.
+    /// Sets the movers' velocities to those without impulses plus the effect of the present impulses, summed in a fixed order so
+    /// that the result is reproducible.
     void apply_impulses();
-    /// To the tables; after apply_impulses.
+    /// Writes the velocities to the tables; call apply_impulses first.
     void write_speeds(Bodies& bodies, Shafts& shafts);
 
     Vec3 relative_velocity(const Point& p) const;  ///< u, m/s
     double rate(const Line& line) const;           ///< J v + given
     void push(const Point& p, const Vec3& j);
     void push(const Line& line, double j);
-    /// m/s: what rounding may leave of a contact law: a share of the largest speed, and of what the largest impulse alone
-    /// would give; of sums of that many terms, like a random walk.
+    /// m/s: how far from the contact law rounding may leave the result: a fraction of the largest speed, or of the speed that
+    /// the largest impulse alone would give. The rounding errors of `terms` summands are taken to add up like a random walk.
     double rounding(double terms = 1) const;
-    /// The step is given up: sweeps and factorisations end.
+    /// Whether the step has been interrupted; sweeps and factorisations then end early.
     bool interrupted() const { return interruption && interruption->due(); }
 
     std::vector<Mover> movers;
-    std::vector<Anchor> anchors;  ///< beside movers
-    std::vector<Point> points;    ///< beside Island::contacts
-    std::vector<Line> lines;      ///< beside Island::rows; those without movers have count 0
+    std::vector<Anchor> anchors;  ///< parallel to movers
+    std::vector<Point> points;    ///< parallel to Island::contacts
+    std::vector<Line> lines;      ///< parallel to Island::rows; rows without movers have count 0
     const Interruption* interruption = nullptr;
 
 private:
@@ -114,25 +117,25 @@ private:
     void add_line(const ConstraintRow& row, std::uint32_t index);
     std::uint32_t mover_of(Ref who) const;
 
-    std::vector<std::uint32_t> mover_of_body_, mover_of_shaft_;  ///< by host row
+    std::vector<std::uint32_t> mover_of_body_, mover_of_shaft_;  ///< by row in Bodies or Shafts
     std::vector<Vec3> contact_points_;
     std::span<const Contact> contacts_;
     std::span<const ConstraintRow> rows_;
 };
 
-/// How far a point's impulse is from what the law asks of it, m/s: the fixed point residual of
-///   j_n = max(0, j_n - (u_n - least) / K_nn),   j_t = that within mu j_n nearest to j_t - u_t / k_t,
-/// which is 0 exactly where Signorini's condition and Coulomb's law (a true cone, slip against friction) hold.
+/// How far the impulse of a point is from the contact law, as a speed in m/s: the residual of the fixed-point equations
+///   j_n = max(0, j_n - (u_n - least) / K_nn),   j_t = projection of j_t - u_t / k_t onto the disc of radius mu j_n.
+/// It is 0 exactly where Signorini's condition and Coulomb's law (a true cone, with friction opposing the slip) hold.
 double violation(const Point& p, const Vec3& u);
 double violation(const Line& line, double rate);
-/// The largest of all.
+/// The largest violation over all points and lines.
 double violation(const Problem& problem);
 
-/// J, of the movers at their present speeds; and without any impulse.
+/// J, of the movers at their present velocities, and at those without impulses.
 double kinetic_energy(const Problem& problem);
 double kinetic_energy_without(const Problem& problem);
 
-/// The point of the disc of radius `radius` that is nearest to (x, y); z is passed through.
+/// The point of the disc of radius `radius` that is nearest to (x, y); z is passed through unchanged.
 inline Vec3 within_disc(Vec3 j, double radius)
 {
     const double squared = j.x * j.x + j.y * j.y;

@@ -16,7 +16,7 @@ double relax(Problem& problem, Point& p, double relaxation)
     p.impulse.z = std::max(0.0, before.z - relaxation * (u.z - p.least) / p.K(2, 2));
     if (p.frictional())
     {
-        // The tangential part sees the normal change at once.
+        // The tangential part uses the new normal impulse immediately.
         const double change = p.impulse.z - before.z;
         u.x += p.K(0, 2) * change, u.y += p.K(1, 2) * change;
         const double share = relaxation / p.slip_mobility;
@@ -74,7 +74,7 @@ Swept sweep(Problem& problem, const Sweeping& how)
     Swept out;
     while (out.sweeps < how.most && !out.converged && !problem.interrupted())
     {
-        // To and fro: rocking that one direction hardly sees dies in the other.
+        // Alternates the direction of the sweeps: rocking modes that one direction hardly damps decay in the other.
         out.change = sweep_once(problem, how.relaxation, out.sweeps % 2 == 1);
         ++out.sweeps;
         out.converged = out.change <= how.tolerance;

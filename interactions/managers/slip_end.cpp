@@ -8,11 +8,11 @@ namespace plab::managers
 namespace
 {
 constexpr int kMostCuts = 8;
-/// Slower than this share of the island's size a step is no slip.
+/// Fraction of the island's size: a displacement per step below this does not count as slip.
 constexpr double kNoSlip = 0x1p-41;
-/// Of Contact::turning: slip that may be none.
+/// Fraction of Contact::turning: slip up to this may be an artefact of a turning normal.
 constexpr double kOfTurning = 0x1p-6;
-/// A part of the step that is not worth a cut.
+/// Fraction of the step: a shorter part is not worth a cut.
 constexpr double kSliver = 1e-9;
 }  // namespace
 
@@ -49,16 +49,17 @@ Verdict SlipEnds::try_part(double h)
     return method_.find_impulses(problem);
 }
 
-/// Whether the contact velocities at the start of the part, held by friction.
+/// Whether the contact slides at the start of the part and carries friction.
 bool SlipEnds::slides(std::size_t i) const
 {
     const Point& p = memory_.problem.points[i];
-    // Half way along a curve, what rolls seems to slip by the turn of the normal times what that makes of its speed.
+    // On a curved path the contact normal turns during the step (Contact::turning). A rolling body then appears to slip by that
+    // amount, seen from the middle of the step.
     const double least = std::max(no_slip_, kOfTurning * std::fabs(island_.contacts[i].turning));
     return p.frictional() && p.impulse.z > 0 && std::hypot(memory_.velocities[i].x, memory_.velocities[i].y) > least;
 }
 
-/// Slip at the end of the part along that at its start, m/s; none if it ended or turned back.
+/// Slip speed at the end of the part, along the direction of slip at its start, m/s; 0 if the slip ended or reversed.
 double SlipEnds::slip_left(std::size_t i) const
 {
     const Vec3& before = memory_.velocities[i];
@@ -75,7 +76,7 @@ double SlipEnds::first_end(double h)
     for (std::size_t i = 0; i < n; ++i) ends = ends || (slides(i) && slip_left(i) == 0);
     looked_ = ends;
     if (!ends) return h;
-    // While all of them still slide, slip falls linearly: its end is read off a shorter part.
+    // While all contacts still slide, slip speeds fall linearly, so their zeros can be extrapolated from a shorter part.
     double share = 0.5;
     for (double part = 0.5 * h; part > kSliver * island_.h && !island_.interrupted(); part *= 0.25, share = 0.25)
     {
@@ -123,7 +124,7 @@ Verdict SlipEnds::advance()
         keep_speeds();
         Verdict verdict = try_part(rest);
         tried_ = rest, looked_ = false;
-        // What sweeps did not settle is no slip.
+        // Slip smaller than the error that the sweeps have left is not slip.
         no_slip_ = std::max(kNoSlip * island_.size / island_.h, 10 * verdict.residual);
         const double end = cuts < kMostCuts && verdict.converged ? first_end(rest) : rest;
         const bool cut = end < rest * (1 - kSliver);

@@ -1,5 +1,11 @@
-/// A step that is cut where slip ends: before it friction is mu j_n against the slip, after it whatever holds. Between
-/// cuts all accelerations are constant, so a body that slides to a stop stands where it should, whatever h is.
+/// Splits a time step at the instants where sliding ends.
+///
+/// While a contact slides, friction is mu j_n against the slip; once it sticks, friction is whatever holds it. A fixed step
+/// would apply one of the two laws over the whole step, and a sliding body would stop at an instant that depends on the step
+/// length. Between two such instants all accelerations are constant, so the slip speed falls linearly and its zero can be
+/// computed: a shorter part of the step, in which all contacts still slide, is tried first, and the slip speeds before and after
+/// it are extrapolated to zero. The step is cut at the first zero, and the rest is solved in the same way, with at most 8 cuts.
+/// A body that slides to a stop therefore comes to rest at the right place, whatever the step length h.
 #pragma once
 
 #include "stepping.h"
@@ -14,14 +20,14 @@ public:
         : island_(island), bodies_(bodies), shafts_(shafts), method_(method), slop_(slop), memory_(memory)
     {
     }
-    /// Kick, impulses and motion of the whole step; leaves the sum of the impulses in the island.
+    /// Applies forces, impulses and motion of the whole step; leaves the sum of the impulses in the island.
     Verdict advance();
 
 private:
     Verdict try_part(double h);
     void take_back();
     void keep_speeds();
-    /// The first end of slip in a part of length h that was just tried; h if there is none.
+    /// The first instant, in a part of length h that has just been tried, at which a contact stops sliding; h if there is none.
     double first_end(double h);
     bool slides(std::size_t i) const;
     double slip_left(std::size_t i) const;
@@ -34,9 +40,9 @@ private:
     double slop_;
     StepMemory& memory_;
     double done_ = 0;      ///< s
-    bool looked_ = false;  ///< first_end tried other parts
-    double tried_ = 0;     ///< s, the last part that was tried
-    double no_slip_ = 0;   ///< m/s
+    bool looked_ = false;  ///< first_end has tried other parts since
+    double tried_ = 0;     ///< s, length of the part that was tried last
+    double no_slip_ = 0;   ///< m/s, slower slip counts as none
 };
 
 }  // namespace plab::managers

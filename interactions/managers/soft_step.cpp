@@ -93,9 +93,9 @@ private:
     double h_, rate_;
     Softness soft_, against_fixed_;
     bool bounces_ = false;
-    double most_ = 0;  ///< J: kinetic energy after the sub-step's kick, which contacts may not add to
+    double most_ = 0;  ///< J: kinetic energy after the sub-step's kick, which contacts must not exceed
     bool limits_bounce_ = false;
-    double allowed_ = 0;  ///< J: kinetic energy that the start and the forces on the way allow
+    double allowed_ = 0;  ///< J: kinetic energy at the start of the step plus the work of the forces since
 };
 
 void SoftIsland::start()
@@ -117,7 +117,7 @@ void SoftIsland::start()
     memory_.kicks.resize(problem_.anchors.size());
 }
 
-/// Speeds at which limits with restitution are met.
+/// Notes the closing speeds at limits with restitution.
 void SoftIsland::note_limits()
 {
     memory_.line_closing.assign(problem_.lines.size(), 0.0), memory_.line_greatest.assign(problem_.lines.size(), 0.0);
@@ -129,7 +129,7 @@ void SoftIsland::note_limits()
     {
         const Line& line = problem_.lines[i];
         if (!may_bounce(line)) continue;
-        double rate = line.given;  // without impulses: those of the problem are a guess for the sub-step
+        double rate = line.given;  // without impulses: those stored in the problem are an estimate for the sub-step
         for (std::uint32_t k = 0; k < line.count; ++k)
             rate += dot(line.linear[k], problem_.anchors[line.mover[k]].v) + dot(line.angular[k], problem_.anchors[line.mover[k]].w);
         memory_.line_closing[i] = std::max(0.0, island_.rows[line.row].rate - rate);
@@ -137,7 +137,7 @@ void SoftIsland::note_limits()
     }
 }
 
-/// Before and after a kick: what it did to the momenta.
+/// Called before and after a kick: notes the change of the momenta.
 void SoftIsland::note_kicks(bool before)
 {
     problem_.read_speeds(bodies_, shafts_);
@@ -153,7 +153,7 @@ void SoftIsland::note_kicks(bool before)
     }
 }
 
-/// Forces do their work on the way that the bodies go, also where they are pushed apart.
+/// Forces do work along the path that the bodies take, including the part due to position correction.
 void SoftIsland::count_travel()
 {
     for (std::size_t i = 0; i < problem_.movers.size(); ++i)
@@ -167,7 +167,7 @@ void SoftIsland::kick()
     if (!island_.rows.empty()) island_.motion->refresh_rows();
     problem_.read_speeds(bodies_, shafts_);
     if (bounces_) note_kicks(false);
-    // What stopped an impact is no guess for what comes after it.
+    // The impulse that stopped an impact is no estimate for the impulses after it.
     for (std::size_t i = 0; i < problem_.points.size(); ++i)
         if (island_.contacts[i].approach > 0) problem_.points[i].impulse = {};
     set_targets(problem_, island_, h_, 0);
@@ -180,8 +180,8 @@ void SoftIsland::write()
     problem_.write_speeds(bodies_, shafts_);
 }
 
-/// Contact points stay where they were found, seen from the centres of mass: what is round touches with another point of it when it
-/// has turned, and a point that turned with it would seem to rise.
+/// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with another
+/// of its points, and a point that turned with the body would appear to rise.
 void SoftIsland::move()
 {
     memory_.depth_before = memory_.depth;
@@ -246,8 +246,9 @@ void SoftIsland::gather()
 
 bool SoftIsland::gains() const { return !is_driven(problem_) && kinetic_energy(problem_) > most_ * (1 + 1e-9); }
 
-/// With v0 without impulses and dv by them, a share s of them has the energy 1/2 |v0 + s dv|^2. Keeps the largest share that gains none;
-/// false if even that of no impulses is too much, as bodies have turned since they were kicked.
+/// Scales the impulses to remove a gain of energy. If v0 are the velocities without impulses and dv their change, the fraction s
+/// of the impulses gives the energy 1/2 |v0 + s dv|^2. Keeps the largest s without a gain. Returns false if even s = 0 has too
+/// much energy, as the bodies have turned since the kick.
 bool SoftIsland::scale_down()
 {
     double linear = 0, square = 0;
@@ -266,12 +267,12 @@ bool SoftIsland::scale_down()
     return true;
 }
 
-/// The sub-step once more, from where it began, without what pushes overlap apart: sweeps that only take energy, and a motion that
-/// keeps it.
+/// Repeats the sub-step from its start without position correction: sweeps that only remove energy, and a motion that conserves
+/// it.
 int SoftIsland::step_hard()
 {
     constexpr int kSweeps = 4;
-    // Back with the speeds of the move.
+    // Moves back with the velocities of the move.
     for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].impulse = memory_.moved_with[i];
     for (std::size_t i = 0; i < problem_.lines.size(); ++i) problem_.lines[i].impulse = memory_.lines_moved_with[i];
     write();
@@ -289,8 +290,8 @@ int SoftIsland::step_hard()
     return done.sweeps;
 }
 
-/// Where the sub-step made energy: hard sweeps, then as much off all impulses as leaves none, and if that is not to be had, another
-/// sub-step.
+/// If the sub-step has gained energy: hard sweeps, then all impulses are scaled down until the gain is gone; if that is
+/// impossible, the sub-step is repeated.
 int SoftIsland::remove_gained_energy()
 {
     constexpr int kSweeps = 2;
@@ -303,7 +304,7 @@ int SoftIsland::remove_gained_energy()
     return done.sweeps;
 }
 
-/// Impulses that give back a share of the restitution; the kinetic energy with them, J.
+/// Sets the impulses that return `share` of the restitution; returns the kinetic energy with them, J.
 double SoftIsland::bounce(double share)
 {
     problem_.clear_impulses();
@@ -315,7 +316,7 @@ double SoftIsland::bounce(double share)
     return kinetic_energy(problem_);
 }
 
-/// Sweeps, as joints hand on what a limit gives back.
+/// Uses sweeps, as joints pass on the impulse that a limit returns.
 void SoftIsland::bounce_with_limits(double share)
 {
     constexpr int kMostSweeps = 1000;
@@ -335,7 +336,7 @@ void SoftIsland::bounce_with_limits(double share)
         const bool one_sided = row.kind == RowKind::OneSided, pressed = memory_.line_greatest[i] > 0;
         line.target = row.rate + (one_sided ? share * row.restitution * memory_.line_closing[i] : 0.0);
         line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
-        // Motors have no impulse at an instant; a limit that was not met has none either.
+        // Motors have no impulse at an instant; nor has a limit that was not reached.
         if (row.kind == RowKind::Rate || (one_sided && !pressed)) line.least = line.most = 0;
     }
     (void)sweep(problem_, {kMostSweeps, 1e-6 * fastest, 1});
@@ -383,7 +384,7 @@ void SoftIsland::finish(Verdict& out)
     {
         const Point& p = problem_.points[i];
         Contact& c = island_.contacts[i];
-        const Vec3 u = problem_.relative_velocity(p), j = memory_.sum[i] + p.impulse;  // what was given back is in p
+        const Vec3 u = problem_.relative_velocity(p), j = memory_.sum[i] + p.impulse;  // p holds the impulse of restitution
 
         c.impulse = p.t1 * j.x + p.t2 * j.y + p.n * j.z;
         c.slip = std::hypot(u.x, u.y);
@@ -392,7 +393,7 @@ void SoftIsland::finish(Verdict& out)
     for (std::size_t i = 0; i < problem_.lines.size(); ++i)
     {
         const Line& line = problem_.lines[i];
-        island_.rows[line.row].impulse = memory_.line_sum[i] + line.impulse;  // what was given back is in the latter
+        island_.rows[line.row].impulse = memory_.line_sum[i] + line.impulse;  // line.impulse is that of restitution
         if (line.count > 0 && island_.rows[line.row].kind != RowKind::OneSided)
             out.residual = std::max(out.residual, std::fabs(problem_.rate(line) - island_.rows[line.row].rate));
     }

@@ -1,20 +1,26 @@
-/// Sub-steps with soft contacts: Soft Step.
+/// Soft Step: sub-steps with soft contacts.
 ///
 /// Per sub-step of length h = step / n:
 ///
 ///   kick    v <- v + h a
-///   solve   j_n <- max(0, j_n - m_eff mass_scale (u_n + bias) - impulse_scale j_n)     a spring and damper, implicitly
+///   solve   j_n <- max(0, j_n - m_eff mass_scale (u_n + bias) - impulse_scale j_n)     a spring and damper, integrated implicitly
 ///   move    x <- x + h v
-///   relax   the same without bias: takes out the speed that pushing overlap apart put in
+///   relax   the same without bias: removes the velocity that the position correction has added
 ///
 /// with omega = 2 pi hertz, zeta the damping ratio, c = h omega (2 zeta + h omega):
-///   bias = omega / (2 zeta + h omega) * overlap (not faster than push_speed),  mass_scale = c / (1 + c),
-///   impulse_scale = 1 / (1 + c).   Gaps: bias = gap / h, hard.
-/// Bodies turn freely in a move, which keeps their energy; K is that of the attitude they have come to.
-/// Where speeds that pushed overlap apart are left over that make kinetic energy, hard sweeps follow; where those do not get it out, the
-/// sub-step is made again without pushing apart: sweeps from nothing, which only take energy, then the move.
-/// After the last sub-step restitution, where a contact or a limit pressed and met faster than it now parts; as much of it as the
-/// energy at the start of the step allows, what gravity did on the way counted. Joints take part in what limits give back.
+///   bias = omega / (2 zeta + h omega) * overlap (limited to push_speed),  mass_scale = c / (1 + c),
+///   impulse_scale = 1 / (1 + c).   Contacts with a gap: bias = gap / h, and they are hard.
+///
+/// Why it is robust: many short sub-steps with one sweep each converge better than one long step with many sweeps, and a soft
+/// contact limits how fast overlap is pushed out. The price is that contacts yield under load, as springs do.
+///
+/// Bodies turn freely in a move, which conserves their energy; K is then recomputed for the new attitude. If the velocities left
+/// over from the position correction have raised the kinetic energy, hard sweeps follow. If these do not remove the gain, the
+/// sub-step is repeated without position correction: sweeps from zero impulses, which only remove energy, and then the move.
+///
+/// Restitution is applied once, after the last sub-step, to each contact or limit that carried an impulse and was met faster
+/// than it now separates. The amount is limited to the energy at the start of the step plus the work of the forces on the way.
+/// Joints take part in the impulses that limits return.
 /// Source: Catto, Solver2D (2024), "Soft Step" (solve_soft_step.c); Macklin et al., Small Steps (2019), for sub-steps.
 #pragma once
 
@@ -27,26 +33,26 @@ struct SoftChoices
 {
     int substeps = 8;
     int relax_iterations = 1;
-    double hertz = 60;  ///< of a contact; not more than a quarter of the sub-steps' rate
+    double hertz = 60;  ///< natural frequency of a contact; limited to a quarter of the rate of the sub-steps
     double damping_ratio = 10;
     double push_speed = 3;    ///< m/s
-    double tolerance = 1e-2;  ///< m/s: overlap that closes faster than this is not held
+    double tolerance = 1e-2;  ///< m/s: a contact in which overlap closes faster than this counts as not held
 };
 
 struct SoftMemory
 {
     StepMemory step;
-    std::vector<double> depth, depth_before;  ///< m, of the contact points as they go; at the start of the sub-step
-    std::vector<Vec3> moved_with;             ///< N s, by point: impulses of the sub-step's move
+    std::vector<double> depth, depth_before;  ///< m, of the contact points: now, and at the start of the sub-step
+    std::vector<Vec3> moved_with;             ///< N s, by point: impulses with which the sub-step moved
     std::vector<double> lines_moved_with;
-    std::vector<double> greatest;  ///< N s, largest normal impulse of a sub-step
-    std::vector<Vec3> sum;         ///< N s, over the step
+    std::vector<double> greatest;  ///< N s, largest normal impulse of any sub-step
+    std::vector<Vec3> sum;         ///< N s, sum over the step
     std::vector<double> line_sum;
-    std::vector<double> line_closing;   ///< m/s or rad/s, at which limits with restitution were met when the step began; else 0
-    std::vector<double> line_greatest;  ///< N s or N m s, largest impulse of a sub-step
+    std::vector<double> line_closing;   ///< m/s or rad/s: closing speed at limits with restitution when the step began; else 0
+    std::vector<double> line_greatest;  ///< N s or N m s, largest impulse of any sub-step
     struct Kick
     {
-        Vec3 push, turn;  ///< N s, N m s: by forces, in the sub-step
+        Vec3 push, turn;  ///< N s, N m s: impulse of the forces in the sub-step
     };
     std::vector<Kick> kicks;
 };

@@ -11,16 +11,16 @@ namespace plab::managers
 namespace
 {
 
-/// A gap that counts as touching while others collide: share of the island's size.
+/// Fraction of the island's size: a gap up to this counts as touching while other contacts collide.
 constexpr double kTouching = 0x1p-17;
-/// Steps in which a contact that parts is left to itself.
+/// A contact that separates by itself within this many steps is not corrected.
 constexpr double kSoon = 8;
-/// Slower than this share of the island's size a step nothing meets.
+/// Fraction of the island's size: a displacement per step below this does not count as an impact.
 constexpr double kSlow = 0x1p-34;
 
 bool meets(const Contact& c, double h) { return c.approach > 0 && (c.depth >= 0 || c.approach * h > -c.depth); }
 
-/// Speed at which a limit is met: at its bound, or on the way to it where it rebounds within the step.
+/// Closing speed at which a limit is met: at its bound, or before it if it will rebound within the step; otherwise 0.
 double closing(const Problem& problem, const Line& line, const ConstraintRow& row, double h)
 {
     if (line.count == 0 || row.kind != RowKind::OneSided) return 0;
@@ -40,8 +40,8 @@ bool any_impact(const Problem& problem, const Island& island)
                        });
 }
 
-/// Moreau's law of impact, u_n' >= -e u_n for all that touch, also where they part: with one e for all it makes no energy, and
-/// with e = 1 it keeps it. Asking those that part for u_n' >= 0 would.
+/// Moreau's law of impact: u_n' >= -e u_n at all touching contacts, also at those that separate. With one common e this law
+/// never adds energy, and with e = 1 it conserves it. Requiring u_n' >= 0 at separating contacts would add energy.
 void set_impact_targets(Problem& problem, const Island& island, std::span<const Vec3> before, double share)
 {
     for (std::size_t i = 0; i < problem.points.size(); ++i)
@@ -61,12 +61,13 @@ void set_impact_targets(Problem& problem, const Island& island, std::span<const 
         const double speed = closing(problem, line, row, island.h);
         line.target = row.rate + share * row.restitution * speed;
         line.least = one_sided ? 0.0 : -HUGE_VAL, line.most = HUGE_VAL;
-        // Motors have no impulse at an instant; a limit that is away has none either.
+        // Motors have no impulse at an instant; nor has a limit that is not reached.
         if (row.kind == RowKind::Rate || (one_sided && row.error > 0 && speed == 0)) line.least = line.most = 0;
     }
 }
 
-/// What part of the impulses, at most 1, makes no kinetic energy: of j u + j K j / 2 with the speeds of separation u before.
+/// The largest fraction, at most 1, of the impulses j that adds no kinetic energy, j u + j K j / 2, where u is the contact
+/// velocity before.
 double share_without_gain(const Problem& problem, std::span<const Vec3> before)
 {
     double linear = 0, square = 0, size = 0;
@@ -102,8 +103,8 @@ Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& m
     auto& before = memory.separations;
     before.clear();
     for (const Point& p : problem.points) before.push_back(problem.relative_velocity(p));
-    // Newton's law with friction may give back more than there was, and sweeps that did not get there too. A little more is
-    // taken off the impulses; where it is much, less is asked for, and nothing at last.
+    // With friction, Newton's restitution may return more energy than there was, and so may sweeps that have not converged. A
+    // small excess is removed by scaling the impulses; if it is large, a smaller restitution is tried, and finally none.
     constexpr double kLittle = 0.9;
     double share = 1;
     for (int trial = 1;; ++trial)
@@ -130,7 +131,8 @@ void set_targets(Problem& problem, const Island& island, double h, double slop, 
 {
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
-        // What pressed may stand up to the slop away; what comes is to touch, or it would never bounce.
+        // A contact that carried an impulse may be held up to `slop` away. An approaching contact must close its gap, or it
+        // would never bounce.
         const Contact& c = island.contacts[i];
         problem.points[i].least = c.turning + std::min(0.0, c.depth + (dot(c.impulse, c.normal) > 0 ? slop : 0.0)) / h;
     }
@@ -175,7 +177,7 @@ void displace(const Problem& problem, Bodies& bodies, Shafts& shafts)
     }
 }
 
-/// Its error is an angle.
+/// Whether the error of the row is an angle.
 bool turns_only(const ConstraintRow& row)
 {
     return std::all_of(row.blocks.begin(), row.blocks.begin() + row.count, [](const RowBlock& b) { return b.linear == Vec3{}; });
@@ -186,13 +188,14 @@ Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& met
     Problem& problem = memory.problem;
     island.motion->refresh_depths();
     if (!island.rows.empty()) island.motion->refresh_rows();
-    const double length = island.bodies.empty() ? 1 : island.size;  // shafts alone count in rad
+    const double length = island.bodies.empty() ? 1 : island.size;  // islands of shafts alone have errors in rad
     double worst = 0;
     for (std::size_t i = 0; i < problem.points.size(); ++i)
     {
         const Contact& c = island.contacts[i];
         Point& p = problem.points[i];
-        // What parts by itself soon, or meets in the next step, is left to its speed: being parted it would gain height.
+        // Overlap that will separate by itself soon, or whose impact the next step answers, is left to its velocity: correcting
+        // it would lift the body.
         const bool meets_next = i < memory.passing.size() && memory.passing[i] * island.h < -kSlow * island.size;
         const bool leaves = c.depth > 0 && (meets_next || problem.relative_velocity(p).z * kSoon * island.h > c.depth);
         p.least = leaves ? kFar : (c.depth - choices.slop) * (c.depth > choices.slop ? choices.correction_share : 1.0);

@@ -1,4 +1,4 @@
-/// The parts of a step of an island by speeds first, positions after (advance_island.h): impacts, targets of the rest, positions.
+/// The parts of the step described in advance_island.h: impacts, velocity targets of the contact solve, position correction.
 #pragma once
 
 #include "problem.h"
@@ -16,31 +16,32 @@ struct Verdict
     void join(const Verdict& other);
 };
 
-/// How a manager finds impulses.
+/// A way of finding impulses: sweeps, or Newton's method.
 class Method
 {
 public:
     virtual ~Method() = default;
-    /// Impulses of `problem` from its present ones; speeds agree with them before and afterwards.
+    /// Finds the impulses of `problem`, starting from its present ones; velocities agree with the impulses before and
+    /// afterwards.
     virtual Verdict find_impulses(Problem& problem) = 0;
     /// The same for displacements (m instead of m/s), without friction.
     virtual Verdict find_displacements(Problem& problem, double tolerance) = 0;
 };
 
-/// Overlap or joint error that is left alone: share of the island's size, or rad.
+/// Overlap or joint error that is not corrected: as a fraction of the island's size, or in rad.
 inline constexpr double kPositionTolerance = 0x1p-30;
-/// Least speed of a contact that cannot act now.
+/// Lower bound on u_n of a contact that cannot act now: so low that it never binds.
 inline constexpr double kFar = -1e30;
 
 struct StepMemory
 {
     Problem problem;
     std::vector<Vec3> velocities;  ///< m/s, at the start of the step
-    std::vector<Vec3> impulses;    ///< N s, of parts of the step that are over
+    std::vector<Vec3> impulses;    ///< N s, from the parts of the step that are done
     std::vector<double> line_impulses;
-    std::vector<Vec3> separations;  ///< of impacts
-    std::vector<Vec3> impacts;      ///< N s, by point; none if nothing met
-    std::vector<double> passing;    ///< m/s, <= 0: what an impact leaves closing, for the next step's to answer
+    std::vector<Vec3> separations;  ///< contact velocities before the impacts
+    std::vector<Vec3> impacts;      ///< N s, by point; empty if there was no impact
+    std::vector<double> passing;    ///< m/s, <= 0: closing speed that an impact leaves for the next step to answer
     struct Speeds
     {
         Vec3 velocity, spin, momentum;
@@ -49,25 +50,25 @@ struct StepMemory
     std::vector<Speeds> speeds;
 };
 
-/// Contacts up to which the ends of slip are looked for inside the step: in a pile there is always one.
+/// Ends of sliding are located inside the step up to this many contacts: in a pile some contact always stops sliding.
 struct StepChoices
 {
     std::size_t slip_ends_up_to = 16;
-    /// m: overlap that is left, and gaps that hold as if they were closed: contacts that tremble less than this keep holding.
+    /// m: overlap that is tolerated, and gaps that are held as if closed, so that contacts that vibrate by less persist.
     double slop = 0;
-    /// Part of the overlap beyond that is parted in a step.
+    /// The fraction of the overlap beyond `slop` that is corrected in one step.
     double correction_share = 1;
 };
 
 Verdict answer_impacts(Island& island, Bodies& bodies, Shafts& shafts, Method& method, StepMemory& memory);
-/// What speeds may be at the end of h; `passing` as in StepMemory, or none.
+/// Sets what the contact velocities and row rates must be at the end of h; `passing` as in StepMemory, or empty.
 void set_targets(Problem& problem, const Island& island, double h, double slop, std::span<const double> passing = {});
 Verdict part_overlap(Island& island, Bodies& bodies, Shafts& shafts, Method& method, const StepChoices& choices, StepMemory& memory);
-/// With the mean of old and new speeds; where impulses are not what they should be, with the new ones: those keep gaps from
-/// closing, means of them with speeds into an overlap would not.
+/// Moves with the mean of old and new velocities. Where the impulses have not converged it moves with the new velocities only:
+/// these keep gaps from closing, whereas their mean with velocities that lead into an overlap would not.
 void move(const Island& island, const Verdict& found, double h);
 void store_impulses(const Problem& problem, Island& island);
-/// Moves and turns by the movers' speeds taken as displacements.
+/// Moves and turns the bodies by the movers' velocities, taken as displacements.
 void displace(const Problem& problem, Bodies& bodies, Shafts& shafts);
 
 }  // namespace plab::managers

@@ -32,7 +32,7 @@ void advance_to_contact(const StepContext& context, Row row, const AdvancementRo
         return;
     }
     trial.decision = Trial::Decision::Try;
-    // Where a look overlaps, the forces were not what the bound was made from: halving is always right.
+    // If the bodies overlap at a trial time, the forces differed from those in the bound; halving is always correct.
     trial.next = bracketed || !(trial.closing > 0) ? 0.5 * (trial.begin + trial.end) : trial.begin + trial.gap_begin / trial.closing;
 }
 

@@ -1,9 +1,9 @@
-/// Resolution/ConservativeAdvancement: from the clear side in steps that cannot pass a contact.
+/// Resolution/ConservativeAdvancement: approaches a contact from the separated side in steps that cannot pass it.
 ///
-///   t' = t + gap(t) / closing,    closing >= any speed with which the gap can shrink in the rest of the piece
+///   t' = t + gap(t) / closing,    closing >= any speed at which the gap can shrink in the rest of the piece
 ///
-/// The host certifies the bound: linear speeds along the normal, forces, and turning about the centres.
-/// Source: Mirtich, Impulse-based Dynamic Simulation, PhD thesis, UC Berkeley (1996), section 2.3.
+/// The host provides this bound; it covers linear speeds along the normal, forces, and rotation about the centres. Source:
+/// Mirtich, Impulse-based Dynamic Simulation, PhD thesis, UC Berkeley (1996), section 2.3.
 #pragma once
 
 #include "plab/collision.h"

@@ -11,7 +11,7 @@ void accept_end(const StepContext&, Row, const NoneRows&, Trial& trial) { trial.
 void BisectionRows::describe(Schema& s)
 {
     s.param(time_tolerance, "time_tolerance", unit::second,
-            "length of the bracket at which the time counts as found; never less than 2^-48 of the step")
+            "length of the bracket at which the search ends; never less than 2^-48 of the step")
         .or_else(1e-15)
         .not_negative();
     s.param(max_iterations, "max_iterations", unit::one, "trials per impact before giving up").or_else(60).positive().at_most(1e6);

@@ -1,4 +1,4 @@
-/// What the resolutions share: how fine a bracket can be, and what is said when a contact is hard to find.
+/// Shared by the resolutions: the shortest useful bracket, the work limit, and the warning about contacts that are hard to find.
 #pragma once
 
 #include <algorithm>
@@ -12,25 +12,27 @@
 namespace plab::resolution
 {
 
-/// s: below 2^-48 of the step the time itself has hardly a bit left to choose.
+/// s: below 2^-48 of the step, consecutive representable times are hardly distinct.
 inline double shortest_bracket(const Trial& trial, double tolerance = 0) { return std::max(tolerance, 0x1p-48 * trial.step); }
 
-/// How much the host may do to locate events. The largest of all resolutions of a scene counts.
+/// Describes the limit on the work for locating events. The largest value of all resolutions of a scene applies.
 inline void describe_work(Schema& s, Column<double>& max_work)
 {
     s.param(max_work, "max_work", unit::one,
-            "what locating may take in a step, as a multiple of the step without it, beside 100000 looks that are always allowed; beyond "
-            "it the rest of the step is answered at its end (resolution.over_budget)")
+            "limit on the work for locating events in a step, as a multiple of the work of the step without it; "
+            "100000 queries are always allowed. Beyond the limit, the remaining events are answered at the end "
+            "of the step (resolution.over_budget)")
         .or_else(20)
         .positive();
 }
 
-/// Two bodies that pass close by one another cost many small steps.
+/// Two bodies that pass one another at a small distance require many small steps.
 inline void tell_grazing(const StepContext& context, Row row, const Trial& trial)
 {
     context.emit(row, "resolution.grazing", Severity::Warning,
                  "two bodies pass one another within " + rounded_text(trial.gap_begin) + " m; after " + std::to_string(trial.iteration) +
-                     " looks it is not certain that they do not touch; allow more max_iterations or take shorter steps",
+                     " distance queries it is still uncertain whether they touch; allow more max_iterations or use "
+                     "shorter steps",
                  {trial.begin, trial.gap_begin});
 }
 

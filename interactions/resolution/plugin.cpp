@@ -8,81 +8,84 @@ PLAB_PLUGIN("resolution", registrar)
 {
     using namespace plab;
     using namespace plab::resolution;
-    registrar.component<NoneRows>("Resolution/None", "answers an impact at the end of the step in which it is seen")
-        .command<accept_end>(Phase::Locate, "Resolution/Locate", "takes the end of the step")
+    registrar.component<NoneRows>("Resolution/None", "answers an impact at the end of the step in which it is detected")
+        .command<accept_end>(Phase::Locate, "Resolution/Locate", "accepts the end of the step")
         .accuracy("times of impact to one step: order 1")
-        .strengths("nothing is searched for: enough where contacts stay")
+        .strengths("no search at all; sufficient where contacts persist")
         .cost("nothing")
-        .limits("bodies overlap by up to speed x step when they meet, or pass through one another; times of impact are right to one step")
-        .source("time stepping without location of events; the lowest algorithm, to compare with");
+        .limits(
+            "bodies overlap by up to speed x step when they meet, or pass through one another; times of impact "
+            "are accurate to one step")
+        .source("time stepping without location of events; the simplest algorithm, for comparison");
     registrar
-        .component<BisectionRows>("Resolution/Bisection", "finds the time of impact by halving; the whole world is rewound for each trial")
-        .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket of the time of impact")
+        .component<BisectionRows>("Resolution/Bisection",
+                                  "finds the time of impact by bisection; the whole world is rewound for each trial")
+        .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket around the time of impact")
         .locates()
         .order(1)
         .accuracy("times of impact to its tolerance")
-        .strengths("asks nothing of forces and shapes")
+        .strengths("makes no assumptions about forces and shapes")
         .cost("up to 48 advances of the whole world per impact")
-        .limits("an overlap that begins and ends inside one step is not seen")
+        .limits("an overlap that begins and ends within one step is not detected")
         .source(
             "Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, UC Berkeley (1996), section "
             "2");
     registrar
-        .component<BisectionRows>("Resolution/LocalBisection", "finds the time of impact by halving; only the touched group is rewound")
-        .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket of the time of impact")
+        .component<BisectionRows>("Resolution/LocalBisection",
+                                  "finds the time of impact by bisection; only the group of touching bodies is rewound")
+        .command<bisect>(Phase::Locate, "Resolution/Locate", "halves the bracket around the time of impact")
         .locates()
         .local()
         .order(1)
         .accuracy("times of impact to its tolerance")
-        .strengths("as Resolution/Bisection, at the cost of who touches")
-        .cost("up to 48 advances of the touched group per impact")
-        .limits("an overlap that begins and ends inside one step is not seen")
-        .source("Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH (2000): only what is touched goes back");
+        .strengths("as Resolution/Bisection, at the cost of the touching bodies only")
+        .cost("up to 48 advances of the group of touching bodies per impact")
+        .limits("an overlap that begins and ends within one step is not detected")
+        .source("Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH (2000): only the affected bodies are rewound");
     registrar
         .component<SpeculativeRows>("Resolution/Speculative",
-                                    "locates nothing: gaps that may close within the step are contacts for a manager")
-        .command<accept_speculation>(Phase::Locate, "Resolution/Locate", "takes the end of the step")
+                                    "locates no events: gaps that may close within the step are passed to a manager as contacts")
+        .command<accept_speculation>(Phase::Locate, "Resolution/Locate", "accepts the end of the step")
         .speculates()
         .accuracy("times of impact to one step: order 1")
-        .strengths("nothing tunnels, without trials: many fast bodies")
-        .cost("contacts of bodies that are near; no trials")
+        .strengths("no tunnelling, without trials: suited to many fast bodies")
+        .cost("additional contacts between nearby bodies; no trials")
         .limits(
-            "needs a response by rows; bodies stop at a surface ahead of them though they would have passed beside it (ghost contacts); "
-            "times of impact are right to one step")
+            "needs a response by rows; bodies may stop at a surface that they would have passed beside (ghost "
+            "contacts); times of impact are accurate to one step")
         .source("Catto, Continuous Collision, GDC (2013); Stewart and Trinkle, IJNME 39 (1996)");
     registrar
         .component<AdvancementRows>("Resolution/ConservativeAdvancement",
-                                    "steps to the next possible contact by gap / closing speed; never passes one")
-        .command<advance_to_contact>(Phase::Locate, "Resolution/Locate", "goes on by what the gap allows")
+                                    "advances to the next possible contact by gap / closing speed; never passes one")
+        .command<advance_to_contact>(Phase::Locate, "Resolution/Locate", "advances by the time that the gap allows")
         .locates()
         .local()
         .certifies()
         .order(1)
         .accuracy("times of impact to its tolerance")
-        .strengths("nothing tunnels; exact for what flies head-on")
-        .cost("one look per step towards the contact: a few head-on, many where bodies pass close by or spin")
+        .strengths("no tunnelling; exact for bodies that approach head-on")
+        .cost(
+            "one distance query per step towards the contact: few for head-on approaches, many where bodies pass "
+            "close to one another or spin")
         .limits(
-            "slow where bodies graze or spin (resolution.grazing); bounds come from the states at both ends of a piece: what a force does "
-            "faster than that is not seen")
+            "slow where bodies graze or spin (resolution.grazing); the bounds come from the states at both ends "
+            "of a piece, so faster changes of a force are not covered")
         .source("Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, UC Berkeley (1996), section 2.3");
-    registrar
-        .component<RootRows>("Resolution/LocalRoot",
-                             "finds the first zero of the gap, in a bracket of which it is certain; nothing tunnels")
+    registrar.component<RootRows>("Resolution/LocalRoot", "finds the first zero of the gap in a certified bracket; no tunnelling")
         .command<find_root>(Phase::Locate, "Resolution/Locate",
-                            "safe Newton steps from the clear side; a zero in a bracket where there is one")
+                            "safe Newton steps from the separated side; interpolation once the zero is bracketed")
         .locates()
         .local()
         .certifies()
         .order(2)
         .accuracy("times of impact to rounding")
-        .strengths("nothing tunnels; grazing hits and spinning corners are found, in the fewest looks")
-        .cost("1 to 7 looks per impact; pairs that come near one another cost one")
+        .strengths("no tunnelling; finds grazing impacts and those of spinning corners with the fewest distance queries")
+        .cost("1 to 7 distance queries per impact; one for a pair that only comes near")
         .limits(
-            "bounds come from the states at both ends of a piece: what a force does faster than that is not seen; bodies of several shapes "
-            "are bounded by the speed in any direction, which is slow where they graze")
+            "the bounds come from the states at both ends of a piece, so faster changes of a force are not "
+            "covered; bodies with several shapes are bounded by their speed in any direction, which is slow "
+            "where they graze")
         .source(
-            "Oliveira, Takahashi, ACM TOMS 47 (2020) for brackets that never do worse than halving; Zhang, Redon, Lee, Kim, SIGGRAPH "
-            "(2007) for bounds "
-            "of "
-            "second order");
+            "Oliveira, Takahashi, ACM TOMS 47 (2020) for brackets that are never worse than bisection; Zhang, "
+            "Redon, Lee, Kim, SIGGRAPH (2007) for second-order bounds");
 }

@@ -11,10 +11,10 @@ namespace plab::resolution
 void RootRows::describe(Schema& s)
 {
     s.param(time_tolerance, "time_tolerance", unit::second,
-            "length of the bracket at which the time counts as found; never less than 2^-48 of the step")
+            "length of the bracket at which the search ends; never less than 2^-48 of the step")
         .or_else(0)
         .not_negative();
-    s.param(max_iterations, "max_iterations", unit::one, "looks at one pair in one piece of a step before giving up")
+    s.param(max_iterations, "max_iterations", unit::one, "distance queries for one pair in one piece of a step before giving up")
         .or_else(1000)
         .positive()
         .at_most(1e6);
@@ -43,14 +43,15 @@ double hermite_zero(double t0, double g0, double r0, double t1, double g1, doubl
 namespace
 {
 
-/// Next time in a bracket that has been looked at `iteration` times.
+/// The next trial time in a bracket after `iteration` queries.
 double next_in_bracket(const Trial& t)
 {
     const double length = t.end - t.begin, middle = t.begin + 0.5 * length;
-    // Never much slower than halving, whatever the gap looks like.
+    // Guarantees that it is never much slower than halving, whatever the shape of the gap function.
     if (length > std::ldexp(t.step, 3 - t.iteration)) return middle;
     double next = hermite_zero(t.begin, t.gap_begin, t.rate_begin, t.end, t.gap_end, t.rate_end);
-    // One side comes close soon; a little beyond the zero the other one follows. Never less than time can tell apart.
+    // One end of the bracket soon comes close to the zero. A time slightly beyond the zero moves the other end as well. The
+    // shift is never less than what time can resolve.
     const double nudge = std::max(shortest_bracket(t) * 0.5, 1e-3 * std::min(next - t.begin, t.end - next));
     const bool begin_is_near = next - t.begin < t.end - next;
     next += begin_is_near ? nudge : -nudge;

@@ -6,7 +6,7 @@ namespace plab::resolution
 void SpeculativeRows::describe(Schema& s)
 {
     s.param(acceleration, "acceleration", unit::metre_per_second2,
-            "the most that forces are expected to give: how far a body at rest may get in a step")
+            "largest expected acceleration by forces; determines how far a body at rest may move in a step")
         .or_else(20)
         .not_negative();
 }

@@ -1,4 +1,4 @@
-/// Resolution/Speculative: no event is located; gaps that may close within the step are contacts too.
+/// Resolution/Speculative: locates no events; gaps that may close within the step are treated as contacts as well.
 #pragma once
 
 #include "plab/collision.h"
@@ -8,14 +8,14 @@
 namespace plab::resolution
 {
 
-/// For responses by rows: a manager lets a gap close and no more, so that bodies stop at the surface. Nothing goes back.
+/// For responses by rows: the manager lets a gap close but not overlap, so that bodies stop at the surface. Nothing is rewound.
 struct SpeculativeRows
 {
     Column<double> acceleration;  // m/s^2
 
     void describe(Schema& schema);
 };
-/// Phase::Locate: takes the end of the step, as contacts by rows are no events.
+/// Phase::Locate: accepts the end of the step, as contacts by rows are not events.
 void accept_speculation(const StepContext& context, Row row, const SpeculativeRows& rows, Trial& trial);
 
 }  // namespace plab::resolution

@@ -8,11 +8,11 @@ namespace plab::response
 {
 namespace
 {
-/// Directions that are looked at.
+/// Number of directions in a scan.
 constexpr int kSamples = 128;
 constexpr double kStep = 6.283185307179586 / kSamples;
 
-/// A contact that slides along (c, s): j = j_n (-mu c, -mu s, 1) with j_n from u_n = b.
+/// A contact that slides along the direction (c, s): j = j_n (-mu c, -mu s, 1), with j_n such that u_n = b.
 class Sliding
 {
 public:
@@ -21,25 +21,25 @@ public:
     std::optional<Vec3> impulse(double c, double s) const
     {
         const double stiffness = K_(2, 2) - mu_ * (K_(2, 0) * c + K_(2, 1) * s);
-        if (!(stiffness > 0)) return {};  // pressing harder would close it faster (Painleve)
+        if (!(stiffness > 0)) return {};  // more pressure would close it faster (Painleve)
         const double j = (least_ - r_.z) / stiffness;
         return Vec3{-mu_ * c * j, -mu_ * s * j, j};
     }
-    /// The slip that results; to be along (c, s).
+    /// The relative velocity that results; its tangential part must lie along (c, s).
     Vec3 relative_velocity(const Vec3& j) const { return r_ + K_ * j; }
 
-    /// Repeats "slide along the slip that results" while that settles: at once where K does not couple directions.
+    /// Fixed-point iteration: slide along the slip direction that results. Converges at once where K does not couple directions.
     std::optional<Vec3> settle(double c, double s) const;
-    /// The one close to the direction that slid last.
+    /// A solution near the direction of the last sweep.
     std::optional<Vec3> find_near(double c, double s) const;
-    /// Looks at all directions for the one that slides along itself.
+    /// Scans all directions for one in which the resulting slip lies along the direction itself.
     std::optional<Vec3> scan() const;
 
 private:
-    /// Slip across the direction, m/s; NaN where there is no such sliding.
+    /// Slip perpendicular to the direction, m/s; NaN if sliding in this direction is impossible.
     double miss(double angle) const;
     std::optional<Vec3> along(double angle) const;
-    /// Rounding of a slip that is the difference of r and K j, m/s.
+    /// Rounding error of a slip, which is the difference of r and K j, m/s.
     double rounding(const Vec3& j) const { return 4e-16 * (length(r_) + length(K_ * j)); }
 
     const Mat3& K_;
@@ -83,7 +83,7 @@ std::optional<Vec3> Sliding::along(double angle) const
     return c * u.x + s * u.y > 0 ? j : std::nullopt;
 }
 
-/// Illinois' rule between two neighbours of the last direction.
+/// False position (Illinois variant) between two neighbours of the last direction.
 std::optional<Vec3> Sliding::find_near(double c, double s) const
 {
     constexpr int kTrials = 40;
@@ -133,11 +133,11 @@ Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, con
     const Sliding sliding(K, r, least, friction);
     if (const double slip = std::hypot(r.x, r.y); slip > 0)
         if (const auto j = sliding.settle(r.x / slip, r.y / slip)) return *j;
-    // Friction acts against the slip.
+    // Friction opposes the slip.
     if (last.x != 0 || last.y != 0)
         if (const auto j = sliding.find_near(-last.x, -last.y)) return *j;
     if (const auto j = sliding.scan()) return *j;
-    // No sliding fits: the sticking impulse brought back to the cone keeps the contact from closing.
+    // No sliding direction fits: the sticking impulse projected onto the cone keeps the contact from closing.
     const double normal = std::max(stick.z, (least - r.z) / K(2, 2));
     const double share = hold > 0 ? std::min(1.0, friction * normal / hold) : 0.0;
     return {stick.x * share, stick.y * share, normal};

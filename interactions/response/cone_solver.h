@@ -1,8 +1,9 @@
-/// Several contacts at once: impulses inside friction cones that leave no contact closing.
+/// Several contacts at once: impulses inside the friction cones after which no contact closes.
 ///
-///   u_n >= b,  j_n >= 0,  j_n (u_n - b) = 0,   |j_t| <= mu j_n,   j_t against the slip where |j_t| = mu j_n
+///   u_n >= b,  j_n >= 0,  j_n (u_n - b) = 0,   |j_t| <= mu j_n,   j_t opposes the slip where |j_t| = mu j_n
 ///
-/// by block Gauss-Seidel: contact after contact in the order of ids, each solved exactly with the others held.
+/// Solved by block Gauss-Seidel: the contacts are visited in the order of their ids, and each 3 x 3 block is solved exactly
+/// while all other impulses are held fixed.
 /// Sources: Moreau, Unilateral contact and dry friction (1988); Jourdan, Alart, Jean, CMAME 155 (1998) for the blocks.
 #pragma once
 
@@ -20,7 +21,7 @@ struct ConeContact
     const ContactPoint* point = nullptr;
     double friction = 0;
     double least = 0;  ///< b: smallest u_n that is allowed afterwards, m/s
-    Vec3 impulse;      ///< j, N s in contact coordinates; on entry the guess that has been applied already
+    Vec3 impulse;      ///< j, N s in contact coordinates; on entry the initial guess, which has been applied already
 };
 
 struct ConeResult
@@ -30,12 +31,12 @@ struct ConeResult
     double residual = 0;  ///< m/s, largest b - u_n left
 };
 
-/// The impulse of one contact whose velocity without it is r (m/s). `last`: its impulse in the last sweep, near which it is
-/// looked for where repeating does not settle.
+/// The impulse of one contact whose velocity without it is r (m/s). `last` is its impulse in the last sweep: a sliding direction
+/// near that of `last` is searched for if the fixed-point iteration does not converge.
 Vec3 solve_cone(const Mat3& K, const Vec3& r, double least, double friction, const Vec3& last = {});
 
-/// Changes the velocities in `bodies`. Ends when no impulse changes its contact's velocity by more than `tolerance`
-/// (m/s), or when the step is given up.
+/// Changes the velocities in `bodies`. Ends when no impulse changes the velocity of its contact by more than `tolerance` (m/s),
+/// or when the step is interrupted.
 ConeResult solve_cones(std::span<ConeContact> contacts, Bodies& bodies, double tolerance, int max_sweeps,
                        const Interruption* interruption = nullptr);
 

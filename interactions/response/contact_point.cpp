@@ -12,11 +12,11 @@ ContactPoint::ContactPoint(const Contact& contact, const Bodies& bodies)
     add_body(bodies, b_);
     const double turning = K_(2, 2);
     for (int i = 0; i < 3; ++i) K_(i, i) += inverse_mass_;
-    // What rounding leaves of r x n is squared here, so it stays far below this.
+    // `turning` is the square of the rounding error of r x n, so it stays far below this threshold for central contacts.
     central_ = turning <= 1e-20 * inverse_mass_;
 }
 
-/// K += -[r] I^-1 [r]; the mass is added last, so that the turning part is known by itself.
+/// K += -[r] I^-1 [r]. The mass is added last, so that the rotational part is known separately.
 void ContactPoint::add_body(const Bodies& bodies, std::uint32_t body)
 {
     if (!bodies.dynamic(body)) return;

@@ -1,4 +1,4 @@
-/// A contact as the responses see it: its axes, its collision matrix, its velocity, and how impulses reach the bodies.
+/// A contact as the responses use it: its axes, its collision matrix K, its velocity, and the effect of impulses on the bodies.
 #pragma once
 
 #include "plab/collision.h"
@@ -7,7 +7,7 @@
 namespace plab::response
 {
 
-/// Fixed while impulses act, since nothing moves meanwhile. Vectors in contact coordinates are (t1, t2, n).
+/// Constant while impulses act, since nothing moves at an instant. Vectors in contact coordinates are (t1, t2, n).
 class ContactPoint
 {
 public:
@@ -16,10 +16,10 @@ public:
 
     /// u = velocity of b's point relative to a's, m/s.
     Vec3 velocity(const Bodies& bodies) const;
-    /// Applies j (contact coordinates, N s) to b and -j to a. `normal_velocity` is the u_n that this is known to give:
-    /// where the centres lie on the normal it is set to the last bit, by
+    /// Applies j (contact coordinates, N s) to b and -j to a. `normal_velocity` is the u_n that results. If the centres of mass
+    /// lie on the normal, the normal velocities are set by
     ///   v_a' = (m_a v_a + m_b (v_b - u_n')) / (m_a + m_b),
-    /// which does not cancel, however different the masses are, and leaves a body at rest exactly at rest.
+    /// which is free of cancellation whatever the masses, and leaves a body at rest exactly at rest.
     void apply(Bodies& bodies, const Vec3& j, double normal_velocity) const;
 
     const Mat3& K() const { return K_; }  ///< 1/kg, in contact coordinates

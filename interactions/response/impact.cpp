@@ -9,12 +9,12 @@ namespace plab::response
 {
 namespace
 {
-/// Patches whose closing speeds differ by less than this share close at one speed.
+/// Patches whose closing speeds differ by less than this fraction count as equally fast.
 constexpr double kSameSpeed = 1e-9;
-/// Share of the fastest approach that is left where bodies are caught between others.
+/// Fraction of the fastest approach that may remain where bodies are trapped between others.
 constexpr double kStill = 1e-6;
 
-/// Patch by patch, the one that closes fastest first, until none closes: how Mirtich's bodies meet.
+/// Answers one patch after the other, the one that closes fastest first, until none closes (Mirtich's sequential collisions).
 class ImpactSequence
 {
 public:
@@ -44,9 +44,9 @@ private:
     Workspace& work_;
     Bodies& bodies_;
     std::span<Contact> contacts_;
-    double threshold_ = 0;     // m/s, closing speed that is none
+    double threshold_ = 0;     // m/s, a closing speed up to this counts as zero
     std::int64_t spent_ = 0;   // impacts of single points and sweeps of the others
-    std::int64_t visits_ = 0;  // contacts that these went through
+    std::int64_t visits_ = 0;  // contacts visited by them
 };
 
 void ImpactSequence::prepare()
@@ -64,7 +64,7 @@ void ImpactSequence::prepare()
     threshold_ = std::max(settings_.tolerance, 0x1p-46 * speed);
 }
 
-/// Contacts of one pair of bodies side by side; the pairs in the order of their first contact's id.
+/// Sorts contacts by pairs of bodies, and the pairs by their smallest contact id.
 void ImpactSequence::group()
 {
     auto& order = work_.order;
@@ -88,7 +88,8 @@ double ImpactSequence::closing_speed(const Patch& patch) const
     return fastest;
 }
 
-/// Whether a contact that parts at `speed` stays: h = v^2 / 2a, and no lower than what its position can tell apart.
+/// Whether a contact that separates at `speed` rests: the height v^2 / 2a is below rest_height, or below what its position can
+/// resolve.
 bool ImpactSequence::rests(const Contact& contact, double speed) const
 {
     if (speed < 0) return false;
@@ -105,8 +106,8 @@ bool ImpactSequence::touch_one_body(const Patch& p, const Patch& q) const
     return same(x.a, y.a) || same(x.a, y.b) || same(x.b, y.a) || same(x.b, y.b);
 }
 
-/// The patch that closes fastest, and those that close as fast on the same bodies: one after the other they would be
-/// answered in an order that means nothing, and what is symmetric would not stay so.
+/// Chooses the patch that closes fastest, and those that close equally fast on the same bodies. Answered one after the other,
+/// their order would be arbitrary and would break the symmetry of the scene.
 void ImpactSequence::choose(std::uint32_t fastest, double speed)
 {
     auto& chosen = work_.together;
@@ -175,8 +176,8 @@ void ImpactSequence::save_bodies()
                     {r.index, bodies_.velocity[r.index], bodies_.angular_velocity[r.index], bodies_.angular_momentum[r.index]});
 }
 
-/// Several points meet at once, u_n' >= -e u_n at each: a box that lands flat bounces flat. With friction Newton's law may
-/// give back more than there was; then less is given back, and nothing at last.
+/// Answers several points simultaneously, u_n' >= -e u_n at each: a box that lands flat bounces flat. With friction, Newton's
+/// law may return more energy than there was; then less is returned, and finally none.
 void ImpactSequence::hit_at_once()
 {
     constexpr int kTrials = 6;
@@ -198,7 +199,7 @@ void ImpactSequence::hit_at_once()
         contacts_[work_.hit[k].contact].impulse += work_.cones[k].point->to_world(work_.cones[k].impulse);
 }
 
-/// Energy gained beyond rounding, J: the sum of j . (u + u') / 2.
+/// Returns the energy gained beyond rounding, J: the sum of j . (u + u') / 2.
 double ImpactSequence::try_at_once(double share)
 {
     work_.cones.clear();
@@ -237,7 +238,8 @@ void ImpactSequence::run(Impact& impact)
         for (std::uint32_t p = 0; p < work_.patches.size(); ++p)
             if (const double v = closing_speed(work_.patches[p]); v > fastest) fastest = v, next = p;
         if (next == kNoIndex) break;
-        // Bodies caught between others may bounce for ever; what is left by then is taken out without bounce, at once.
+        // Bodies trapped between others might bounce forever; what remains after half of the budget is answered at once and
+        // without bounce.
         hardest = std::max(hardest, fastest);
         plastic = spent_ > budget / 2;
         if (plastic)
@@ -247,7 +249,7 @@ void ImpactSequence::run(Impact& impact)
         hit(plastic);
     }
     impact.residual = 0;
-    // What was taken out without bounce stays, though sweeps may have left a little of its speed: else it would come again.
+    // After a plastic impact the contacts rest even if the sweeps have left a little speed: otherwise the impact would recur.
     const double still = plastic ? std::max(threshold_, kStill * hardest) : threshold_;
     for (const std::uint32_t i : work_.order)
     {

@@ -10,12 +10,12 @@ namespace plab::response
 {
 namespace
 {
-/// Slip below this share of the approach speed is rounding.
+/// Fraction of the approach speed: slip below this is a rounding error.
 constexpr double kNoSlip = 1e-14;
-/// A slip direction that turns slower than this share of K is straight.
-constexpr double kStraight = 1e-14;
+/// Fraction of K: a slip direction that turns more slowly counts as constant.
+constexpr double kStraightSlip = 1e-14;
 
-/// The impulse grows piece by piece until the work of restitution is done.
+/// Builds up the impulse piece by piece until restitution has returned its work.
 class Collision
 {
 public:
@@ -28,8 +28,8 @@ public:
 private:
     void slide();
     void stick_or_restart();
-    /// Along one direction of force, until the phase ends, or `to_stick` (an amount of normal impulse) is reached.
-    /// Returns whether it was reached.
+    /// Applies normal impulse along a constant direction of force, until the phase ends or `to_stick` (an amount of normal
+    /// impulse) is reached. Returns whether it was reached.
     bool go_straight(const Vec3& force, double to_stick);
     void finish_phase();
     double to_phase_end(double rate) const;
@@ -38,7 +38,7 @@ private:
     double restitution_;
     ImpactState state_;
     bool compressing_ = true, done_ = false;
-    double goal_ = 0;  // J, work to give back
+    double goal_ = 0;  // J, work to be returned in restitution
 };
 
 ImpactResult Collision::run()
@@ -52,7 +52,7 @@ ImpactResult Collision::run()
     return {state_.impulse, state_.u};
 }
 
-/// Normal impulse until u_n = 0, or until the rest of the work is given back, with du_n/dJ_n = rate.
+/// Normal impulse until u_n = 0, or until the rest of the work is returned, with du_n/dJ_n = rate.
 double Collision::to_phase_end(double rate) const
 {
     const double u_n = state_.u.z;
@@ -87,7 +87,7 @@ bool Collision::go_straight(const Vec3& force, double to_stick)
         const double amount = std::min(to_stick, to_end);
         if (!std::isfinite(amount))
         {
-            done_ = true;  // cannot be: energy would grow without bound
+            done_ = true;  // impossible: energy would grow without bound
             return false;
         }
         state_.work += amount * (state_.u.z + 0.5 * rate.z * amount);
@@ -107,7 +107,7 @@ void Collision::slide()
         const double slip = std::hypot(state_.u.x, state_.u.y);
         const double c = state_.u.x / slip, s = state_.u.y / slip;
         const SlipRates rates = law_.rates(c, s);
-        if (std::fabs(rates.turn) <= kStraight * law_.scale())
+        if (std::fabs(rates.turn) <= kStraightSlip * law_.scale())
         {
             const double to_stick = rates.grow < 0 ? -slip / rates.grow : HUGE_VAL;
             if (!go_straight({-law_.friction * c, -law_.friction * s, 1}, to_stick)) return;
@@ -141,7 +141,7 @@ void Collision::stick_or_restart()
     go_straight({-law_.friction * c, -law_.friction * s, 1}, HUGE_VAL);
 }
 
-/// The same in coordinates whose first axis lies along the slip: what turns with the scene then rounds alike.
+/// Solves in coordinates whose first axis lies along the slip: the rounding is then the same if the whole scene is rotated.
 ImpactResult solve_along_slip(const Mat3& K, const Vec3& u, double friction, double restitution)
 {
     const double slip = std::hypot(u.x, u.y);

@@ -1,13 +1,19 @@
-/// One contact point, one instant: the impulse of an impact with friction and restitution.
+/// The impact law: the impulse at one contact point, with friction and restitution.
 ///
-/// Coordinates (t1, t2, n) of the contact; u = relative velocity of b's point to a's (u_n < 0: closing), K = collision
-/// matrix, du = K dJ. Sliding, dJ = (-mu s, 1) dJ_n with s the direction of slip (Coulomb, a true cone):
+/// Contact coordinates (t1, t2, n); u = velocity of b's point relative to a's (u_n < 0: closing), K = collision matrix, du = K
+/// dJ. An impact is treated as infinitely short, so positions, and with them K, are constant. Friction may change its direction
+/// during the impact because the slip does. The impulse is therefore built up gradually, with the normal impulse J_n in the role
+/// of time. While the point slides in the direction s, Coulomb's law (a true cone) gives dJ = (-mu s, 1) dJ_n, and so
 ///
-///   du/dJ_n = K (-mu s, 1)      until u_n = 0 (compression, work W_c of the normal impulse), then until
-///   W = -e^2 W_c is given back  (restitution; Stronge's energetic coefficient).
+///   du/dJ_n = K (-mu s, 1)
 ///
-/// Where slip ends, it stays ended if |K_tt^-1 K_tn| <= mu, else it starts again along the one ray that leads away.
-/// Energy never grows. Without friction, and while slip does not turn, this is Newton's u_n' = -e u_n.
+/// Compression lasts until u_n = 0; the normal impulse then has done the work W_c < 0. Restitution lasts until the normal
+/// impulse has returned the work e^2 |W_c|. This is Stronge's energetic coefficient of restitution. Unlike Newton's ratio of
+/// velocities it can never add energy, even if friction reverses the slip.
+///
+/// If the slip ends during the impact, the point sticks for the rest of it if friction suffices, |K_tt^-1 K_tn| <= mu. Otherwise
+/// it starts to slide again along the one direction that then remains constant. Without friction, or while the slip keeps its
+/// direction, the law is Newton's u_n' = -e u_n.
 /// Sources: Mirtich, PhD thesis, UC Berkeley (1996), chapter 3; Stronge, Impact Mechanics (2000), chapter 5.
 #pragma once
 
@@ -22,7 +28,7 @@ struct ImpactResult
     Vec3 velocity;  ///< u afterwards, m/s
 };
 
-/// For u_n < 0. friction >= 0; restitution in [0, 1].
+/// Requires u_n < 0, friction >= 0 and restitution in [0, 1].
 ImpactResult solve_impact(const Mat3& K, const Vec3& u, double friction, double restitution);
 
 }  // namespace plab::response

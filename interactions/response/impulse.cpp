@@ -8,23 +8,26 @@ namespace plab::response
 
 void ImpulseRows::describe(Schema& s)
 {
-    s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise").or_else(0).not_negative();
+    s.param(friction, "friction", unit::one, "Coulomb coefficient, unless a Material/Pair overrides it").or_else(0).not_negative();
     s.param(restitution, "restitution", unit::one,
-            "share of the approach speed that an impact gives back, where no Material/Pair says otherwise")
+            "coefficient of restitution: fraction of the approach speed that an impact returns, unless a "
+            "Material/Pair overrides it")
         .or_else(0)
         .not_negative()
         .at_most(1);
-    s.param(rest_height, "rest_height", unit::metre, "a bounce that would rise less than this does not happen: the contact rests")
+    s.param(rest_height, "rest_height", unit::metre,
+            "a bounce that would rise less than this is suppressed: the contact becomes a resting one")
         .or_else(1e-14)
         .not_negative();
-    s.param(rest_speed, "rest_speed", unit::metre_per_second, "a rebound up to this speed does not happen where no force presses together")
+    s.param(rest_speed, "rest_speed", unit::metre_per_second,
+            "where no force presses the bodies together, a rebound up to this speed is suppressed")
         .or_else(1e-9)
         .not_negative();
-    s.param(tolerance, "tolerance", unit::metre_per_second, "closing speed that may be left").or_else(1e-12).positive();
+    s.param(tolerance, "tolerance", unit::metre_per_second, "closing speed that may remain").or_else(1e-12).positive();
     s.param(max_iterations, "max_iterations", unit::one, "sweeps over the contacts").or_else(500).positive().at_most(1e6);
-    s.output(residual, "residual", unit::metre_per_second, "largest closing speed left in this step").reported_as_error();
+    s.output(residual, "residual", unit::metre_per_second, "largest closing speed that remained in this step").reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps and single impacts in this step");
-    s.output(step, "step", unit::one, "the step that these figures are of; -1: none yet").or_else(-1);
+    s.output(step, "step", unit::one, "the step that these outputs refer to; -1: none yet").or_else(-1);
     s.scratch(workspace, "workspace", "working memory");
 }
 

@@ -1,4 +1,4 @@
-/// Response/*: what happens to bodies that touch.
+/// Response/None and Response/Impulse: what happens to bodies that touch.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@
 namespace plab::response
 {
 
-/// A sensor: contacts are seen and reported, and bodies pass through one another.
+/// A sensor: contacts are detected and reported, and bodies pass through one another.
 struct NoneRows
 {
     void describe(Schema&) {}
 };
-/// Phase::Respond. Contacts come out as resting, without impulse: nothing that has to be located again.
+/// Phase::Respond. Contacts are marked as resting, without impulse, so that they are not located again.
 
-/// The contacts between two bodies: answered together.
+/// The contacts between two bodies, which are answered together.
 struct Patch
 {
-    std::uint32_t first = 0, end = 0;  ///< in Workspace::order
+    std::uint32_t first = 0, end = 0;  ///< range in Workspace::order
     std::uint64_t id = 0;              ///< smallest contact id
 };
 
-/// A contact of an impact at several points, and a body as it was before.
+/// A contact that takes part in an impact at several points; and a body's state before that impact.
 struct HitContact
 {
     std::uint32_t contact = 0;
@@ -38,17 +38,17 @@ struct HitBody
     Vec3 velocity, spin, momentum;
 };
 
-/// Working memory of one response, kept warm.
+/// Working memory of one response, kept from call to call to avoid allocations.
 struct Workspace
 {
     std::vector<std::uint32_t> order;  ///< contacts by pair of bodies, then id
     std::vector<Patch> patches;        ///< by id
     std::vector<ContactPoint> points;  ///< per contact
     std::vector<ConeContact> cones;
-    std::vector<Vec3> before;             ///< m/s, contact velocities ahead of an impact
-    std::vector<std::uint32_t> together;  ///< patches that are hit at once
-    std::vector<HitContact> hit;          ///< and their contacts
-    std::vector<HitBody> saved;           ///< their bodies ahead of an impact
+    std::vector<Vec3> before;             ///< m/s, contact velocities before an impact
+    std::vector<std::uint32_t> together;  ///< patches that are hit simultaneously
+    std::vector<HitContact> hit;          ///< contacts of those patches
+    std::vector<HitBody> saved;           ///< bodies of those patches, before the impact
 };
 
 struct ImpulseRows
@@ -60,7 +60,7 @@ struct ImpulseRows
     Column<std::int64_t> max_iterations;
     Column<double> residual;  // m/s
     Column<std::int64_t> iterations;
-    Column<Tick> step;  ///< whose outputs are being summed
+    Column<Tick> step;  ///< the step whose outputs are being summed
     Column<Workspace> workspace;
 
     void describe(Schema& schema);
@@ -69,16 +69,16 @@ struct ImpulseRows
 /// Phase::Respond.
 void respond(const StepContext& context, Row row, ImpulseRows& rows, Bodies& bodies, Impact& impact);
 
-/// When a contact that was hit does not leave again, and how hard to work.
+/// When a bounce is suppressed, and how many iterations are allowed.
 struct ImpactSettings
 {
     double rest_height = 0, rest_speed = 0, tolerance = 0;
     int max_iterations = 0;
-    const Interruption* interruption = nullptr;  ///< asked in each sweep
+    const Interruption* interruption = nullptr;  ///< checked in each sweep
 };
-/// Bodies meet: see README, "impacts".
+/// Impacts: see README, "Impacts".
 void respond_impact(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact);
-/// Contacts persist over dt: see README, "resting contacts".
+/// Persistent contacts over dt: see README, "Resting contacts".
 void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodies, Impact& impact);
 
 }  // namespace plab::response

@@ -26,8 +26,8 @@ struct Total
     double stored = 0, force = 0, penetration = 0;
 };
 
-/// Runs `normal` (NormalForce of a contact, its mobility along the normal and its speed of parting) for each contact, adds
-/// friction, and hands the forces over.
+/// For each contact: calls `normal` (returns the NormalForce for the contact, its mobility along the normal and its separation
+/// speed), adds friction, and applies the forces to the bodies.
 template <class Normal>
 void touch(const StepContext& context, Row row, SurfaceColumns& surface, const Bodies& bodies, Wrenches& wrenches, Impact& impact,
            Normal normal)
@@ -63,43 +63,51 @@ void touch(const StepContext& context, Row row, SurfaceColumns& surface, const B
 
 void SurfaceColumns::describe(Schema& s)
 {
-    s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise").or_else(0).not_negative();
+    s.param(friction, "friction", unit::one, "Coulomb coefficient, unless a Material/Pair overrides it").or_else(0).not_negative();
     s.param(restitution, "restitution", unit::one,
-            "share of the approach speed that a single central contact gives back, where no Material/Pair says otherwise; 1: no "
-            "damping on its account")
+            "fraction of the approach speed that a single central contact returns, unless a Material/Pair "
+            "overrides it; 1: no damping for its sake")
         .or_else(0)
         .not_negative()
         .at_most(1);
-    s.param(tangential_ratio, "tangential_ratio", unit::one, "stiffness of the stiction spring over the stiffness across the surface")
+    s.param(tangential_ratio, "tangential_ratio", unit::one, "ratio of the stiffness of the stiction spring to the normal stiffness")
         .or_else(1)
         .positive();
-    s.param(tangential_damping_ratio, "tangential_damping_ratio", unit::one, "damping of the stiction spring over the critical one")
+    s.param(tangential_damping_ratio, "tangential_damping_ratio", unit::one,
+            "ratio of the damping of the stiction spring to its critical damping")
         .or_else(0.5)
         .not_negative();
     s.param(steps_per_contact, "steps_per_contact", unit::one,
-            "steps of the solver in the time of one contact, pi / (its fastest rate): the step is cut into as many as that takes, "
-            "while something touches")
+            "solver steps during one contact, whose duration is pi / (its fastest rate): while bodies touch, a "
+            "step is split accordingly")
         .or_else(200)
         .at_least(4)
         .at_most(10000);
-    s.param(max_substeps, "max_substeps", unit::one, "pieces into which one step may be cut").or_else(20000).positive().at_most(1e6);
+    s.param(max_substeps, "max_substeps", unit::one, "maximum number of pieces into which one step is split")
+        .or_else(20000)
+        .positive()
+        .at_most(1e6);
     s.output(stored, "stored", unit::joule, "energy in the springs at the end of the step");
     s.output(force, "force", unit::newton, "sum of the normal forces at the end of the step");
-    s.output(penetration, "penetration", unit::metre, "deepest overlap that pushes, at the end of the step").reported_as_error();
+    s.output(penetration, "penetration", unit::metre, "deepest overlap with a contact force at the end of the step").reported_as_error();
 }
 
 void PenaltyRows::describe(Schema& s)
 {
     s.param(stiffness, "stiffness", kNewtonPerMetre, "of each contact point").or_else(1e6).positive();
-    s.param(damping, "damping", unit::kilogram_per_second, "of each contact point, beside what the next two ask for")
+    s.param(damping, "damping", unit::kilogram_per_second,
+            "of each contact point, in addition to what damping_ratio and restitution require")
         .or_else(0)
         .not_negative();
-    s.param(damping_ratio, "damping_ratio", unit::one, "damping over the critical one of a single contact point").or_else(0).not_negative();
+    s.param(damping_ratio, "damping_ratio", unit::one, "ratio of the damping to the critical damping of a single contact point")
+        .or_else(0)
+        .not_negative();
     surface.describe(s);
     s.param(pulls, "pulls", unit::one,
-            "whether the damper may pull just before the bodies part: then a contact ends at depth 0; else where its force ends")
+            "whether the damper may pull just before the bodies separate: if so, a contact ends at depth 0, "
+            "otherwise when its force reaches zero")
         .or_else(true);
-    s.scratch(ratio_of_restitution, "ratio_of_restitution", "damping ratio that the last restitution asked for");
+    s.scratch(ratio_of_restitution, "ratio_of_restitution", "damping ratio for the last restitution");
 }
 
 void HuntCrossleyRows::describe(Schema& s)
@@ -108,15 +116,14 @@ void HuntCrossleyRows::describe(Schema& s)
         .or_else(1e7)
         .positive();
     s.param(exponent, "exponent", unit::one, "n; 1.5 for smooth round bodies (Hertz)").or_else(1.5).at_least(1).at_most(4);
-    s.param(dissipation, "dissipation", kSecondPerMetre, "d: 3/2 of the loss of restitution per speed of approach")
-        .or_else(0)
-        .not_negative();
+    s.param(dissipation, "dissipation", kSecondPerMetre, "d: 3/2 of the loss of restitution per approach speed").or_else(0).not_negative();
     s.param(least_speed, "least_speed", unit::metre_per_second,
-            "approaches slower than this are damped as this one is, where restitution asks for damping")
+            "approaches slower than this are damped like an approach at this speed, if restitution requires "
+            "damping")
         .or_else(0.01)
         .positive();
     surface.describe(s);
-    s.scratch(loss_of_restitution, "loss_of_restitution", "d v that the last restitution asked for");
+    s.scratch(loss_of_restitution, "loss_of_restitution", "d v for the last restitution");
 }
 
 void touch_penalty(const StepContext& context, Row row, PenaltyRows& rows, const Bodies& bodies, Wrenches& wrenches, Impact& impact)
@@ -152,7 +159,8 @@ void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& 
         if (x <= 0) return n;
         const double loss = remembered(rows.loss_of_restitution[row], c.restitution, loss_for_restitution);
         const double spring = k * std::pow(x, exponent);
-        // What a load presses deeper than the approach could is damped as if it had come with the speed that gets that deep.
+        // A load may press deeper than the approach could; it is damped as if it had come with the speed that reaches this
+        // depth.
         const double speed = std::sqrt(2 * spring * x / (exponent + 1) * mobility);
         const double dissipation = rows.dissipation[row] + loss / std::max({c.approach, rows.least_speed[row], speed});
         n.force = std::max(spring * (1 - dissipation * separation_speed), 0.0);

@@ -1,5 +1,12 @@
-/// Contacts as forces: springs and dampers that push bodies apart while they overlap, with stiction springs along the
-/// surface. See README, "contacts as forces".
+/// Contacts as forces: springs and dampers that push bodies apart while they overlap, with stiction springs along the surface.
+///
+/// A contact is treated as an elastic layer instead of a constraint. Each contact point has a spring across the surface, whose
+/// compression is the overlap, and a damper, which makes it return the share e of the approach speed. Along the surface a second
+/// spring remembers how far the point has been displaced since it stuck; if its force would exceed Coulomb's limit mu f_n, the
+/// point slides, and the spring is shortened to what gives exactly that limit. The contact is thus an ordinary force, and any
+/// solver can integrate it with its own order, but only in steps much shorter than the half period of the spring, pi sqrt(m /
+/// k). The host therefore splits a step into substeps (steps_per_contact) while something touches. Equations: README, "Contacts
+/// as forces".
 #pragma once
 
 #include <cstdint>
@@ -9,20 +16,21 @@
 namespace plab::response
 {
 
-/// A number that follows from another one by an equation that takes time to solve: remembered until that one changes.
+/// A number that is expensive to compute from another one, cached until that one changes.
 struct Solved
 {
     double of = -1;
     double value = 0;
 };
 
-/// What both laws ask of the surface and of the host (server/simulation/contact_forces/contact_forces.h reads the last two by name).
+/// Columns common to both laws: surface parameters, and limits for the host (server/simulation/contact_forces/contact_forces.h
+/// reads steps_per_contact and max_substeps by name).
 struct SurfaceColumns
 {
     Column<double> friction, restitution;       // 1
-    Column<double> tangential_ratio;            // 1, stiffness along the surface over stiffness across it
+    Column<double> tangential_ratio;            // 1, tangential stiffness over normal stiffness
     Column<double> tangential_damping_ratio;    // 1
-    Column<std::int64_t> steps_per_contact;     // of the solver, per half period
+    Column<std::int64_t> steps_per_contact;     // steps of the solver per half period
     Column<std::int64_t> max_substeps;          // per step
     Column<double> stored, force, penetration;  // J, N, m
 
@@ -55,14 +63,14 @@ struct HuntCrossleyRows
     void describe(Schema& schema);
 };
 
-/// Phase::Touch. All contacts of one response that push at this stage. Impact::dt is 1 s, so that Contact::impulse comes
-/// out as the force on b. Contact::stretch comes in as the present stretch of the stiction spring, and goes out as what
-/// Coulomb's law lets it be.
+/// Phase::Touch. Handles all contacts of one response that push at this stage. Impact::dt is 1 s, so Contact::impulse receives
+/// the force on b. Contact::stretch is the present extension of the stiction spring on entry, and limited by Coulomb's law on
+/// return.
 void touch_penalty(const StepContext& context, Row row, PenaltyRows& rows, const Bodies& bodies, Wrenches& wrenches, Impact& impact);
 void touch_hunt_crossley(const StepContext& context, Row row, HuntCrossleyRows& rows, const Bodies& bodies, Wrenches& wrenches,
                          Impact& impact);
 
-/// Phase::Potential: energy in the springs, J, as of the end of the last step.
+/// Phase::Potential: energy in the springs, J, at the end of the last step.
 void stored_penalty(Rows rows, const PenaltyRows& table, StoredEnergy& stored);
 void stored_hunt_crossley(Rows rows, const HuntCrossleyRows& table, StoredEnergy& stored);
 

@@ -18,7 +18,7 @@ double decay_without_pull(double z)
     return q > 0 ? 2 * z * std::acos(z) / std::sqrt(q) : 2 * z * std::acosh(z) / std::sqrt(-q);
 }
 
-/// The x in [low, high] at which the rising f is 0.
+/// The zero in [low, high] of an increasing function f, by bisection.
 template <class F>
 double root(double low, double high, F f)
 {
@@ -51,7 +51,7 @@ double loss_for_restitution(double e)
 {
     if (e >= 1) return 0;
     const double r = std::max(e, kLeastRestitution);
-    // Of order (1 - e^2) s^2 / 2 below 0 for small s: the root at 0 is not the one.
+    // The function also has a zero at s = 0, below which it falls by about (1 - e^2) s^2 / 2; this bound excludes that one.
     const double low = 0.75 * (1 - r);
     return root(low, 1 / r, [&](double s) { return std::log1p(s) - std::log1p(-r * s) - (1 + r) * s; });
 }

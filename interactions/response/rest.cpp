@@ -7,7 +7,7 @@ namespace plab::response
 namespace
 {
 
-/// J, beyond rounding: what the impulses made of the energy there was, the sum of j . (u + u') / 2.
+/// J, beyond rounding: the energy that the impulses have added, the sum of j . (u + u') / 2.
 double energy_gained(std::span<const ConeContact> cones, std::span<const Vec3> before, const Bodies& bodies)
 {
     double gain = 0, size = 0;
@@ -29,8 +29,8 @@ void take_back(std::span<ConeContact> cones, Bodies& bodies)
     }
 }
 
-/// Sweeps from the last step's impulses, which may be more than there is to do; where they did not come down in time and
-/// left energy behind, from nothing: then each sweep only takes energy away.
+/// Starts the sweeps from the impulses of the last step. These may be too large; if the sweeps end early and leave an energy
+/// gain, they start again from zero impulses, from where each sweep only removes energy.
 ConeResult solve_without_gain(const ImpactSettings& settings, Workspace& work, Bodies& bodies)
 {
     const ConeResult warm = solve_cones(work.cones, bodies, settings.tolerance, settings.max_iterations, settings.interruption);
@@ -58,7 +58,7 @@ void respond_rest(const ImpactSettings& settings, Workspace& work, Bodies& bodie
     {
         const Contact& c = contacts[i];
         const ContactPoint& point = work.points[i];
-        // A gap may close within the step, and no further.
+        // A gap may close within the step, but not further.
         const double least = c.turning + (c.depth < 0 && impact.dt > 0 ? c.depth / impact.dt : 0.0);
         const Vec3 guess = point.to_contact(c.impulse);
         if (guess != Vec3{}) point.apply(bodies, guess, point.velocity(bodies).z + (point.K() * guess).z);

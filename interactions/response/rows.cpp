@@ -8,9 +8,9 @@ namespace plab::response
 namespace
 {
 
-constexpr double kTolerance = 0x1p-46;  // of the speeds
+constexpr double kRowTolerance = 0x1p-46;  // of the speeds
 constexpr int kMostSweeps = 20000, kLeastSweeps = 20;
-/// Contacts that an impact of very many may go through, sweep by sweep: what closes by then is told as the residual.
+/// Upper bound on the number of contacts visited in one impact; a closing speed that then remains is reported as the residual.
 constexpr std::int64_t kMostVisits = 1'000'000;
 
 struct Bounce
@@ -18,7 +18,7 @@ struct Bounce
     double rest_height = 0, rest_speed = 0;
 };
 
-/// Whether a contact that parts at `speed` stays: it would rise less than its position can tell apart.
+/// Whether a contact that separates at `speed` rests: it would rise less than its position can resolve.
 bool rests(const Contact& c, double speed, const Bounce& bounce)
 {
     const double pressing = -c.normal_acceleration;
@@ -27,7 +27,8 @@ bool rests(const Contact& c, double speed, const Bounce& bounce)
     return speed * speed <= 2 * pressing * height;
 }
 
-/// All contacts at once, with `share` of the restitution. Energy gained beyond rounding, J. `visits` grows by what it took.
+/// Answers all contacts simultaneously, with the fraction `share` of the restitution. Returns the energy gained beyond rounding,
+/// J; `visits` grows by the number of contacts visited.
 double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bodies, const Bounce& bounce, double share, double tolerance,
                   ConeResult& result, std::int64_t& visits)
 {
@@ -53,7 +54,7 @@ double try_impact(Workspace& work, std::span<const Contact> contacts, Bodies& bo
     return gain > 1e-12 * size ? gain : 0.0;
 }
 
-/// Speeds as they were: the opposite impulses.
+/// Restores the velocities by applying the opposite impulses.
 void take_back(Workspace& work, Bodies& bodies)
 {
     for (std::size_t k = work.cones.size(); k-- > 0;)
@@ -70,21 +71,24 @@ void RowsRows::describe(Schema& s)
     s.role(manager, "manager", {Facet::Component}, "advances the islands of these contacts")
         .family("Manager/")
         .default_type("Manager/Direct");
-    s.param(friction, "friction", unit::one, "Coulomb coefficient, where no Material/Pair says otherwise").or_else(0).not_negative();
+    s.param(friction, "friction", unit::one, "Coulomb coefficient, unless a Material/Pair overrides it").or_else(0).not_negative();
     s.param(restitution, "restitution", unit::one,
-            "share of the approach speed that an impact gives back, where no Material/Pair says otherwise")
+            "coefficient of restitution: fraction of the approach speed that an impact returns, unless a "
+            "Material/Pair overrides it")
         .or_else(0)
         .not_negative()
         .at_most(1);
-    s.param(rest_height, "rest_height", unit::metre, "where impacts are located: a bounce that would rise less than this does not happen")
+    s.param(rest_height, "rest_height", unit::metre, "where impacts are located: a bounce that would rise less than this is suppressed")
         .or_else(1e-14)
         .not_negative();
-    s.param(rest_speed, "rest_speed", unit::metre_per_second, "likewise: a rebound up to this speed where no force presses together")
+    s.param(rest_speed, "rest_speed", unit::metre_per_second,
+            "likewise: where no force presses the bodies together, a rebound up to this speed is suppressed")
         .or_else(1e-9)
         .not_negative();
-    s.output(residual, "residual", unit::metre_per_second, "largest closing speed that impacts left in this step").reported_as_error();
+    s.output(residual, "residual", unit::metre_per_second, "largest closing speed that remained after the impacts of this step")
+        .reported_as_error();
     s.output(iterations, "iterations", unit::one, "sweeps over impacts in this step");
-    s.output(step, "step", unit::one, "the step that these figures are of; -1: none yet").or_else(-1);
+    s.output(step, "step", unit::one, "the step that these outputs refer to; -1: none yet").or_else(-1);
     s.scratch(workspace, "workspace", "working memory");
 }
 
@@ -108,8 +112,8 @@ void respond_rows(const StepContext& context, Row row, RowsRows& rows, Bodies& b
         work.before.push_back(work.points[i].velocity(bodies));
         speed = std::max(speed, length(work.before.back()));
     }
-    const double tolerance = kTolerance * speed;
-    // Newton's law with friction may give back more than there was; then less is given back, and nothing at last.
+    const double tolerance = kRowTolerance * speed;
+    // With friction, Newton's restitution may return more energy than there was; then less is returned, and finally none.
     ConeResult result;
     double share = 1;
     impact.iterations = 0, impact.visits = 0;

@@ -1,12 +1,13 @@
-/// Response/Rows: contacts are rows of an island that a manager advances. Where a resolution locates impacts, they are
-/// answered here, all contacts of an impact at one time.
+/// Response/Rows: contacts become rows of an island that a manager advances. If a resolution locates impacts, these are answered
+/// here, all contacts of an impact simultaneously.
 ///
-/// Several contacts, one instant (Moreau's law of impact with Newton's restitution):
+/// Moreau's law of impact with Newton's restitution:
 ///
-///   u_n' >= -e u_n where u_n < 0, else >= 0;   complementary to j_n >= 0;   Coulomb's cone for the rest of j
+///   u_n' >= -e u_n where u_n < 0, else >= 0;   complementary to j_n >= 0;   Coulomb's cone for the tangential part of j
 ///
-/// Velocities without friction are unique, whatever the order of bodies: a symmetric impact has a symmetric answer, and
-/// with e = 1 the energy is kept. Sources: Moreau (1988); Glocker, Set-Valued Force Laws (2001), chapter 9.
+/// Without friction the resulting velocities are unique and independent of the order of bodies: a symmetric impact has a
+/// symmetric result, and with e = 1 energy is conserved.
+/// Sources: Moreau (1988); Glocker, Set-Valued Force Laws (2001), chapter 9.
 #pragma once
 
 #include "impulse.h"
@@ -22,7 +23,7 @@ struct RowsRows
     Column<double> rest_speed;   // m/s
     Column<double> residual;     // m/s
     Column<std::int64_t> iterations;
-    Column<Tick> step;  ///< whose outputs are being summed
+    Column<Tick> step;  ///< the step whose outputs are being summed
     Column<Workspace> workspace;
 
     void describe(Schema& schema);

@@ -9,11 +9,11 @@ namespace plab::response
 namespace
 {
 constexpr double kStraight = 1e-14;
-constexpr double kStopped = 1e-13;  // of the slip at the start
+constexpr double kStopped = 1e-13;  // fraction of the slip at the start
 constexpr double kTolerance = 1e-13;
 constexpr int kMaxSteps = 20000;
 
-/// c, s: direction of slip; then slip speed, u_n, work, impulse in t1, t2, n.
+/// Direction of slip c, s; then slip speed, u_n, work, and the impulses along t1, t2, n.
 using Vector8 = std::array<double, 8>;
 enum : std::size_t
 {
@@ -44,7 +44,7 @@ Vector8 derivative(const SlipLaw& law, const Vector8& y)
 struct Step
 {
     Vector8 y;
-    double error = 0;  // relative to the tolerance
+    double error = 0;  // in units of the tolerance
 };
 
 /// Dormand and Prince, J. Comp. Appl. Math. 6 (1980), RK5(4)7M.
@@ -82,7 +82,7 @@ Step advance(const SlipLaw& law, const Vector8& y, double h, const Vector8& unit
     return out;
 }
 
-/// Sizes against which errors are measured.
+/// Magnitudes relative to which errors are measured.
 Vector8 units_of(const SlipLaw& law, const ImpactState& state)
 {
     const double speed = length(state.u);
@@ -93,7 +93,7 @@ Vector8 units_of(const SlipLaw& law, const ImpactState& state)
 /// < 0 before the end of the phase.
 double before_end(bool compressing, double goal, const Vector8& y) { return compressing ? y[kNormal] : y[kWork] - goal; }
 
-/// The step length in (0, h] at which the phase ends (Illinois variant of false position).
+/// The state at the end of the phase within a step of length h (Illinois variant of false position).
 Vector8 find_end(const SlipLaw& law, const Vector8& y, double h, const Vector8& unit, bool compressing, double goal)
 {
     double lo = 0, hi = h;
@@ -153,7 +153,8 @@ std::pair<double, double> SlipLaw::leaving_direction() const
         }
         if (rates(std::cos(lo), std::sin(lo)).grow > 0) return {std::cos(lo), std::sin(lo)};
     }
-    // No such ray: friction holds after all. The direction of the force that wants to move it is the nearest to one.
+    // No such direction exists, so friction holds after all. The direction of the force that drives the slip is the nearest
+    // choice.
     const double size = std::hypot(K(0, 2), K(1, 2));
     return {K(0, 2) / size, K(1, 2) / size};
 }

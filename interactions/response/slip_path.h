@@ -1,4 +1,8 @@
-/// How the slip of a contact turns while its impulse grows.
+/// Integration of the slip during an impact: how its direction and speed change while the normal impulse grows.
+///
+/// If K couples the directions, friction turns the slip. Its direction then obeys a differential equation, and the impulse
+/// depends on the whole path of the slip velocity in the (t1, t2) plane: the slip path. With J_n as the independent variable,
+/// that equation is singular where the slip ends. The substitution dJ_n = |u_t| dtau removes the singularity.
 #pragma once
 
 #include <utility>
@@ -8,7 +12,7 @@
 namespace plab::response
 {
 
-/// What a collision has come to.
+/// The state of a collision.
 struct ImpactState
 {
     Vec3 u;           ///< m/s, in contact coordinates
@@ -16,11 +20,11 @@ struct ImpactState
     double work = 0;  ///< J, of the normal impulse in this phase
 };
 
-/// Rates per unit of normal impulse while slipping along (c, s).
+/// Rates per unit of normal impulse while slipping in the direction (c, s).
 struct SlipRates
 {
     double grow = 0;    ///< of the slip speed
-    double turn = 0;    ///< slip speed times rate of its direction
+    double turn = 0;    ///< slip speed times the rate of its direction
     double normal = 0;  ///< of u_n
 };
 
@@ -31,11 +35,11 @@ struct SlipLaw
     double friction = 0;
 
     SlipRates rates(double c, double s) const;
-    /// What counts as large for `turn`.
+    /// The magnitude against which `turn` is compared.
     double scale() const;
-    /// Force per unit of normal force that keeps the point from slipping.
+    /// The force per unit of normal force that keeps the point from slipping.
     Vec3 holding_force() const;
-    /// The direction in which slip starts from nothing where friction cannot hold: turn = 0 and grow > 0.
+    /// The direction in which slip starts from rest if friction cannot hold: turn = 0 and grow > 0.
     std::pair<double, double> leaving_direction() const;
 };
 
@@ -43,12 +47,13 @@ enum class SlipEnd
 {
     Phase,     ///< compression or restitution ended
     Stopped,   ///< slip ended
-    Straight,  ///< the direction has settled; the rest is linear
+    Straight,  ///< the direction has become constant; the rest is linear
 };
 
-/// Integrates a curved slip. With dJ_n = slip * dtau the equations are smooth up to the end of the slip, which they
-/// approach exponentially:   s' = turn(s) s_perp,  slip' = slip * grow(s),  u_n' = slip * normal(s).
-/// Dormand-Prince 5(4), tolerance 1e-13; phase ends are found on the last step by false position.
+/// Integrates a curved slip path. With dJ_n = slip * dtau the equations are smooth up to the end of the slip, which they
+/// approach exponentially:
+///   s' = turn(s) s_perp,  slip' = slip * grow(s),  u_n' = slip * normal(s).
+/// Dormand-Prince 5(4), tolerance 1e-13; the end of a phase is located within the last step by false position.
 SlipEnd follow_slip(const SlipLaw& law, bool compressing, double goal, ImpactState& state);
 
 }  // namespace plab::response

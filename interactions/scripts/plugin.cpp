@@ -9,7 +9,7 @@ PLAB_PLUGIN("scripts", registrar)
         .command<scripts::prepare>(Phase::Prepare, "Script/Prepare", "reads the code and runs it once")
         .command<scripts::drive>(Phase::Drive, "Script/Drive", "calls drive(step)")
         .command<scripts::force>(Phase::Force, "Script/Force", "calls force(t, state) and adds its forces")
-        .command<scripts::finish>(Phase::Finish, "Script/Finish", "books outputs and failures")
+        .command<scripts::finish>(Phase::Finish, "Script/Finish", "records outputs and failures")
         .cost("one call of Lua per step and per solver stage; about 0.3 microseconds plus 10 ns per instruction")
         .limits("trusted but fallible code: a sandbox against mistakes, not against attackers");
 }

@@ -15,16 +15,19 @@ void ScriptRows::describe(Schema& s)
         .at_most(1e10);
     s.param(memory_limit, "memory_limit", unit::one, "bytes that the script may hold").or_else(4 << 20).at_least(64 << 10).at_most(1 << 30);
     s.state(state, "state", unit::one, "named values that live across steps; read and written as state.name");
-    s.state(random_state, "random_state", unit::one, "state of math.random; 0 takes one from seed and component");
+    s.state(random_state, "random_state", unit::one, "state of math.random; 0: seeded from the scene's seed and the component");
     s.state(quarantined, "quarantined", unit::one, "the script failed and is not called; false calls it again");
     s.output(instructions_used, "instructions_used", unit::one, "most instructions that one call of the step took");
     s.output(memory_used, "memory_used", unit::one, "bytes that the script holds");
-    s.role(driver, "driver", {Facet::Body, Facet::Shaft, Facet::Quantities}, "is only read").optional();
-    s.role(driven, "driven", {Facet::Body, Facet::Shaft, Facet::Quantities}, "takes forces, or rates").optional().writes();
-    s.role(between, "between", {Facet::Body, Facet::Shaft, Facet::Quantities}, "take forces or rates, as between[i] in the order of ids")
+    s.role(driver, "driver", {Facet::Body, Facet::Shaft, Facet::Quantities}, "participant that is only read").optional();
+    s.role(driven, "driven", {Facet::Body, Facet::Shaft, Facet::Quantities}, "participant to which forces or rates can be added")
         .optional()
         .writes();
-    // The reference prints what a machine offers behind the tables of fields (scratch fields themselves are not listed).
+    s.role(between, "between", {Facet::Body, Facet::Shaft, Facet::Quantities},
+           "participants to which forces or rates can be added, as between[i] in the order of ids")
+        .optional()
+        .writes();
+    // The reference manual prints this text after the tables of fields (scratch fields themselves are not listed).
     s.scratch(machine, "machine", manual());
 }
 
@@ -40,7 +43,7 @@ Call make_call(EntryPoint entry, const StepContext& context, const ScriptRows& r
     return call;
 }
 
-/// The event of a failure, once, at the time at which it happened.
+/// Emits the event of a failure, once, with the time at which it happened.
 void report(const StepContext& context, Row row, Machine& machine)
 {
     const Failure& failure = *machine.failure();
@@ -59,17 +62,17 @@ void quarantine(const StepContext& context, Row row, ScriptRows& rows)
     rows.quarantined[row] = true;
 }
 
-/// Whether the host has gone back to before the failure: a rewound trial, a restored memento. Drive opens a step, so it
-/// comes before everything else of that step.
+/// Whether the host has gone back to before the failure: a rewound trial, or a restored memento. Drive opens a step, so it
+/// precedes everything else in that step.
 bool is_before(const StepContext& context, EntryPoint entry, const Failure& failure)
 {
     if (context.tick != failure.tick) return context.tick < failure.tick;
     return entry == EntryPoint::Drive || context.time < failure.time;
 }
 
-/// Whether the script can be called. A failure stands until it is booked as quarantine. Once the host has gone back to
-/// before it, or somebody has ended the quarantine, it never happened: the machine, which may hold what the failing
-/// call left, is built anew.
+/// Whether the script can be called. A failure remains until it is recorded as a quarantine. If the host has gone back to before
+/// it, or a client has ended the quarantine, the failure no longer counts: the machine, which may be in the state that the
+/// failing call left, is built again.
 bool is_ready(const StepContext& context, const ScriptRows& rows, Row row, EntryPoint entry)
 {
     Machine& machine = *rows.machine[row];
@@ -77,11 +80,11 @@ bool is_ready(const StepContext& context, const ScriptRows& rows, Row row, Entry
     if (!machine.failure()) return true;
     if (machine.failure()->booked || is_before(context, entry, *machine.failure()))
         return machine.load(rows.code[row], make_call(EntryPoint::Load, context, rows, row)).ok();
-    if (context.tick > machine.failure()->tick) report(context, row, machine);  // the scene leaves Script/Finish out
+    if (context.tick > machine.failure()->tick) report(context, row, machine);  // the scene's stages do not include Script/Finish
     return false;
 }
 
-/// Whether a participant that forces can be added to is advanced now.
+/// Whether some participant that can receive forces is being advanced.
 bool acts(const StepContext& context, const ScriptRows& rows, Row row)
 {
     const Ref driven = rows.driven[row];
@@ -124,7 +127,7 @@ void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodie
 {
     for (const Row row : which)
     {
-        assert(rows.machine[row] && "Script/Prepare comes first");
+        assert(rows.machine[row] && "Script/Prepare must run first");
         Machine& machine = *rows.machine[row];
         if (!is_ready(context, rows, row, EntryPoint::Drive)) continue;
         Call call = make_call(EntryPoint::Drive, context, rows, row);
@@ -140,7 +143,7 @@ void force(const StepContext& context, Rows which, const ScriptRows& rows, const
 {
     for (const Row row : which)
     {
-        assert(rows.machine[row] && "Script/Prepare comes first");
+        assert(rows.machine[row] && "Script/Prepare must run first");
         Machine& machine = *rows.machine[row];
         if (!acts(context, rows, row) || !is_ready(context, rows, row, EntryPoint::Force) || !machine.has_force()) continue;
         Call call = make_call(EntryPoint::Force, context, rows, row);
@@ -156,7 +159,7 @@ void finish(const StepContext& context, Rows which, ScriptRows& rows)
 {
     for (const Row row : which)
     {
-        assert(rows.machine[row] && "Script/Prepare comes first");
+        assert(rows.machine[row] && "Script/Prepare must run first");
         Machine& machine = *rows.machine[row];
         rows.instructions_used[row] = machine.take_instructions();
         rows.memory_used[row] = static_cast<std::int64_t>(machine.memory_used());

@@ -4,8 +4,8 @@
 ///   force(t, state)  at every solver stage: adds forces (N), torques (N m) and rates (of quantities) to driven and
 ///                    between; pure
 ///
-/// All that lives across calls is in the columns below. The machine is built from them by Prepare and holds nothing
-/// that would have to be saved (see README.md).
+/// Everything that survives a call is in the columns below. Prepare builds the Lua machine from them, and the machine holds
+/// nothing that would have to be saved (see README.md).
 #pragma once
 
 #include <memory>
@@ -29,10 +29,10 @@ struct ScriptRows
     Column<std::int64_t> memory_limit;        // bytes
 
     Column<Entries> state;
-    Column<std::int64_t> random_state;  // 0: not used yet
+    Column<std::int64_t> random_state;  // 0: not seeded yet
     Column<bool> quarantined;
 
-    Column<std::int64_t> instructions_used;  // most of one call in the step
+    Column<std::int64_t> instructions_used;  // most in one call of the step
     Column<std::int64_t> memory_used;        // bytes at the end of the step
 
     Column<Ref> driver, driven;
@@ -42,13 +42,13 @@ struct ScriptRows
     void describe(Schema& schema);
 };
 
-/// Builds the machine anew. On an error the old one stays.
+/// Builds the machine again. If that fails, the old one is kept.
 Result<void> prepare(const StepContext& context, Row row, ScriptRows& rows);
 void drive(const StepContext& context, Rows which, ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
            const Quantities& quantities);
 void force(const StepContext& context, Rows which, const ScriptRows& rows, const Bodies& bodies, const Shafts& shafts,
            const Quantities& quantities, Wrenches& wrenches);
-/// Books what force could not: outputs, and the quarantine of a script that failed in it.
+/// Records what force could not: outputs, and the quarantine of a script that failed in it.
 void finish(const StepContext& context, Rows which, ScriptRows& rows);
 
 }  // namespace plab::scripts

@@ -10,8 +10,8 @@
 namespace plab::blueprint
 {
 
-/// true and false are truth values, numbers are numbers, anything in quotes is a text, and so is any other word; what
-/// looks like a number and is none ("1,5", "3 cm", "inf") is refused rather than taken for a text.
+/// true and false are truth values, numbers are numbers, and anything in quotes or any other word is a text. What looks like a
+/// number but is not one ("1,5", "3 cm", "inf") is refused rather than taken for a text.
 Result<std::variant<bool, double, std::string>> parse_entry(std::string_view text);
 
 /// The text that parse_entry() reads as the same value; texts are always quoted.

@@ -1,4 +1,4 @@
-/// Foreign XML inside a component, such as XGL's <MESH>, is handed to whoever registered for that element.
+/// Foreign XML inside a component, such as XGL's <MESH>, is handed to the handler that is registered for that element.
 #pragma once
 
 #include <functional>
@@ -12,19 +12,19 @@
 namespace plab::blueprint
 {
 
-/// Turns a foreign element into values of the component that holds it. Places in errors and values need no file: the
+/// Converts a foreign element to values of the component that contains it. Places in errors and values need no file name: the
 /// reader adds it.
 struct ForeignHandler
 {
     std::string element;
-    std::string implied_type;  ///< of a component that states no type
+    std::string implied_type;  ///< type of a component that states none
     std::function<Result<std::vector<model::ValueNode>>(const XmlElement&)> read;
 };
 
 class ForeignHandlers
 {
 public:
-    /// A later handler of the same element takes its place.
+    /// A later handler of the same element replaces an earlier one.
     void add(ForeignHandler handler)
     {
         for (ForeignHandler& h : handlers_)

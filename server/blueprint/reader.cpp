@@ -17,7 +17,7 @@ struct FileCloser
     void operator()(std::FILE* f) const { std::fclose(f); }
 };
 
-/// The file's bytes; stops one past `most`, so that an endless file ends.
+/// The file's bytes; stops one byte after `most`, so that reading an endless file ends.
 Result<std::string> read_bytes(const std::string& path, std::size_t most)
 {
     const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));

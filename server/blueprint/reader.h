@@ -11,8 +11,8 @@
 namespace plab::blueprint
 {
 
-/// Reads a whole scene (<plab>) or a fragment for a request (<plab> or a single <component>). Errors are collected as
-/// long as the XML is well-formed; `file_name` is what their places name. Never throws, whatever `text` holds.
+/// Reads a whole scene (<plab>) or a fragment for a request (<plab> or a single <component>). Collects errors as long as the
+/// XML is well-formed; their places name `file_name`. Never throws, whatever `text` contains.
 Result<model::Blueprint> read_blueprint(std::string_view text, const std::string& file_name,
                                         const ForeignHandlers& handlers = xgl_handlers(), const XmlLimits& limits = {});
 

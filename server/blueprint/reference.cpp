@@ -16,7 +16,7 @@ constexpr std::string_view kTypeNames[] = {
     "",     "truth value",     "whole number",          "number",  "vector", "rotation", "symmetric matrix",
     "text", "list of numbers", "list of whole numbers", "entries", "opaque"};
 
-/// A cell of a table: one line, no bars.
+/// A table cell: one line, without vertical bars.
 std::string cell(std::string_view text)
 {
     std::string out;
@@ -69,7 +69,7 @@ std::string roles_of(const Schema& schema)
     {
         std::string meaning = r.doc;
         if (!r.default_type.empty()) meaning += "; by default a `" + r.default_type + "`";
-        if (r.exclusive) meaning += "; no second component may act on it so";
+        if (r.exclusive) meaning += "; no other component may act on it in this role";
         rows += row({"`" + r.name + "`", takers_of(r), arity_of(r), r.writes ? "acts on it" : "reads it", meaning});
     }
     if (rows.empty()) return {};
@@ -93,7 +93,7 @@ std::string facts_of(const TypeInfo& info)
         if (!value.empty()) out += "- " + std::string(name) + ": " + value + "\n";
     };
     fact("exchangeable within", "`" + info.family + "`");
-    // A resolution's is not that of the motion: how its trials come nearer to the time of impact.
+    // For a resolution, the order of convergence is not that of the motion: it is how its trials approach the time of impact.
     const bool searches = info.name.starts_with("Resolution/");
     fact(searches ? "order of its search for the time of impact" : "order of convergence",
          info.order > 0 ? std::to_string(info.order) : "");
@@ -106,8 +106,7 @@ std::string facts_of(const TypeInfo& info)
     return out;
 }
 
-/// What a type's opaque part offers, where its declaration says so in a section of its own: an interface that is no field, role or
-/// command.
+/// The interface of a type's opaque part (no field, role or command), if the declaration describes it in a section of its own.
 std::string manual_of(const Schema& schema)
 {
     std::string out;
@@ -116,7 +115,7 @@ std::string manual_of(const Schema& schema)
     return out;
 }
 
-/// What the types whose names begin so cost beside one another; `names`: those that there are.
+/// Compares the costs of the types whose names begin with these prefixes; `names`: the existing types.
 std::string ladders_of(std::string_view prefix, const std::vector<std::string>& names)
 {
     std::string rows;
@@ -127,8 +126,9 @@ std::string ladders_of(std::string_view prefix, const std::vector<std::string>& 
         if (ladder.algorithms.size() > 1) rows += row({"`" + std::string(ladder.family) + "`", std::string(ladder.scene), ladder.text()});
     }
     if (rows.empty()) return {};
-    return "Measured: microseconds a step of 1/240 s, one thread, the cheapest first; `~`: within a tenth of the one before. What is "
-           "missing is refused there.\n\n| of | scene | types by cost |\n|---|---|---|\n" +
+    return "Measured: microseconds per step of 1/240 s, one thread, cheapest first; `~`: within a tenth of the previous one. A type that "
+           "is "
+           "missing cannot be used there.\n\n| of | scene | types by cost |\n|---|---|---|\n" +
            rows;
 }
 

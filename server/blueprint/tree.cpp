@@ -16,7 +16,7 @@ using model::ComponentNode;
 using model::RepeatNode;
 using model::TextNode;
 
-/// The words of the language and where each may stand; "" is the root.
+/// The elements of the language and where each is allowed; "" is the root.
 struct Word
 {
     std::string_view name;
@@ -47,13 +47,13 @@ void TreeReader::misplaced(const XmlElement& e, const std::string& parent)
     {
         if (w.name != e.name) continue;
         const std::string right = w.parents.empty() ? "it is the root element" : "it belongs in " + std::string(w.parents);
-        return complaints_.add(e.where, in_tags(e.name), "cannot stand in " + parent + "; " + right);
+        return complaints_.add(e.where, in_tags(e.name), "is not allowed in " + parent + "; " + right);
     }
     std::vector<std::string> known;
     for (const Word& w : kWords) known.emplace_back(w.name);
     for (const ForeignHandler& h : handlers_.all()) known.push_back(h.element);
     if (handlers_.find(e.name))
-        return complaints_.add(e.where, in_tags(e.name), "cannot stand in " + parent + "; it belongs in <component>");
+        return complaints_.add(e.where, in_tags(e.name), "is not allowed in " + parent + "; it belongs in <component>");
     complaints_.add(e.where, in_tags(e.name), "unknown element" + model::did_you_mean(e.name, known));
 }
 
@@ -74,7 +74,7 @@ void TreeReader::refuse_text(const XmlElement& e)
 {
     if (e.text_where.line == 0) return;
     const std::string_view text = model::trimmed(e.text);
-    complaints_.add(e.text_where, in_tags(e.name), "stray text " + model::quoted(text.substr(0, text.find('\n'))));
+    complaints_.add(e.text_where, in_tags(e.name), "unexpected text " + model::quoted(text.substr(0, text.find('\n'))));
 }
 
 void TreeReader::refuse_children(const XmlElement& e)
@@ -130,7 +130,7 @@ bool TreeReader::begin(const XmlElement& root)
     check_attributes(root, {"version"});
     const std::string version = required_name(root, "version");
     if (!version.empty() && version != "1")
-        complaints_.add(root.where, "<plab>", "version " + model::quoted(version) + " is unknown; this pLab reads version '1'");
+        complaints_.add(root.where, "<plab>", "version " + model::quoted(version) + " is not known; this pLab reads version '1'");
     return true;
 }
 
@@ -159,7 +159,7 @@ void TreeReader::end(XmlElement root)
 void TreeReader::scene(const XmlElement& e)
 {
     if (scene_at_.line > 0)
-        return complaints_.add(e.where, "<scene>", "a second <scene>; the first is in line " + std::to_string(scene_at_.line));
+        return complaints_.add(e.where, "<scene>", "a second <scene>; the first is on line " + std::to_string(scene_at_.line));
     scene_at_ = e.where;
     for (const XmlAttribute& a : e.attributes) blueprint_.settings.push_back({a.name, a.value, {}, {}, {}, at(e.where)});
     refuse_text(e);
@@ -320,7 +320,7 @@ CommandNode TreeReader::command(const XmlElement& e)
         }
         else if (c.name == "cmdparam" && !out.children.empty() && !out.children.back().reference.empty())
             complaints_.add(c.where, "<cmdparam>", "cannot follow a <cmdref>; it belongs where the command is defined");
-        else if (c.name == "cmdparam")  // figure 6: right after a command it is that command's
+        else if (c.name == "cmdparam")  // figure 6 of the paper: right after a command, it belongs to that command
             (out.children.empty() ? out : out.children.back()).parameters.push_back(command_parameter(c));
         else
             misplaced(c, "<command>");

@@ -10,7 +10,7 @@
 namespace plab::blueprint
 {
 
-/// Errors in order of discovery, up to a number; the rest are only counted.
+/// Errors in order of discovery, up to a maximum number; the rest are only counted.
 class Complaints
 {
 public:
@@ -28,10 +28,10 @@ public:
         else
             ++omitted_;
     }
-    /// Whether further errors are only counted, so that their words need not be found.
+    /// Whether further errors are only counted, so that their text need not be built.
     bool full() const { return errors_.size() >= kMost; }
     bool any() const { return !errors_.empty(); }
-    /// All errors; a last one tells how many are not shown.
+    /// All errors; the last one states how many are not shown.
     Errors take()
     {
         if (omitted_ > 0) errors_.push_back({{file_, 0, 0}, {}, std::to_string(omitted_) + " more errors are not shown"});

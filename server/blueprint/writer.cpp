@@ -26,11 +26,11 @@ struct StageEntry
     std::string command;
 };
 
-/// What a simulation command says: every component of a subtree that has commands, and which of them take part.
+/// The content of a simulation command: every component of a subtree that has commands, and which of them take part.
 struct Simulation
 {
     std::vector<StageEntry> entries;
-    bool any_type = false;  ///< a typed component is there, so the command must be written even if it is empty
+    bool any_type = false;  ///< there is a typed component, so the command must be written even if it is empty
 };
 
 std::string attribute(std::string_view name, std::string_view value)
@@ -38,7 +38,7 @@ std::string attribute(std::string_view name, std::string_view value)
     return " " + std::string(name) + "=\"" + escape_attribute(value) + "\"";
 }
 
-/// Ids that can stand in a blank-separated list.
+/// Ids that are possible in a list separated by blanks.
 bool fits_in_list(const std::string& id) { return id != "*" && id.find_first_of(" \t\r\n") == id.npos; }
 
 template <class T>
@@ -125,7 +125,7 @@ private:
         return ids;
     }
 
-    /// Whether a blank-separated list names these members: no id with blanks among them, and none that reads like the
+    /// Whether a list separated by blanks can name these members: no id may contain blanks, and none may read like the whole
     /// list.
     bool is_list(const RoleSpec& r) const
     {
@@ -166,7 +166,7 @@ private:
             out_ += open + escape_text(model::format_value(f.value)) + "</param>\n";
             return;
         }
-        const bool is_state = f.name == "state" && !entries->empty();  // an empty record needs a <param> to be given
+        const bool is_state = f.name == "state" && !entries->empty();  // an empty record needs a <param>, so that it counts as given
         const std::string tag = is_state ? "state" : "entry";
         if (entries->empty()) return void(out_ += open + "</param>\n");
         if (!is_state) out_ += open + "\n";
@@ -194,8 +194,8 @@ private:
         return type ? *type : nullptr;
     }
 
-    /// Measure always runs. Prepare and Connect do, too, as parts of building a component: they are listed only where
-    /// the author did.
+    /// Measure always runs. Prepare and Connect also run as parts of building a component: they are listed only if the author
+    /// listed them.
     static bool takes_part(const ComponentSpec& c, const CommandInfo& command)
     {
         const bool listed = std::find(c.commands.begin(), c.commands.end(), command.name) != c.commands.end();
@@ -203,7 +203,7 @@ private:
         return !c.explicit_commands || listed || command.phase == Phase::Measure;
     }
 
-    /// As the paper names it, unless that is longer than a name may be.
+    /// The name that the paper uses, unless it is longer than a name may be.
     static std::string simulation_name(const ComponentSpec& c)
     {
         const std::string word = "Simulation";
@@ -215,7 +215,7 @@ private:
         Simulation sim;
         collect(c, sim);
         if (!sim.any_type) return;
-        // Within a stage, the order of the step; a list that contradicts it would be refused.
+        // Within a stage, commands are in the order of the step; a list that contradicts this order would be refused.
         std::stable_sort(sim.entries.begin(), sim.entries.end(),
                          [](const StageEntry& a, const StageEntry& b) { return a.phase < b.phase; });
         out_ += indent(depth) + "<command" + attribute("name", simulation_name(c)) + ">\n";

@@ -13,7 +13,7 @@ namespace plab::blueprint
 namespace
 {
 
-/// Elements of a mesh that carry looks only.
+/// Elements of a mesh that only affect its appearance.
 constexpr std::string_view kLooks[] = {"N", "TC", "MAT", "SURFACE", "L", "LINE", "TEXTURE", "TEXTURERGB", "TEXTURERGBA", "NAME", "DATA"};
 
 bool is_look(const XmlElement& e)
@@ -24,7 +24,7 @@ bool is_look(const XmlElement& e)
     return false;
 }
 
-/// "x, y, z" into `out`; false if it is anything else or not finite.
+/// Parses "x, y, z" into `out`; false if it has another form or is not finite.
 bool parse_point(std::string_view text, Reals& out)
 {
     for (int i = 0; i < 3; ++i)
@@ -50,7 +50,7 @@ public:
         for (const XmlElement& e : mesh.children)
             if (e.name == "P") point(e);
         for (const XmlElement& e : mesh.children) part(e, "<MESH>");
-        if (mesh.text_where.line > 0) complain(mesh.text_where, "<MESH>", "stray text");
+        if (mesh.text_where.line > 0) complain(mesh.text_where, "<MESH>", "unexpected text");
         if (faces_ == 0) complain(mesh.where, "<MESH>", "a mesh needs at least one face <F>");
         if (!errors_.empty()) return std::move(errors_);
         const SourceLocation where{{}, mesh.where.line, mesh.where.column};
@@ -80,7 +80,7 @@ private:
     {
         const std::string* id = e.find_attribute("ID");
         if (!id) return complain(e.where, "<" + e.name + ">", "needs an attribute 'ID'");
-        if (!ids_.emplace(e.name, *id).second) complain(e.where, "<" + e.name + ">", "ID " + model::quoted(*id) + " is there already");
+        if (!ids_.emplace(e.name, *id).second) complain(e.where, "<" + e.name + ">", "ID " + model::quoted(*id) + " is already defined");
     }
 
     void point(const XmlElement& e)
@@ -88,9 +88,8 @@ private:
         Reals xyz;
         if (!parse_point(e.text, xyz) || !e.children.empty())
         {
-            complain(e.where, "<P>",
-                     model::quoted(model::trimmed(e.text)) + " is no point; three numbers with commas between them are needed");
-            xyz.assign(3, 0.0);  // keeps its ID known, so that its faces are not blamed too
+            complain(e.where, "<P>", model::quoted(model::trimmed(e.text)) + " is not a point: give three numbers separated by commas");
+            xyz.assign(3, 0.0);  // keeps its ID known, so that its faces do not cause errors too
         }
         if (const std::string* id = e.find_attribute("ID")) index_of_.emplace(*id, static_cast<std::int64_t>(vertices_.size() / 3));
         vertices_.insert(vertices_.end(), xyz.begin(), xyz.end());
@@ -106,7 +105,7 @@ private:
             if (i >= 0 && i < 3 && !corners[i])
                 corners[i] = &c;
             else if (i >= 0 && i < 3)
-                complain(c.where, "<" + c.name + ">", "the face has this corner already");
+                complain(c.where, "<" + c.name + ">", "the face already has this corner");
             else if (i >= 3 && i < 9)
                 complain(c.where, "<" + c.name + ">", "a face has three corners, <FV1> to <FV3>; split it into triangles");
             else if (c.name != "MATREF" && c.name != "TEXTUREREF" && !is_look(c))
@@ -124,7 +123,7 @@ private:
         triangles_.insert(triangles_.end(), index, index + 3);
     }
 
-    /// The index of a corner's point; -1 after a complaint.
+    /// The index of a corner's point; -1 after an error was reported.
     std::int64_t corner(const XmlElement& e)
     {
         const XmlElement* found = nullptr;

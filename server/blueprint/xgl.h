@@ -13,11 +13,11 @@ Result<std::vector<model::ValueNode>> read_xgl_mesh(const XmlElement& mesh);
 /// The handler of <MESH>; a component that holds one and states no type is a Shape/Mesh.
 ForeignHandlers xgl_handlers();
 
-/// The <MESH> element that read_xgl_mesh() reads back as the same numbers, indented by `indent` blanks.
+/// The <MESH> element that read_xgl_mesh() reads back as the same numbers, indented by `indent` spaces.
 std::string write_xgl_mesh(const Reals& vertices, const Integers& triangles, std::size_t indent);
 
-/// Whether the lists can be written as a mesh: whole points, whole triangles, every index a point, no triangle that
-/// names a point twice.
+/// Whether the lists can be written as a mesh: complete points and triangles, every index is valid, and no triangle uses a
+/// point twice.
 bool is_xgl_mesh(const Reals& vertices, const Integers& triangles);
 
 }  // namespace plab::blueprint

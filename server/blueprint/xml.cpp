@@ -36,7 +36,7 @@ Place place_of(std::string_view text, std::size_t offset)
     return at;
 }
 
-/// Bytes of the UTF-8 sequence at the front of `s`; 0 if there is none (RFC 3629, table 3-7 of the Unicode standard).
+/// Length in bytes of the UTF-8 sequence at the start of `s`; 0 if it is invalid (RFC 3629, table 3-7 of the Unicode standard).
 std::size_t utf8_length(std::string_view s)
 {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < s.size() ? s[i] : '\0'); };
@@ -57,7 +57,7 @@ std::size_t utf8_length(std::string_view s)
     return 0;
 }
 
-/// The first byte that cannot stand in a UTF-8 XML document. Found before parsing, because the parser would take a
+/// The first byte that is not allowed in a UTF-8 XML document. Found before parsing, because the parser would take a
 /// document with NULs or a UTF-16 mark for another encoding.
 std::optional<Error> check_encoding(std::string_view text)
 {
@@ -68,7 +68,7 @@ std::optional<Error> check_encoding(std::string_view text)
     {
         const std::size_t n = utf8_length(text.substr(i));
         if (n == 0) return error_at(at, {}, "the text is not valid UTF-8");
-        if (text[i] == '\0') return error_at(at, {}, "a NUL character cannot stand in XML");
+        if (text[i] == '\0') return error_at(at, {}, "a NUL character is not allowed in XML");
         ++at.column;
         if (text[i] == '\n') ++at.line, at.column = 1;
         i += n;
@@ -130,14 +130,14 @@ private:
         switch (code)
         {
             case XML_ERROR_NO_ELEMENTS:
-                if (open_.empty()) return "the document has no element";
+                if (open_.empty()) return "the document has no elements";
                 return in_tags(open_.back().name) + open + " is never closed";
             case XML_ERROR_TAG_MISMATCH:
                 return "a closing tag that does not match the open " + in_tags(open_.back().name) + open;
             case XML_ERROR_UNDEFINED_ENTITY:
                 return "unknown entity; only &lt; &gt; &amp; &quot; &apos; and character numbers are known";
             case XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
-                return "something stands after the root element";
+                return "there is content after the root element";
             default:
                 return XML_ErrorString(code);
         }
@@ -146,17 +146,17 @@ private:
     void instruction(std::string_view target)
     {
         if (stopped_) return;
-        errors_.push_back(error_at(place(), "<?" + std::string(target.substr(0, 40)) + "?>", "processing instructions are refused"));
+        errors_.push_back(error_at(place(), "<?" + std::string(target.substr(0, 40)) + "?>", "processing instructions are not supported"));
         if (++instructions_ >= kMostInstructions) stop({}, "too many processing instructions");
     }
 
     void doctype()
     {
-        // The parser calls when it has read the name already; the place is where the declaration begins.
+        // The parser calls this after it has read the name; the reported place is where the declaration begins.
         const auto read = static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_.get()));
         const std::size_t begin = text_.rfind("<!DOCTYPE", read);
         stop_at(begin == text_.npos ? place() : place_of(text_, begin), "DOCTYPE",
-                "a document type (DTD) is refused: a blueprint has no entities");
+                "a document type (DTD) is not supported: a blueprint has no entities");
     }
 
     void declaration(const XML_Char* encoding)
@@ -167,7 +167,7 @@ private:
         constexpr std::string_view wanted = "utf-8";
         bool same = e.size() == wanted.size();
         for (std::size_t i = 0; same && i < e.size(); ++i) same = lower(e[i]) == wanted[i];
-        if (!same) stop("<?xml?>", "encoding " + model::quoted(e) + " is refused; a blueprint must be UTF-8");
+        if (!same) stop("<?xml?>", "encoding " + model::quoted(e) + " is not supported; a blueprint must be UTF-8");
     }
 
     bool within_limits(std::string_view name, const XML_Char** attributes)
@@ -214,7 +214,7 @@ private:
         while (first < s.size() && model::is_blank(s[first])) ++first;
         if (first < s.size() && e.text_where.line == 0)
         {
-            // A run of character data never goes on past a line end, so blanks before the text are on its line.
+            // A run of character data never extends past a line end, so spaces before the text are on its line.
             e.text_where = place();
             e.text_where.column += static_cast<std::uint32_t>(first);
         }

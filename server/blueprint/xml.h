@@ -1,7 +1,6 @@
-/// XML as the blueprint reader sees it: plain elements with their places, and nothing that XML can do beyond that.
-///
-/// No DTD, no entities, no processing instructions, UTF-8 only, and a limit on every size. xml.cpp is the only file
-/// that knows the parser (expat).
+/// XML as the blueprint reader sees it: plain elements with their places, and no further XML features.
+/// No DTD, no entities, no processing instructions, UTF-8 only, and a limit on every size. xml.cpp is the only file that uses
+/// the parser (expat).
 #pragma once
 
 #include <cstdint>
@@ -14,10 +13,10 @@
 namespace plab::blueprint
 {
 
-/// Characters (bytes) of an element's, attribute's or component's name.
+/// Longest name of an element, attribute or component, in bytes.
 inline constexpr std::size_t kLongestName = 200;
 
-/// Line and column from 1, columns in characters; line 0: nowhere.
+/// Line and column start at 1, columns count characters; line 0: no place.
 struct Place
 {
     std::uint32_t line = 0;
@@ -34,10 +33,10 @@ struct XmlElement
 {
     std::string name;
     std::vector<XmlAttribute> attributes;
-    std::string text;  ///< all character data directly inside, as written
+    std::string text;  ///< all character data directly inside, unchanged
     std::vector<XmlElement> children;
     Place where;
-    Place text_where;  ///< the first character that is not blank
+    Place text_where;  ///< place of the first non-blank character
 
     const std::string* find_attribute(std::string_view wanted) const
     {
@@ -47,7 +46,7 @@ struct XmlElement
     }
 };
 
-/// What a document may need at most. Going past one ends the reading with an error that names it.
+/// Limits of a document. Exceeding one ends the reading with an error that names it.
 struct XmlLimits
 {
     std::size_t bytes = std::size_t{64} << 20;
@@ -58,21 +57,21 @@ struct XmlLimits
     std::size_t text = std::size_t{16} << 20;  ///< bytes of one element's text or of one attribute's value
 };
 
-/// Receives a document piece by piece, so that no more than one element of the top level is held as a tree.
+/// Receives a document piece by piece, so that at most one top-level element is held as a tree.
 class XmlSink
 {
 public:
     virtual ~XmlSink() = default;
-    /// The root element: name, attributes and place only. False if its children should be kept in it instead.
+    /// The root element: name, attributes and place only. Return false to keep its children in it.
     virtual bool begin(const XmlElement& root) = 0;
     /// A child of the root, complete, in document order.
     virtual void child(XmlElement element) = 0;
-    /// The root again, at its end: with its text, and with its children if begin() said false.
+    /// The root again, at its end: with its text, and with its children if begin() returned false.
     virtual void end(XmlElement root) = 0;
 };
 
-/// Feeds `sink`. Errors of form that do not hide what follows are added to `errors`; the result is false when reading
-/// had to stop early, after the last of `errors`.
+/// Passes the document to `sink`. Errors that do not prevent further reading are added to `errors`; the result is false if
+/// reading had to stop early, after the last of `errors`.
 bool parse_xml(std::string_view text, const XmlLimits& limits, XmlSink& sink, Errors& errors);
 
 /// <name> for a message.

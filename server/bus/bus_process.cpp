@@ -22,7 +22,7 @@ namespace plab::bus
 namespace
 {
 
-constexpr std::chrono::milliseconds kLook(100);  ///< whether it was stopped is seen so often while somebody waits for its end
+constexpr std::chrono::milliseconds kLook(100);  ///< interval of checks for a stopped process while a caller waits for its end
 
 /// A descriptor that closes itself.
 class Descriptor
@@ -42,7 +42,7 @@ private:
     int fd_;
 };
 
-/// A copy above those that the process inherits, so that none is overwritten before it is passed on.
+/// A copy with a number above those that the process inherits, so that none is overwritten before it is passed on.
 int copy_above(int fd) { return fcntl(fd, F_DUPFD_CLOEXEC, kInheritedEnd); }
 
 /// Starts the program with these descriptors as kInheritedMemory and so on; the process id, or a negative error number.
@@ -61,7 +61,7 @@ pid_t spawn(const std::string& program, const std::array<int, kInheritedEnd - kI
     (void)sigemptyset(&none), (void)sigfillset(&all);
     (void)posix_spawnattr_setsigmask(&attributes, &none);
     (void)posix_spawnattr_setsigdefault(&attributes, &all);
-    // Not as the thread that starts it: what DDS receives is to be looked at at once.
+    // Does not inherit the scheduling class of the thread that starts it: data that DDS receives must be handled at once.
     const sched_param priority{};
     (void)posix_spawnattr_setschedpolicy(&attributes, SCHED_OTHER);
     (void)posix_spawnattr_setschedparam(&attributes, &priority);
@@ -143,7 +143,7 @@ bool BusProcess::wait(std::chrono::milliseconds longest)
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
         if (left.count() <= 0 || is_stopped_) return false;
         pollfd watched{lifeline_, POLLIN, 0};
-        // Its end of the line closes a moment before it can be waited for.
+        // The socket closes a moment before the process can be waited for.
         if (poll(&watched, 1, static_cast<int>(std::min(left, kLook).count())) > 0) (void)usleep(500);
     }
     return true;

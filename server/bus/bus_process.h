@@ -1,4 +1,4 @@
-/// plab-bus as plabd sees it: a process that it starts, speaks with, and does not trust.
+/// plab-bus as plabd sees it: a process that plabd starts, communicates with, and does not trust.
 #pragma once
 
 #include <sys/types.h>
@@ -17,12 +17,12 @@ namespace plab::bus
 class BusProcess
 {
 public:
-    static constexpr std::uint64_t kMostUp = (6u << 20);  ///< bytes of a message from plab-bus
+    static constexpr std::uint64_t kMostUp = (6u << 20);  ///< largest message from plab-bus, in bytes
 
-    /// Starts `program`; it rings `bell` when it has something to say. On the thread that lives for as long as the bus: the
-    /// process ends with it.
+    /// Starts `program`; it rings `bell` when it has sent something. Call this on the thread that lives as long as the bus: the
+    /// process ends with that thread.
     static Result<std::unique_ptr<BusProcess>> start(const std::string& program, const Bell& bell, const StartMessage& start);
-    /// Ends it if it has not ended, and waits for that.
+    /// Ends the process if it is still running, and waits for its end.
     ~BusProcess();
     BusProcess(const BusProcess&) = delete;
     BusProcess& operator=(const BusProcess&) = delete;
@@ -31,13 +31,14 @@ public:
     MessageReader& reader() { return reader_; }
     void ring() const { bell_.ring(); }
     pid_t pid() const { return pid_; }
-    /// Readable, with nothing to read, when the process has ended.
+    /// A descriptor that becomes readable, with nothing to read, when the process has ended.
     int lifeline() const { return lifeline_; }
-    /// How it ended, in words ("was ended by signal 6 (Aborted)"); empty: it has not.
+    /// How it ended, in words ("was ended by signal 6 (Aborted)"); empty while it runs.
     std::string ended();
-    /// It was stopped (SIGSTOP, a debugger's quarrel) and does nothing until somebody lets it go on. As of the last ended().
+    /// Whether it is stopped (SIGSTOP, a debugger), so that it does nothing until it is continued. As of the last call of
+    /// ended().
     bool stopped() const { return is_stopped_; }
-    /// Waits for its end; false if it has not come in time, or cannot come.
+    /// Waits for the end of the process; false if it did not end in time, or cannot end.
     bool wait(std::chrono::milliseconds longest);
 
 private:
@@ -53,7 +54,7 @@ private:
     int status_ = 0;
 };
 
-/// plab-bus beside this program; PLAB_BUS_PROGRAM, where it is set, names another one.
+/// The plab-bus program beside this program; PLAB_BUS_PROGRAM, if set, names another one.
 std::string bus_program();
 
 }  // namespace plab::bus

@@ -11,10 +11,10 @@ void CatalogueMirror::apply(const publish::CatalogueChange& change)
     if (change.everything) objects_.clear(), shapes_.clear(), interactions_.clear();
     const auto erase = [this](const std::string& id) { objects_.erase(id), shapes_.erase(id), interactions_.erase(id); };
     for (const std::string& id : change.gone) erase(id);
-    // An id belongs to one component: one that comes back as another kind leaves its old shelf.
-    const auto put = [&](auto& entries, const auto& entries)
+    // An id belongs to one component: if it comes back as another kind, remove the entry of the former kind.
+    const auto put = [&](auto& known, const auto& entries)
     {
-        for (const auto& entry : entries) erase(entry.component), entries.insert_or_assign(entry.component, entry);
+        for (const auto& entry : entries) erase(entry.component), known.insert_or_assign(entry.component, entry);
     };
     put(shapes_, change.shapes), put(objects_, change.objects), put(interactions_, change.interactions);
     if (change.everything && !change.types.empty())

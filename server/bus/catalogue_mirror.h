@@ -1,4 +1,4 @@
-/// What the scene consists of, kept for a plab-bus that is started again: nobody has to ask the step thread.
+/// What the scene consists of, kept so that a restarted plab-bus can get it without asking the step thread.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ class CatalogueMirror
 public:
     void apply(const publish::CatalogueChange& change);
     bool empty() const { return !is_there_; }
-    /// All of it.
+    /// The whole catalogue.
     publish::CatalogueChange everything() const;
 
 private:

@@ -1,4 +1,4 @@
-/// One stream of records on its way out: a ring that the step thread fills, emptied by the thread that speaks with plab-bus.
+/// One outgoing stream of records: a ring that the step thread fills, and the thread that communicates with plab-bus empties.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@ enum class Sent : std::uint8_t
     Nothing,  ///< nothing was left to send
     More,     ///< there may be more
     Full,     ///< the pipe is full
-    Broken,   ///< the other end's counter cannot be true
+    Broken,   ///< the other end's counter is invalid
 };
 
 template <class Record>
@@ -31,7 +31,7 @@ public:
     void end_push() { ring_.end_push(); }
 
     // Bus thread -------------------------------------------------------------------------------------------------------
-    /// What plab-bus says of readers. True if one has come.
+    /// Takes over what plab-bus reports about readers. True if a new reader has joined.
     bool receive(const WantsMessage& wants, bool may_forget)
     {
         const auto i = static_cast<std::size_t>(stream_);
@@ -41,10 +41,10 @@ public:
         if (came) joins_.fetch_add(1, std::memory_order_relaxed);
         return came;
     }
-    /// A new plab-bus, which knows of no readers yet: what was wanted stays so until forget().
+    /// A new plab-bus has started and knows of no readers yet: streams that were wanted stay wanted until forget().
     void begin_anew() { is_read_ = false, seen_ = 0; }
     void forget() { wanted_.store(is_read_, std::memory_order_relaxed); }
-    /// Sends at most `most` records. Those that nobody reads yet are kept while plab-bus is new.
+    /// Sends at most `most` records. Records without a reader are kept while plab-bus is new.
     Sent send(std::size_t most, MessageWriter& to, bool is_new)
     {
         if (is_new && !is_read_) return Sent::Nothing;
@@ -55,7 +55,7 @@ public:
             if (record == nullptr) return Sent::Nothing;
             const auto kind = static_cast<std::uint32_t>(Down::Stream) + static_cast<std::uint32_t>(stream_);
             const bool fine = to.send(kind, *record);
-            // A frame's vectors are filled again in place; what a burst of events took is given back.
+            // A frame's vectors are refilled in place; the memory of a burst of events is released.
             if constexpr (!std::is_same_v<Record, publish::Frame>) *record = Record{};
             ring_.end_pop();
             if (!fine) return Sent::Broken;
@@ -69,8 +69,8 @@ private:
     publish::Ring<Record> ring_;
     std::atomic<bool> wanted_{false};
     std::atomic<std::uint64_t> joins_{0};
-    bool is_read_ = false;    ///< says the present plab-bus
-    std::uint64_t seen_ = 0;  ///< readers that it has seen, ever
+    bool is_read_ = false;    ///< as reported by the current plab-bus
+    std::uint64_t seen_ = 0;  ///< total number of readers that it has seen
 };
 
 }  // namespace plab::bus

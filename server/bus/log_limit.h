@@ -1,4 +1,4 @@
-/// Lines that another process asks for: so many a second, the rest are counted.
+/// Limits log lines that another process causes: a number per second, the rest are only counted.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@ public:
     using Clock = std::chrono::steady_clock;
     static constexpr int kMost = 10;
 
-    /// Whether one more may be said now.
+    /// Whether one more line may be logged now.
     bool may(Clock::time_point now)
     {
         if (now - begin_ >= std::chrono::seconds(1)) begin_ = now, said_ = 0;
@@ -22,7 +22,7 @@ public:
         ++left_out_;
         return false;
     }
-    /// Asked once.
+    /// The number of suppressed lines since the last call.
     std::uint64_t left_out() { return std::exchange(left_out_, 0); }
 
 private:

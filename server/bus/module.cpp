@@ -1,4 +1,4 @@
-/// What bus.so exports: the end of the bus that is in plabd.
+/// What bus.so exports: plabd's end of the bus.
 #include <exception>
 
 #include "bus/server_bus.h"
@@ -6,7 +6,7 @@
 extern "C" __attribute__((visibility("default"))) std::unique_ptr<plab::bus::Bus> plab_bus_open(const plab::bus::BusOptions& options,
                                                                                                 plab::Error& error)
 {
-    // Nothing is thrown across the module's border.
+    // No exception may cross the module's boundary.
     try
     {
         auto bus = plab::bus::ServerBus::open(options);

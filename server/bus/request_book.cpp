@@ -8,7 +8,7 @@ namespace plab::bus
 namespace
 {
 
-/// About what an answer keeps of memory.
+/// Approximate memory that a stored answer needs.
 std::size_t bytes_of(const publish::Answer& answer)
 {
     std::size_t bytes = sizeof answer;
@@ -31,7 +31,7 @@ publish::Answer refusal(const publish::ClientId& client, std::uint64_t number, E
 
 std::size_t without(std::size_t all, std::size_t kept) { return all > kept ? all - kept : 0; }
 
-Error full(const std::string& what) { return reason(what + " waiting already: send it again, with a new number, when some are done"); }
+Error full(const std::string& what) { return reason(what + " already waiting: send it again, with a new number, when some are done"); }
 
 }  // namespace
 
@@ -56,9 +56,9 @@ std::optional<RequestBook::Decision> RequestBook::known(const Client& client, st
     if (kept != client.answers.end()) return Decision{Verdict::Answered, *kept};
     std::string why = "request " + std::to_string(number) + " came after request " + std::to_string(client.highest);
     if (number <= client.forgotten)
-        why += ", and its answer is not kept any more: it is not carried out again, nor said whether it was";
+        why += ", and its reply is no longer kept: it is not carried out again, and it is not known here whether it was";
     else
-        why += ": numbers must rise";
+        why += ": numbers must increase";
     return Decision{Verdict::Refused, refusal(client.id, number, reason(std::move(why)))};
 }
 
@@ -67,13 +67,14 @@ std::optional<Error> RequestBook::no_room(const Client& client, const Load& load
     if (load.shutdown)
     {
         if (shutdowns_.requests < limits_.shutdowns) return std::nullopt;
-        return reason(std::to_string(shutdowns_.requests) + " requests to shut down are waiting already: one is enough");
+        return reason(std::to_string(shutdowns_.requests) + " requests to shut down are already waiting: one is enough");
     }
     if (client.counted >= limits_.waiting_per_client)
-        return full(std::to_string(client.counted) + " requests of this client, the most of one, are");
-    if (all_.requests >= limits_.waiting) return full(std::to_string(all_.requests) + " requests, the most of all clients together, are");
+        return full(std::to_string(client.counted) + " requests of this client, the maximum for one client, are");
+    if (all_.requests >= limits_.waiting)
+        return full(std::to_string(all_.requests) + " requests, the maximum for all clients together, are");
     if (load.names_step && with_step_.requests >= without(limits_.waiting, limits_.kept_for_next_step))
-        return full(std::to_string(with_step_.requests) + " requests that name a step, the most of these, are");
+        return full(std::to_string(with_step_.requests) + " requests that name a step, the maximum of these, are");
     return no_bytes(load);
 }
 
@@ -83,7 +84,7 @@ std::optional<Error> RequestBook::no_bytes(const Load& load) const
     const auto words = [&](const Count& count, const char* of, std::size_t most)
     {
         return reason("the request has " + std::to_string(load.bytes) + " bytes, and " + std::to_string(count.bytes) + " bytes of " + of +
-                      " are waiting already, of at most " + std::to_string(most) +
+                      " are already waiting, of at most " + std::to_string(most) +
                       ": send it again, with a new number, when some are done");
     };
     if (too_much(all_, limits_.waiting_bytes)) return words(all_, "requests", limits_.waiting_bytes);
@@ -113,7 +114,7 @@ void RequestBook::discount(Client& client, const Load& load)
 RequestBook::Decision RequestBook::open(const publish::ClientId& id, std::uint64_t number, const Load& load,
                                         const std::optional<Error>& wrong)
 {
-    // Without an id or a number there is nothing to remember it by.
+    // Without a client id or a number, the request cannot be identified later.
     if (number == 0 || id == publish::ClientId{})
         return {Verdict::Refused, refusal(id, number, wrong.value_or(reason("the request has no client id or no number")))};
     Client& client = client_of(id);
@@ -165,7 +166,7 @@ void RequestBook::forget_silent_clients(const Client& except)
     const auto too_much = [&] { return clients_.size() > limits_.clients || answer_bytes_ > limits_.answer_bytes; };
     for (auto client = clients_.begin(); client != clients_.end() && too_much();)
     {
-        // Who still waits for an answer is known by it.
+        // This records which client still waits for an answer.
         if (&*client == &except || !client->waiting.empty())
         {
             ++client;

@@ -1,5 +1,5 @@
-/// Which requests are under way and what was answered: the reason why a request is carried out once, however often it
-/// is sent. Plain bookkeeping without time or DDS. How clients see it: server/docs/requests.md.
+/// Which requests are in progress and which were answered: this is why a request is carried out once, however often it is sent.
+/// Plain bookkeeping without time or DDS. The clients' view is described in server/docs/requests.md.
 #pragma once
 
 #include <deque>
@@ -15,15 +15,15 @@ namespace plab::bus
 
 struct BookLimits
 {
-    std::size_t waiting = wire::kMostRequestsWaiting;  ///< requests under way, all clients together
+    std::size_t waiting = wire::kMostRequestsWaiting;  ///< requests in progress, all clients together
     std::size_t waiting_per_client = wire::kMostRequestsWaitingPerClient;
     std::size_t kept_for_next_step = wire::kRequestsKeptForNextStep;     ///< of `waiting`
-    std::size_t waiting_bytes = wire::kMostWaitingBytes;                 ///< of all requests under way
+    std::size_t waiting_bytes = wire::kMostWaitingBytes;                 ///< text of all requests in progress
     std::size_t bytes_kept_for_next_step = wire::kBytesKeptForNextStep;  ///< of `waiting_bytes`
     std::size_t shutdowns = wire::kMostShutdownsWaiting;                 ///< beyond `waiting`
-    std::size_t answers = wire::kAnswersKeptPerClient;                   ///< kept of each client
-    std::size_t clients = wire::kClientsRemembered;                      ///< remembered
-    std::size_t answer_bytes = 64u << 20;                                ///< of all answers that are kept, about
+    std::size_t answers = wire::kAnswersKeptPerClient;                   ///< answers kept per client
+    std::size_t clients = wire::kClientsRemembered;                      ///< clients remembered
+    std::size_t answer_bytes = 64u << 20;                                ///< approximate memory of all kept answers
 };
 
 class RequestBook
@@ -34,26 +34,26 @@ public:
     enum class Verdict : std::uint8_t
     {
         New,       ///< to be carried out; counts as waiting until close()
-        Waiting,   ///< the same one is under way: its answer will come
-        Answered,  ///< `answer` is what was answered before
-        Refused,   ///< `answer` says why
+        Waiting,   ///< the same request is in progress: its answer will follow
+        Answered,  ///< `answer` is the stored answer
+        Refused,   ///< `answer` gives the reason
     };
     struct Decision
     {
         Verdict verdict = Verdict::New;
         publish::Answer answer;
     };
-    /// What a request takes while it waits.
+    /// Resources that a request uses while it waits.
     struct Load
     {
-        bool names_step = false;  ///< it may wait for ever; others are answered at the next boundary
-        bool shutdown = false;    ///< a single operation
+        bool names_step = false;  ///< it may wait without limit; others are answered at the next step boundary
+        bool shutdown = false;    ///< the request is a single shutdown operation
         std::size_t bytes = 0;
     };
-    /// A request came. `wrong`: why it cannot be carried out whatever it asks for (then it is New for nobody, and its
-    /// refusal is what is answered to it from now on).
+    /// Registers an incoming request. `wrong`: why it cannot be carried out in any case; then it is never New, and this refusal
+    /// is its answer from now on.
     Decision open(const publish::ClientId& client, std::uint64_t number, const Load& load, const std::optional<Error>& wrong);
-    /// The answer to a request that open() called New. False if there is none such.
+    /// Stores the answer to a request for which open() returned New. False if there is no such request.
     bool close(const publish::Answer& answer);
 
     std::size_t waiting() const { return all_.requests + shutdowns_.requests; }
@@ -69,11 +69,11 @@ private:
     struct Client
     {
         publish::ClientId id{};
-        std::uint64_t highest = 0;    ///< number seen
-        std::uint64_t forgotten = 0;  ///< highest number whose answer is not kept any more
+        std::uint64_t highest = 0;    ///< highest number received
+        std::uint64_t forgotten = 0;  ///< highest number whose answer is no longer kept
         std::map<std::uint64_t, Load> waiting;
-        std::size_t counted = 0;              ///< of `waiting`: all but shutdowns that need no room
-        std::deque<publish::Answer> answers;  ///< the latest is the last
+        std::size_t counted = 0;              ///< of `waiting`: all except shutdowns that need no room
+        std::deque<publish::Answer> answers;  ///< the last one is the latest
     };
     using Clients = std::list<Client>;
 
@@ -88,9 +88,9 @@ private:
     void forget_silent_clients(const Client& except);
 
     BookLimits limits_;
-    Clients clients_;  ///< the one that was silent for longest is the first
+    Clients clients_;  ///< the first one has been silent for longest
     std::map<publish::ClientId, Clients::iterator> by_id_;
-    Count all_;        ///< under way, without those of shutdowns_
+    Count all_;        ///< in progress, without those of shutdowns_
     Count with_step_;  ///< of them, those that name a step
     Count shutdowns_;  ///< beyond the others
     std::size_t answer_bytes_ = 0;

@@ -10,7 +10,7 @@ namespace plab::bus
 namespace
 {
 
-/// A lead byte of UTF-8: how many bytes follow, and what the first of them may be.
+/// A lead byte of UTF-8: how many bytes follow, and the valid range of the first of them.
 struct Lead
 {
     unsigned char first, last;
@@ -29,7 +29,7 @@ constexpr std::array<Lead, 9> kLeads{{
     {0xf4, 0xf4, 3, 0x80, 0x8f},
 }};
 
-/// Bytes of the character at the start of `text`, 0 if it is none.
+/// Length in bytes of the character at the start of `text`; 0 if it is invalid.
 std::size_t character_length(std::string_view text)
 {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -57,7 +57,7 @@ bool is_utf8(std::string_view text)
 std::string wrong_form(const RequestForm& form)
 {
     if (std::all_of(form.client.begin(), form.client.end(), [](std::uint8_t byte) { return byte == 0; }))
-        return "the request has no client id: 16 random bytes are right";
+        return "the request has no client id: use 16 random bytes";
     if (form.number == 0) return "the request has number 0: the first one of a client is 1";
     if (form.at < -1) return "the request is for step " + std::to_string(form.at) + ": steps count from 0, and -1 is the next one";
     if (form.revision < -1)
@@ -65,7 +65,7 @@ std::string wrong_form(const RequestForm& form)
     if (form.operations == 0) return "the request has no operation";
     if (form.operations > wire::kMostOperations)
         return "the request has " + std::to_string(form.operations) + " operations: at most " + std::to_string(wire::kMostOperations) +
-               " may be asked for at once";
+               " are allowed";
     return {};
 }
 
@@ -73,7 +73,7 @@ std::string wrong_count(std::size_t operation, std::size_t values)
 {
     if (values <= wire::kMostValues) return {};
     return "operation " + std::to_string(operation + 1) + " has " + std::to_string(values) + " values: at most " +
-           std::to_string(wire::kMostValues) + " may be given at once";
+           std::to_string(wire::kMostValues) + " are allowed";
 }
 
 std::string TextBudget::wrong(std::string_view text, const char* what)

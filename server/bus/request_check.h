@@ -1,4 +1,4 @@
-/// What a request must be before anybody looks at what it asks for. Sense is judged elsewhere, form here.
+/// Checks the form of a request. Its meaning is checked elsewhere (server/control).
 #pragma once
 
 #include <string>
@@ -13,11 +13,11 @@ namespace plab::bus
 /// UTF-8 as RFC 3629 has it: no overlong forms, no surrogates, nothing above U+10FFFF.
 bool is_utf8(std::string_view text);
 
-/// What the limit on the text of all waiting requests counts: each text costs 32 bytes more than it has, about what it
-/// takes to keep it, so that the limit bounds the number of empty ones too.
+/// How the limit on the text of all waiting requests counts: each text costs 32 bytes more than its length, roughly its memory
+/// overhead, so that the limit also bounds the number of empty texts.
 std::size_t bytes_of(const publish::RequestText& request);
 
-/// One operation, and that is to end the server, and no more is said.
+/// Whether the request consists of one shutdown operation and nothing else.
 bool is_shutdown(const publish::RequestText& request);
 
 /// A request without its text.
@@ -28,24 +28,26 @@ struct RequestForm
     std::int64_t at = -1, revision = -1;
     std::size_t operations = 0;
 };
-/// What is wrong with it; empty: nothing.
+/// The error; empty: none.
 std::string wrong_form(const RequestForm& form);
-/// The same of the number of values of an operation, before anybody compares each value's name with the others'.
+/// The same for the number of values of an operation. Checked before each value's name is compared with all others, which takes
+/// quadratic time.
 std::string wrong_count(std::size_t operation, std::size_t values);
 
-/// Text of one request, up to the limit. Each text costs a byte more than it has, so that its number is limited too.
+/// Text of one request, up to the limit. Each text costs one byte more than its length, so that the number of texts is limited
+/// too.
 class TextBudget
 {
 public:
     std::size_t left() const { return left_; }
-    /// What is wrong with the next text; empty: nothing.
+    /// The error in the next text; empty: none.
     std::string wrong(std::string_view text, const char* what);
 
 private:
     std::size_t left_ = wire::kMostRequestBytes;
 };
 
-/// All of that, for a request whose text somebody else has copied.
+/// All of these checks, for a request whose text has been copied elsewhere.
 std::string wrong_with(const publish::RequestText& request);
 
 }  // namespace plab::bus

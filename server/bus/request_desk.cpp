@@ -40,7 +40,7 @@ RequestDesk::Received RequestDesk::receive(RequestMessage&& message, std::int64_
 {
     publish::RequestText& request = message.request;
     std::string wrong = std::move(message.wrong);
-    if (wrong.size() > kLongestReason || !is_utf8(wrong)) wrong = "the request has no form";
+    if (wrong.size() > kLongestReason || !is_utf8(wrong)) wrong = "the request cannot be decoded";
     if (wrong.empty()) wrong = wrong_with(request);
     RequestBook::Load load;
     if (wrong.empty()) load = {.names_step = request.at >= 0, .shutdown = is_shutdown(request), .bytes = bytes_of(request)};

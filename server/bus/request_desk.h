@@ -23,23 +23,23 @@ public:
     struct Received
     {
         bool is_new = false;       ///< for the step thread
-        bool is_shutdown = false;  ///< and it is to end the server
+        bool is_shutdown = false;  ///< and it asks the server to shut down
     };
-    /// A request came: whatever plab-bus says of it, its form is looked at here. One that has its answer already, or is
-    /// refused, gives that to next_answer().
+    /// Handles an incoming request: its form is checked here, whatever plab-bus reports about it. If it was answered before, or
+    /// is refused, the answer goes to next_answer().
     Received receive(RequestMessage&& message, std::int64_t now_ns);
-    /// So many answers wait to be fetched that nothing more is to be received before.
+    /// Whether so many answers wait to be fetched that no further request may be received before.
     bool is_full() const { return at_once_.size() >= kMostAtOnce; }
-    /// The next answer that is to go out. `strays` counts those of the step thread that nobody waited for.
+    /// The next answer to send. `strays` counts answers of the step thread to requests that no client waits for.
     std::optional<AnswerMessage> next_answer(std::uint64_t& strays);
 
 private:
     RequestBook book_;
-    // As many as may wait at a time: neither ring can overflow.
+    // As large as the number of requests that may wait at a time: neither ring can overflow.
     publish::Ring<publish::RequestText> requests_;
     publish::Ring<publish::Answer> answers_;
     static constexpr std::size_t kMostAtOnce = 1024;
-    std::deque<AnswerMessage> at_once_;  ///< made here
+    std::deque<AnswerMessage> at_once_;  ///< answers that are made here
 };
 
 }  // namespace plab::bus

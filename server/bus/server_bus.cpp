@@ -13,7 +13,7 @@ namespace
 {
 
 constexpr std::size_t kChanges = 1024;
-/// The first plab-bus has so long to join.
+/// The first plab-bus must join within this time.
 constexpr std::chrono::seconds kLongestStart(10);
 
 std::int64_t since_1970_ns()
@@ -26,20 +26,20 @@ std::int64_t since_1970_ns()
 Result<std::unique_ptr<ServerBus>> ServerBus::open(const BusOptions& options)
 {
     if (!wire::is_server_name(options.name))
-        return reason("'" + options.name + "' is no name of a server: 1 to 64 letters, digits, '.', '_' or '-'");
+        return reason("'" + options.name + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'");
     auto lock = wire::NameLock::take(options.domain, options.name);
     if (!lock) return lock.errors();
     std::unique_ptr<ServerBus> bus(new ServerBus(options, lock.take()));
-    if (bus->bell_.descriptor() < 0) return reason("cannot open the bus: no eventfd is left");
+    if (bus->bell_.descriptor() < 0) return reason("cannot open the bus: no eventfd is available");
     auto first = bus->first_.get_future();
-    // Signals are the daemon's: none is delivered on this thread.
+    // Signals belong to the daemon: none is delivered on this thread.
     sigset_t all, before;
     (void)sigfillset(&all);
     (void)pthread_sigmask(SIG_SETMASK, &all, &before);
     bus->thread_ = std::thread([b = bus.get()] { b->run(); });
     (void)pthread_sigmask(SIG_SETMASK, &before, nullptr);
     (void)pthread_setname_np(bus->thread_.native_handle(), "plab-bus-link");
-    // Batch: it does not push the step thread aside when it is woken on the same core.
+    // Batch: waking this thread does not preempt the step thread on the same core.
     const sched_param priority{};
     (void)pthread_setschedparam(bus->thread_.native_handle(), SCHED_BATCH, &priority);
     if (first.wait_for(kLongestStart) != std::future_status::ready) return reason("plab-bus did not join the bus within 10 s");
@@ -108,7 +108,7 @@ void ServerBus::hash(std::uint64_t run, Tick step, std::uint64_t hash)
 
 void ServerBus::status(const publish::Status& status)
 {
-    // A run that stands still completes no batch; a status comes ten times a second at most.
+    // A paused run completes no batch; a status is sent at most ten times per second.
     if (auto record = status.paused ? hash_batch_.flush() : hash_batch_.flush_old(publish::monotonic_now()))
         push(hashes_, *std::move(record));
     statuses_.begin_push() = status;
@@ -118,7 +118,7 @@ void ServerBus::status(const publish::Status& status)
 
 bool ServerBus::catalogue(publish::CatalogueChange&& change)
 {
-    // A change that is left out would never be made good: this ring refuses instead of giving up the oldest.
+    // A dropped change could never be made up for: this ring refuses new entries instead of dropping the oldest.
     if (changes_waiting_.load(std::memory_order_acquire) >= kChanges) return false;
     changes_waiting_.fetch_add(1, std::memory_order_relaxed);
     changes_.begin_push() = std::move(change);
@@ -138,7 +138,7 @@ std::string ServerBus::lost() const { return is_lost_.load(std::memory_order_acq
 std::string ServerBus::take_restart()
 {
     if (!restarted_.load(std::memory_order_relaxed)) return {};
-    // The step thread waits for nobody: what is being written is there at the next step.
+    // The step thread never waits: an entry that is being written becomes available at the next step.
     const std::unique_lock guard(restart_mutex_, std::try_to_lock);
     if (!guard.owns_lock()) return {};
     restarted_.store(false, std::memory_order_relaxed);

@@ -1,5 +1,5 @@
-/// The server's end of the bus: rings that the step thread fills, and one thread that empties them into the pipe to plab-bus,
-/// which it starts, and starts again when it ends.
+/// plabd's end of the bus: rings that the step thread fills, and one thread that empties them into the pipe to plab-bus. The
+/// thread starts plab-bus, and restarts it when it ends.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class ServerBus final : public Bus
 {
 public:
     static Result<std::unique_ptr<ServerBus>> open(const BusOptions& options);
-    /// Says goodbye: everything is disposed of, and has 200 ms to arrive.
+    /// Disposes of all instances so that clients learn about the end, and allows 200 ms for that.
     ~ServerBus() override;
 
     bool wants(publish::Stream stream) const override;
@@ -65,11 +65,11 @@ private:
 
     // Bus thread ------------------------------------------------------------------------------------------------------
     void run();
-    /// Starts plab-bus if it is not there and may be started.
+    /// Starts plab-bus if it is not running and may be started.
     void supervise(Clock::time_point now);
     void end_process(const std::string& why, Clock::time_point now);
     void begin_anew(Clock::time_point now);
-    /// Does what there is to do, a little of everything. True if there is more.
+    /// Does a limited amount of each kind of work. True if there is more.
     bool pass(Clock::time_point now);
     bool receive(Clock::time_point now);
     void handle(const MessageReader::Message& message, Clock::time_point now);
@@ -93,13 +93,13 @@ private:
     BusOptions options_;
     wire::NameLock lock_;
     StartMessage start_;
-    Bell bell_;  ///< algorithm by the step thread and by plab-bus
+    Bell bell_;  ///< rung by the step thread and by plab-bus
     std::atomic<bool> stop_{false};
     std::atomic<bool> is_lost_{false};
     std::string why_lost_;  // written once, before is_lost_
     std::atomic<int> pid_{0};
     std::atomic<bool> restarted_{false};
-    std::mutex restart_mutex_;  ///< held for a moment, after restarted_ was set
+    std::mutex restart_mutex_;  ///< held briefly, after restarted_ was set
     std::string restart_;
 
     publish::Ring<publish::CatalogueChange> changes_;
@@ -113,25 +113,25 @@ private:
     Feed<publish::HashRecord> hashes_{publish::Stream::Hashes, 1024};
     Feed<publish::SnapshotRecord> snapshots_{publish::Stream::Snapshots, 2};
     publish::Ring<publish::Status> statuses_{4};
-    publish::HashBatch hash_batch_;  ///< step thread's
+    publish::HashBatch hash_batch_;  ///< used by the step thread only
     RequestDesk desk_;
 
-    // Bus thread's
+    // Used by the bus thread only.
     std::unique_ptr<BusProcess> process_;
     bool has_joined_ = false, is_broken_ = false, has_hung_up_ = false;
-    std::string failed_;  ///< why the present plab-bus could not join
+    std::string failed_;  ///< why the current plab-bus could not join
     std::promise<Result<void>> first_;
     bool was_first_received_ = false;
     CatalogueMirror mirror_;
-    std::optional<AnswerMessage> answer_;  ///< waits for room
+    std::optional<AnswerMessage> answer_;  ///< an answer that waits for room
     StatusMessage status_;
     bool has_status_ = false, status_is_new_ = false;
     Clock::time_point started_{}, start_at_{}, heard_{}, died_{}, status_sent_{};
-    Clock::time_point stopped_{};  ///< when it was looked at whether plab-bus is stopped
+    Clock::time_point stopped_{};  ///< time of the last check whether plab-bus is stopped
     Clock::duration delay_{};
     int stopped_looks_ = 0;
-    int silent_ = 0;       ///< seconds in which this thread was awake and plab-bus said nothing
-    bool is_new_ = false;  ///< the present plab-bus has not been told of its readers for long
+    int silent_ = 0;       ///< seconds in which this thread was awake and plab-bus sent nothing
+    bool is_new_ = false;  ///< the current plab-bus started recently and may not know of its readers yet
     std::string why_restarted_;
     LogLimit log_limit_;
     std::thread thread_;

@@ -1,4 +1,4 @@
-/// What the thread does that speaks with plab-bus.
+/// The work of the thread that communicates with plab-bus.
 #include <poll.h>
 
 #include <algorithm>
@@ -13,19 +13,20 @@ namespace
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t kBurst = 64;  ///< records of one stream before the others have their turn
-constexpr int kMostMessages = 256;  ///< from plab-bus before the rest has its turn
+constexpr std::size_t kBurst = 64;  ///< records of one stream before the others get their turn
+constexpr int kMostMessages = 256;  ///< messages from plab-bus before other work gets its turn
 constexpr milliseconds kSecond(1000);
-constexpr milliseconds kSettling(1000);  ///< readers have so long to find a new plab-bus before what they wanted is given up
+constexpr milliseconds kSettling(1000);  ///< time for readers to find a new plab-bus before their streams count as unwanted
 constexpr milliseconds kGoodbye(2000), kLastWords(1000), kHangUp(100), kBusyLook(500);
-/// The longest is below the lease after which readers take a participant for gone (10 s): the next one is there before.
+/// The longest delay is below the lease after which readers consider a participant lost (10 s), so that the next process joins
+/// before that.
 constexpr milliseconds kFirstDelay(50), kLongestDelay(5000);
-constexpr std::chrono::seconds kGoodLife(30);  ///< who lived so long is started again at once
-constexpr int kLongestSilence = 4;             ///< s; a deleted writer that a reader does not acknowledge holds plab-bus up for one
-constexpr milliseconds kStopped(100);          ///< between looks at one that was stopped
-constexpr int kMostStopped = 2;                ///< of these looks: a stop of both processes ends for both at about the same time
+constexpr std::chrono::seconds kGoodLife(30);  ///< a process that lived for this long is restarted at once
+constexpr int kLongestSilence = 4;             ///< s; deleting a writer that a reader does not acknowledge blocks plab-bus for one second
+constexpr milliseconds kStopped(100);          ///< number of checks: two processes stopped together resume at about the same time
+constexpr int kMostStopped = 2;  ///< number of these checks: if both processes are stopped, they are continued at about the same time
 
-/// Text of another process, for a log: no control characters, no more than a line.
+/// Makes text of another process safe for a log: no control characters, at most one line.
 std::string one_line(std::string text)
 {
     constexpr std::size_t kLongest = 300;
@@ -73,13 +74,13 @@ void ServerBus::supervise(Clock::time_point now)
     if (process_)
     {
         watch(now);
-        if (is_broken_) return end_process("said what cannot be", now);
-        if (silent_ > kLongestSilence) return end_process("said nothing for " + std::to_string(kLongestSilence) + " s", now);
-        // Its end of the line is closed and it goes on: this thread would not sleep any more.
-        if (std::exchange(has_hung_up_, false) && !process_->wait(kHangUp)) return end_process("closed its line", now);
+        if (is_broken_) return end_process("sent an invalid message", now);
+        if (silent_ > kLongestSilence) return end_process("sent nothing for " + std::to_string(kLongestSilence) + " s", now);
+        // Its socket is closed but it still runs: end it, since this thread would no longer sleep.
+        if (std::exchange(has_hung_up_, false) && !process_->wait(kHangUp)) return end_process("closed its connection", now);
         if (const std::string how = process_->ended(); !how.empty())
         {
-            (void)receive(now);  // its last words
+            (void)receive(now);  // its last messages
             end_process(how, now);
         }
         else if (was_stopped(now))
@@ -99,14 +100,15 @@ void ServerBus::supervise(Clock::time_point now)
     has_joined_ = is_broken_ = false, failed_.clear();
 }
 
-/// A plab-bus that hangs serves nobody. Only seconds count in which this thread was awake: it may have been stopped as well.
+/// A plab-bus that hangs serves no client. Only seconds in which this thread was awake count, because it may have been stopped
+/// as well.
 void ServerBus::watch(Clock::time_point now)
 {
     if (now - heard_ < kSecond) return;
     heard_ = now, ++silent_;
 }
 
-/// Nobody is expected to let it go on; and looks count as the seconds above.
+/// A stopped process cannot be expected to continue; the checks count like the seconds above.
 bool ServerBus::was_stopped(Clock::time_point now)
 {
     if (!process_->stopped())
@@ -121,7 +123,7 @@ void ServerBus::end_process(const std::string& why, Clock::time_point now)
     const std::string text = failed_.empty() ? why : failed_;
     if (!was_first_received_)
     {
-        // It was never there: open() says why, and nothing is tried again.
+        // It never joined: open() reports the reason, and there is no retry.
         first_.set_value(reason(text));
         was_first_received_ = true, start_at_ = Clock::time_point::max();
         process_.reset();
@@ -132,16 +134,16 @@ void ServerBus::end_process(const std::string& why, Clock::time_point now)
     process_.reset();
     pid_.store(0, std::memory_order_relaxed);
     has_joined_ = is_broken_ = false;
-    // Who dies again and again is not started again and again at once.
+    // A process that ends repeatedly is restarted after increasing delays.
     if (had_joined && now - started_ >= kGoodLife) delay_ = {};
     delay_ = std::clamp<Clock::duration>(2 * delay_, kFirstDelay, kLongestDelay);
     start_at_ = now + delay_;
     if (why_restarted_.empty()) died_ = now;
     why_restarted_ = name + " " + text;
-    log(why_restarted_ + ": it is started again in " + std::to_string(std::chrono::duration_cast<milliseconds>(delay_).count()) + " ms");
+    log(why_restarted_ + ": it will be restarted in " + std::to_string(std::chrono::duration_cast<milliseconds>(delay_).count()) + " ms");
 }
 
-/// The present plab-bus has joined: it gets all that clients may rely on. The step thread is not asked for anything.
+/// The current plab-bus has joined: send it everything that clients may rely on. This needs nothing from the step thread.
 void ServerBus::begin_anew(Clock::time_point now)
 {
     has_joined_ = true;
@@ -158,7 +160,7 @@ void ServerBus::begin_anew(Clock::time_point now)
     const auto away = std::chrono::duration_cast<milliseconds>(now - died_).count();
     {
         const std::lock_guard guard(restart_mutex_);
-        restart_ = one_line(std::exchange(why_restarted_, {})) + "; process " + std::to_string(process_->pid()) + " took its place after " +
+        restart_ = one_line(std::exchange(why_restarted_, {})) + "; process " + std::to_string(process_->pid()) + " replaced it after " +
                    std::to_string(away) + " ms";
         restarted_.store(true, std::memory_order_relaxed);
     }
@@ -179,8 +181,8 @@ bool ServerBus::receive(Clock::time_point now)
     MessageReader::Message message;
     for (int i = 0; i < kMostMessages && !is_broken_; ++i)
     {
-        // Who asks and does not listen is not heard either; silence ends it. What a new one says of itself is, since it gets the answers
-        // after that.
+        // If plab-bus sends requests but does not take data, do not receive from it; the silence limit then ends it. The status
+        // of a new process is received, since it gets its answers only after that.
         if (has_joined_ && desk_.is_full()) return false;
         const auto state = process_->reader().next(message);
         is_broken_ = state == MessageReader::State::Broken;
@@ -279,7 +281,7 @@ bool ServerBus::send(Clock::time_point now)
     return more && to.ready();
 }
 
-/// The step thread's last one; and what that is at, when it says nothing for long.
+/// The status comes from the step thread; its current activity is added when it has sent nothing for long.
 void ServerBus::send_status(Clock::time_point now)
 {
     while (publish::Status* status = statuses_.begin_pop())
@@ -305,7 +307,7 @@ void ServerBus::send_catalogue()
         if (!next_change([this](const auto& change) { is_broken_ = !process_->writer().send(Down::Catalogue, change); })) return;
 }
 
-/// The next change is noted down, and handed to `f`. False if there is none.
+/// Records the next change in the mirror, and passes it to `f`. False if there is none.
 template <class Function>
 bool ServerBus::next_change(Function f)
 {
@@ -319,7 +321,7 @@ bool ServerBus::next_change(Function f)
     return true;
 }
 
-/// The catalogue was handed over before the answer: whoever has the reply finds in it what the request did.
+/// The catalogue is sent before the answer: a client that has the reply finds the effect of its request in the catalogue.
 void ServerBus::send_answers()
 {
     MessageWriter& to = process_->writer();
@@ -333,13 +335,13 @@ void ServerBus::send_answers()
         is_broken_ = !to.send(Down::Answer, *answer_);
         answer_.reset();
     }
-    if (strays > 0) log(std::to_string(strays) + " answers to requests that nobody waits for were left out");
+    if (strays > 0) log(std::to_string(strays) + " replies to requests that no client waits for were dropped");
 }
 
 void ServerBus::say_goodbye()
 {
     if (!process_) return;
-    // What was handed over before the end still goes out.
+    // Whatever was handed over before the end is still sent.
     const Clock::time_point last = Clock::now() + kLastWords;
     for (Clock::time_point now = Clock::now(); has_joined_ && !is_broken_ && now < last; now = Clock::now())
     {

@@ -21,19 +21,19 @@ namespace
 using publish::OperationText;
 using simulation::Operation;
 
-/// What a scene that comes with a request is compiled with.
+/// What is needed to compile a scene that comes with a request.
 struct Compiling
 {
     model::TypeSource* types;
     const model::CompileLimits* limits;
 };
 
-/// What a verb uses; whatever else is filled is a mistake of the client's, not to be passed over.
+/// What a verb uses; any other filled field is an error of the client, which is reported and not ignored.
 struct Verb
 {
     std::string_view name;
-    std::string_view target;    ///< what it is, "" if not used
-    std::string_view argument;  ///< likewise
+    std::string_view target;    ///< what the target is, "" if not used
+    std::string_view argument;  ///< what the argument is, "" if not used
     bool argument_optional = false;
     bool blueprint = false;
     bool values = false;
@@ -47,7 +47,7 @@ std::vector<simulation::NamedValue> named_values(const OperationText& op)
     return out;
 }
 
-/// As names of servers (idl/topics.h), which this code must not know: both stand in file names and command lines.
+/// The rule for server names (idl/topics.h, which this module must not include): both occur in file names and command lines.
 bool is_snapshot_name(const std::string& name)
 {
     constexpr std::size_t kLongest = 64;
@@ -119,7 +119,7 @@ Result<Operation> make_step(const OperationText& op, const Compiling&)
     std::int64_t steps = 0;
     const char* const end = op.argument.data() + op.argument.size();
     const auto [stop, error] = std::from_chars(op.argument.data(), end, steps);
-    if (error != std::errc() || stop != end || steps < 1) return reason("'" + op.argument + "' is no number of steps: 1 or more");
+    if (error != std::errc() || stop != end || steps < 1) return reason("'" + op.argument + "' is not a number of steps: give 1 or more");
     return Operation{simulation::StepOperation{steps}};
 }
 Result<Operation> make_rate(const OperationText& op, const Compiling&)
@@ -137,12 +137,12 @@ Result<Operation> make_dt(const OperationText& op, const Compiling&)
 Result<Operation> make_snapshot(const OperationText& op, const Compiling&)
 {
     if (!is_snapshot_name(op.target))
-        return reason("'" + op.target.substr(0, 64) + "' is no name of a snapshot: 1 to 64 letters, digits, '.', '_' or '-'");
+        return reason("'" + op.target.substr(0, 64) + "' is not a valid snapshot name: use 1 to 64 letters, digits, '.', '_' or '-'");
     return Operation{simulation::SnapshotOperation{op.target}};
 }
 Result<Operation> make_restore(const OperationText& op, const Compiling&) { return Operation{simulation::RestoreOperation{op.target}}; }
 Result<Operation> make_forget(const OperationText& op, const Compiling&) { return Operation{simulation::ForgetOperation{op.target}}; }
-/// "2.5 s" is a time of the run, "back 2.5 s" counts back from now.
+/// "2.5 s" is a time of the run, "back 2.5 s" is relative to the current time.
 Result<Operation> make_rewind(const OperationText& op, const Compiling&)
 {
     constexpr std::string_view kBack = "back ";
@@ -153,11 +153,12 @@ Result<Operation> make_rewind(const OperationText& op, const Compiling&)
     if (!value) return value.errors();
     const double time = std::get<double>(*value);
     if (std::signbit(time))
-        return reason("'" + op.argument + "' is negative: a rewind wants a time of the run, as '2.5 s', or how far back, as 'back 0.5 s'");
+        return reason("'" + op.argument +
+                      "' is negative: a rewind takes a time of the run, such as '2.5 s', or a duration to go back, such as 'back 0.5 s'");
     return Operation{simulation::RewindOperation{time, back}};
 }
-/// Only a place in the table: set makes one operation of each value, shutdown none.
-Result<Operation> make_nothing(const OperationText&, const Compiling&) { return reason("is no operation"); }
+/// These verbs only need an entry in the table: set makes one operation of each value, shutdown none.
+Result<Operation> make_nothing(const OperationText&, const Compiling&) { return reason("is not an operation"); }
 
 constexpr std::array<Verb, 20> kVerbs{{
     {"add", "", "the file's name for messages", true, true, false, &make_add},
@@ -175,7 +176,7 @@ constexpr std::array<Verb, 20> kVerbs{{
     {"snapshot", "the snapshot's name", "", false, false, false, &make_snapshot},
     {"restore", "the snapshot's name", "", false, false, false, &make_restore},
     {"forget", "the snapshot's name", "", false, false, false, &make_forget},
-    {"rewind", "", "a time of the run, or back and how far", false, false, false, &make_rewind},
+    {"rewind", "", "a time of the run, or 'back' and a duration", false, false, false, &make_rewind},
     {"shutdown", "", "", false, false, false, &make_nothing},
     {"trial", "", "none, a time in ms, and or refuse", false, false, false, &make_nothing},
     {"energy", "", "a factor, or any", false, false, false, &make_nothing},
@@ -192,7 +193,7 @@ Error unknown_verb(const std::string& name)
 {
     std::vector<std::string> known;
     for (const Verb& v : kVerbs) known.emplace_back(v.name);
-    return reason("'" + name + "' is no operation" + model::did_you_mean(name, known));
+    return reason("'" + name + "' is not an operation" + model::did_you_mean(name, known));
 }
 
 std::string given_too_much(const Verb& verb, const OperationText& op)
@@ -209,7 +210,7 @@ std::string given_too_little(const Verb& verb, const OperationText& op)
     if (!verb.target.empty() && op.target.empty()) return "needs a target: " + std::string(verb.target);
     if (!verb.argument.empty() && !verb.argument_optional && op.argument.empty()) return "needs an argument: " + std::string(verb.argument);
     if (verb.blueprint && op.blueprint.empty()) return "needs a blueprint: XML text";
-    if (op.verb == "set" && op.values.empty()) return "needs values: names and texts";
+    if (op.verb == "set" && op.values.empty()) return "needs values: pairs of name and text";
     std::set<std::string_view> names;
     for (const auto& [name, text] : op.values)
     {
@@ -219,7 +220,7 @@ std::string given_too_little(const Verb& verb, const OperationText& op)
     return {};
 }
 
-/// trial and energy change nothing themselves: they say how the request they stand in is proved.
+/// trial and energy change nothing themselves: they specify how the swap in the same request is tested.
 Result<void> choose_proof(const OperationText& op, simulation::TrialChoice& choice)
 {
     if (op.verb == "trial")
@@ -239,7 +240,7 @@ Result<void> choose_proof(const OperationText& op, simulation::TrialChoice& choi
     auto factor = model::parse_value(op.argument, field);
     if (!factor) return factor.errors();
     choice.energy_factor = std::get<double>(*factor);
-    if (!(choice.energy_factor >= 1)) return reason("'" + op.argument + "' is no factor of the energy: 1 or more, or any");
+    if (!(choice.energy_factor >= 1)) return reason("'" + op.argument + "' is not a factor of the energy: give 1 or more, or any");
     return {};
 }
 
@@ -307,7 +308,7 @@ Result<simulation::TrialChoice> parse_trial(const std::string& text)
     const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), ms);
     if (error != std::errc() || stop != number.data() + number.size() || !(ms > 0) || !(ms <= kMost))
         return reason("'" + text.substr(0, 64) +
-                      "' is no budget of a trial: none, unlimited, or a time in ms, with 'or refuse' behind it where it has to be proved");
+                      "' is not a budget of a trial: give none, unlimited, or a time in ms; 'or refuse' after it refuses untested swaps");
     out.budget = Budget::Given, out.ns = 1e6 * ms;
     return out;
 }
@@ -329,7 +330,9 @@ Result<Wanted::Cancelled> parse_request_name(const std::string& text)
         const auto [stop, error] = std::from_chars(text.data() + digits + 1, end, out.number);
         fine = error == std::errc() && stop == end && out.number > 0;
     }
-    if (!fine) return reason("'" + text.substr(0, 64) + "' names no request: 32 hexadecimal digits of the client, ':', and the number");
+    if (!fine)
+        return reason("'" + text.substr(0, 64) +
+                      "' is not the name of a request: give the client's 32 hexadecimal digits, ':', and the number");
     return out;
 }
 
@@ -408,14 +411,14 @@ Result<double> parse_rate(const std::string& text)
     double factor = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
     if (error != std::errc() || end != text.data() + text.size() || !(factor >= 1e-6) || !(factor <= 1e9))
-        return reason("a rate is real, max or a factor of real time from 1e-6 to 1e9, not '" + text + "'");
+        return reason("a rate must be real, max or a factor of real time from 1e-6 to 1e9, not '" + text + "'");
     return factor;
 }
 
 Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types, const model::CompileLimits& limits)
 {
     Wanted out;
-    // Whoever asks on the bus asks a loop that others watch: a trial may not hold it up for long.
+    // A request on the bus runs in a loop that other clients watch: its trial must not block the loop for long.
     out.request.trial.budget = simulation::TrialChoice::Budget::Automatic;
     Errors errors;
     for (std::size_t i = 0; i < text.operations.size(); ++i)
@@ -431,11 +434,13 @@ Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& ty
             errors.push_back(std::move(e));
         }
     }
-    if (errors.empty() && out.shutdown && text.operations.size() > 1) errors.push_back(reason("shutdown stands alone in a request"));
+    if (errors.empty() && out.shutdown && text.operations.size() > 1)
+        errors.push_back(reason("shutdown must be the only operation of a request"));
     if (errors.empty() && out.shutdown && (text.at >= 0 || text.revision >= 0))
-        errors.push_back(reason("shutdown takes effect at once: it names no step and no revision"));
+        errors.push_back(reason("shutdown takes effect at once: do not give a step or a revision"));
     if (errors.empty() && out.cancel && (text.operations.size() > 1 || text.at >= 0 || text.revision >= 0))
-        errors.push_back(reason("cancel stands alone in a request, and takes effect at once: it names no step and no revision"));
+        errors.push_back(
+            reason("cancel must be the only operation of a request, and takes effect at once: do not give a step or a revision"));
     if (!errors.empty()) return errors;
     if (text.at >= 0) out.request.at = text.at;
     if (text.revision >= 0) out.request.revision = static_cast<std::uint64_t>(text.revision);

@@ -1,4 +1,4 @@
-/// Requests in words, as clients send them, turned into operations. The words are described in server/docs/requests.md.
+/// Converts the text of requests, as clients send them, to operations. The text is described in server/docs/requests.md.
 #pragma once
 
 #include <optional>
@@ -13,37 +13,37 @@ namespace plab::control
 struct Wanted
 {
     simulation::Request request;  ///< without id
-    bool shutdown = false;        ///< the server is to end; then there are no operations
+    bool shutdown = false;        ///< the server is to shut down; then there are no operations
     struct Cancelled
     {
         publish::ClientId client{};
         std::uint64_t number = 0;
     };
-    std::optional<Cancelled> cancel;  ///< a request that waits is taken back; then there are no operations
+    std::optional<Cancelled> cancel;  ///< a waiting request is cancelled; then there are no operations
 };
 
-/// Checks words, names and numbers that need no scene; the rest is checked when the request takes effect. A <plab> that
-/// is loaded is compiled here (its plugins are loaded), one that is added when the request takes effect.
-/// Each error names the operation: "operation 2 (swap): needs an argument: the new type".
+/// Checks everything that needs no scene: verbs, names and numbers. The rest is checked when the request takes effect. A <plab>
+/// to load is compiled here (and its plugins are loaded); one to add is compiled when the request takes effect. Each error
+/// names the operation: "operation 2 (swap): needs an argument: the new type".
 Result<Wanted> wanted_of(const publish::RequestText& text, model::TypeSource& types, const model::CompileLimits& limits = {});
 
-/// An operation in words again, for log lines and events.
+/// Text of an operation for log lines and events.
 struct Description
 {
     std::string verb, target, argument;
 };
 Description description_of(const simulation::Operation& operation);
 
-/// The words that mean the operation, as a client would send them; of those that plabd's command line knows (swap, set).
+/// The text of the operation as a client would send it, for the operations that plabd's command line has (swap, set).
 publish::OperationText text_of(const simulation::Operation& operation);
 
-/// reset, load, restore, rewind.
+/// Whether the operation begins a new run: reset, load, restore, rewind.
 bool begins_a_run(const std::vector<publish::OperationText>& operations);
 
-/// "none", "20 ms", "20 ms or refuse", "or refuse", "unlimited": how a swap is proved.
+/// "none", "20 ms", "20 ms or refuse", "or refuse", "unlimited": how a swap is tested.
 Result<simulation::TrialChoice> parse_trial(const std::string& text);
 
-/// "3f..00:7", 32 hexadecimal digits and a number: which request of which client.
+/// "3f..00:7", 32 hexadecimal digits and a number: identifies one request of one client.
 Result<Wanted::Cancelled> parse_request_name(const std::string& text);
 
 /// "real" (1), "max" (0), or a factor of real time from 1e-6 to 1e9.

@@ -1,4 +1,4 @@
-/// Requests that wait for their step, as lines of text that a snapshot's file keeps (JSON).
+/// Requests that wait for their step, as lines of text (JSON) in the file of a snapshot.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace plab::control
 {
 
 std::string text_of(const publish::RequestText& request);
-/// Operations, step and revision of a text_of(); who asked is not kept.
+/// Operations, step and revision of a text made by text_of(); the client is not kept.
 Result<publish::RequestText> read_request(const std::string& text);
 
 }  // namespace plab::control

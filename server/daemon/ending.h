@@ -1,14 +1,19 @@
-/// How a run ends before it is over.
+/// How a run is ended early.
 #pragma once
 
 #include <chrono>
 
+#include "plab/result.h"
+
 namespace plab::daemon
 {
 
-/// What is in work when the end is asked for has this long to come to its end before it is given up.
+/// Work in progress when the end is requested may continue for this long before it is abandoned.
 inline constexpr std::chrono::milliseconds kGrace(250);
-/// A step was given up: the run ends where it began.
+/// A step was abandoned: the run ends at the state before that step.
 inline constexpr int kExitGaveUp = 3;
+
+/// Prints each error on a line of standard error, and returns the exit code of a program that refuses to run.
+int fail(const Errors& errors);
 
 }  // namespace plab::daemon

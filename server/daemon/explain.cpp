@@ -23,7 +23,7 @@ std::string plugins_text(const plugins::PluginLibrary& library)
             for (const std::string& t : p.types) loaded = loaded || t == type;
         if (!loaded) unused[type.substr(0, type.find('/'))] += " " + type;
     }
-    out += "types left out: the blueprint names none of these\n";
+    out += "types not loaded: the blueprint does not use them\n";
     for (const auto& [kind, types] : unused) out += "  " + kind + ":" + types + "\n";
     return out;
 }
@@ -61,7 +61,7 @@ std::string groups_text(const simulation::Simulation& s)
             out += "- prescribed motion, no solver";
         else if (g.solver != kNoIndex)
             out += "- " + s.world().type_of(g.solver)->info.name + " (" + s.world().id_of(g.solver) + ")";
-        if (g.mixed_solvers) out += ", members named different solvers: the one of the highest order was taken";
+        if (g.mixed_solvers) out += ", its members name different solvers: the one of the highest order is used";
         out += "\n";
     }
     for (const simulation::ShaftTree& t : s.stepper().graph().trees())
@@ -76,7 +76,7 @@ std::string collision_text(const simulation::Simulation& s)
     for (const simulation::Detector& d : s.stepper().detectors())
         out += "collision " + s.world().id_of(d.component) + ": " + publish::answer_of(s, d) + "\n";
     for (const std::string& sentence : simulation::unused_in_contacts(s.world(), s.stepper().detectors())) out += "  " + sentence + "\n";
-    if (out.empty()) out = "collision: none, so no memento is kept and no contact is looked for\n";
+    if (out.empty()) out = "collision: none, so no memento is kept and no contacts are searched for\n";
     return out;
 }
 

@@ -1,4 +1,4 @@
-/// --explain: what a scene loads, what was resolved how, and what it does without.
+/// --explain: what a scene loads, how its algorithms are resolved, and what it does not need.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace plab::daemon
 
 std::string explain(const simulation::Simulation& simulation, const plugins::PluginLibrary& library);
 
-/// What solvers that choose by the state chose in the step just made; empty if the scene has none.
+/// The choices that state-dependent solvers made in the last step; empty if the scene has none.
 std::string explain_choices(const simulation::Simulation& simulation);
 
 }  // namespace plab::daemon

@@ -11,9 +11,9 @@ namespace plab::daemon
 /// 17 significant digits; "null" for what is not finite.
 std::string number(double v);
 
-/// What has motion, or values, of its own.
+/// Components with motion or values of their own.
 bool is_shown(const world::Component& component);
-/// What stands under "interactions": solvers have their groups (--explain).
+/// Components listed under "interactions"; solvers appear with their groups (--explain).
 bool is_listed(const world::World& world, std::uint32_t component);
 
 }  // namespace plab::daemon

@@ -15,7 +15,7 @@ namespace
 {
 
 constexpr std::size_t kLines = 6;
-/// Objects and interactions each; a terminal is not longer.
+/// At most this many objects, and as many interactions, to fit on a terminal.
 constexpr std::size_t kRows = 20;
 
 template <class... Values>
@@ -137,11 +137,11 @@ void LiveTable::show(const simulation::Simulation& s, bool last)
 void LiveTable::show_busy(const publish::Busy& busy)
 {
     const auto now = std::chrono::steady_clock::now();
-    constexpr std::chrono::seconds kEvery(1);  // what is no terminal keeps each line
+    constexpr std::chrono::seconds kEvery(1);  // output that is not a terminal keeps each line
     if (!wanted_ || (!terminal_ && now - busy_shown_ < kEvery)) return;
     busy_shown_ = now;
     const std::lock_guard lock(output_);
-    std::printf(terminal_ ? "\r\x1b[K%s" : "%s\n", ("in work: " + publish::text_of(busy)).c_str());
+    std::printf(terminal_ ? "\r\x1b[K%s" : "%s\n", ("in progress: " + publish::text_of(busy)).c_str());
     std::fflush(stdout);
 }
 

@@ -12,20 +12,20 @@
 namespace plab::daemon
 {
 
-/// Redraws in place on a terminal, else a block each simulated second. The last events stand below it.
+/// Redraws in place on a terminal; otherwise prints a block each simulated second. The last events are below it.
 class LiveTable
 {
 public:
-    /// `footer` stands below the table on a terminal.
+    /// On a terminal, `footer` is below the table.
     LiveTable(bool wanted, std::string footer);
     void note(const simulation::Simulation& simulation);
     void note(std::string line);
     void show(const simulation::Simulation& simulation, bool last = false);
-    /// While a step is in work, from another thread: what it is at.
+    /// Called from another thread during a step that takes long: shows its activity.
     void show_busy(const publish::Busy& busy);
 
 private:
-    std::mutex output_;  ///< one writes at a time
+    std::mutex output_;  ///< only one thread writes at a time
     bool wanted_, terminal_;
     std::string footer_;
     std::chrono::steady_clock::time_point shown_{};

@@ -1,9 +1,10 @@
-// plabd: the composition root. Nothing is decided here; everything is put together here.
+// plabd: the composition root, which only puts the modules together.
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "blueprint/reader.h"
 #include "blueprint/writer.h"
+#include "daemon/ending.h"
 #include "daemon/explain.h"
 #include "daemon/options.h"
 #include "daemon/replaying.h"
@@ -17,22 +18,16 @@
 namespace
 {
 
-/// What is in work when a signal comes: a step, a trial, the way back to an earlier time.
+/// What a signal can interrupt: a step, a trial, a rewind.
 plab::Interruption work;
 void interrupt_work() { work.ask(plab::daemon::kGrace); }
-
-int fail(const plab::Errors& errors)
-{
-    for (const plab::Error& e : errors) std::fprintf(stderr, "%s\n", e.text().c_str());
-    return 1;
-}
 
 int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLibrary& library, const plab::daemon::DaemonOptions& options,
               std::chrono::steady_clock::time_point start, const std::vector<std::string>& waiting = {})
 {
     auto wake = plab::daemon::Wake::make();
-    if (!wake) return fail(wake.errors());
-    // Until here a signal ends the process as usual: there is nothing yet to end in order.
+    if (!wake) return plab::daemon::fail(wake.errors());
+    // Until here a signal ends the process in the default way: nothing needs an orderly end yet.
     plab::program::call_on_signal(interrupt_work);
     plab::program::catch_signals();
     plab::program::wake_on_signal(wake->descriptor());
@@ -42,34 +37,34 @@ int run_scene(plab::simulation::Simulation& simulation, plab::plugins::PluginLib
         plab::daemon::Service service(simulation, library, options);
         if (options.bus)
         {
-            if (auto opened = service.open_bus(options, *wake, work); !opened) return fail(opened.errors());
+            if (auto opened = service.open_bus(options, *wake, work); !opened) return plab::daemon::fail(opened.errors());
             const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
             spdlog::info("server '{}' in domain {}, {}; ready after {:.1f} ms", options.name, options.domain,
                          options.network_interface.empty() ? "this host only" : "interface " + options.network_interface, took.count());
         }
         if (const std::string missing = plab::daemon::missing_for_replay(options.record); !missing.empty())
-            spdlog::warn("{} cannot be replayed: --record-topics is without {}", options.record.file, missing);
+            spdlog::warn("{} cannot be replayed: --record-topics does not include {}", options.record.file, missing);
         if (!options.record.file.empty())
-            if (auto opened = service.open_recording(options); !opened) return fail(opened.errors());
-        if (auto taken = service.take_over(waiting); !taken) return fail(taken.errors());
+            if (auto opened = service.open_recording(options); !opened) return plab::daemon::fail(opened.errors());
+        if (auto taken = service.take_over(waiting); !taken) return plab::daemon::fail(taken.errors());
         code = plab::daemon::run(simulation, service, options, *wake, plab::program::interruption());
     }
     plab::program::wake_on_signal(-1);
     return code;
 }
 
-/// --load: a run that was left goes on.
+/// --load: continues a saved run.
 int go_on(plab::plugins::PluginLibrary& library, const plab::daemon::DaemonOptions& options, std::chrono::steady_clock::time_point start)
 {
     auto snapshot = plab::daemon::read_snapshot(options.load, library);
-    if (!snapshot) return fail(snapshot.errors());
+    if (!snapshot) return plab::daemon::fail(snapshot.errors());
     plab::simulation::Simulation simulation(library, options.threads);
     simulation.limit(plab::daemon::limits_of(options));
     simulation.history().configure(plab::daemon::history_of(options));
-    if (auto restored = simulation.restore(snapshot->snapshot); !restored) return fail(restored.errors());
+    if (auto restored = simulation.restore(snapshot->snapshot); !restored) return plab::daemon::fail(restored.errors());
     if (options.until >= 0 && options.until < simulation.time() - 0.5 * simulation.dt())
     {
-        std::fprintf(stderr, "plabd: --until %.9g is before the snapshot, which is at %.9g s: --until counts from the run's beginning\n",
+        std::fprintf(stderr, "plabd: --until %.9g is before the snapshot, which is at %.9g s: --until counts from the start of the run\n",
                      options.until, simulation.time());
         return 2;
     }
@@ -85,7 +80,7 @@ int carry_out(const plab::daemon::DaemonOptions& options)
     {
         const auto text = options.reference.empty() ? plab::Result<std::string>(plab::blueprint::write_reference(library))
                                                     : plab::blueprint::write_reference(library, options.reference);
-        if (!text) return fail(text.errors());
+        if (!text) return plab::daemon::fail(text.errors());
         std::fputs(text->c_str(), stdout);
         return 0;
     }
@@ -98,13 +93,13 @@ int carry_out(const plab::daemon::DaemonOptions& options)
     }
     if (!options.load.empty()) return go_on(library, options, start);
     auto blueprint = plab::blueprint::read_blueprint_file(options.scene);
-    if (!blueprint) return fail(blueprint.errors());
+    if (!blueprint) return plab::daemon::fail(blueprint.errors());
     auto scene = plab::model::compile(*blueprint, library, nullptr, plab::daemon::limits_of(options));
-    if (!scene) return fail(scene.errors());
+    if (!scene) return plab::daemon::fail(scene.errors());
     plab::simulation::Simulation simulation(library, options.threads);
     simulation.limit(plab::daemon::limits_of(options));
     simulation.history().configure(plab::daemon::history_of(options));
-    if (auto loaded = simulation.load(*scene); !loaded) return fail(loaded.errors());
+    if (auto loaded = simulation.load(*scene); !loaded) return plab::daemon::fail(loaded.errors());
     switch (options.task)
     {
         case plab::daemon::Task::Check:
@@ -115,7 +110,7 @@ int carry_out(const plab::daemon::DaemonOptions& options)
             return 0;
         case plab::daemon::Task::Explain:
             std::fputs(plab::daemon::explain(simulation, library).c_str(), stdout);
-            simulation.step();  // choices by the state exist only then
+            simulation.step();  // state-dependent choices exist only after a step
             std::fputs(plab::daemon::explain_choices(simulation).c_str(), stdout);
             return 0;
         default:
@@ -136,6 +131,6 @@ int main(int argc, char** argv)
     spdlog::set_default_logger(spdlog::stderr_color_mt("plabd"));
     spdlog::set_pattern("%^%l%$ %v");
     spdlog::set_level(spdlog::level::from_str(options.log_level));
-    plab::program::ignore_write_signals();  // whoever read the table has gone, a file is at its limit: the run goes on
+    plab::program::ignore_write_signals();  // a reader of the table may have gone, or a file may be at its size limit: the run continues
     return carry_out(options);
 }

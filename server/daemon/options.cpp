@@ -21,9 +21,9 @@ constexpr const char* kExamples = R"(Examples:
   plabd --replay run.mcap --verify
 While it runs: plabctl interactions; plabctl swap contact.response --to Response/None; plab-view --png now.png
 
-Exit codes: 0 done, 1 failed (message on standard error), 2 wrong use.)";
+Exit codes: 0 done, 1 failed (message on standard error), 2 wrong usage.)";
 
-/// Takes "123:" off the front.
+/// Removes "123:" from the front and returns it.
 std::optional<Tick> take_step(std::string_view& text)
 {
     const std::size_t colon = text.find(':');
@@ -35,30 +35,32 @@ std::optional<Tick> take_step(std::string_view& text)
     return step;
 }
 
-/// Seconds, 0 or more: CLI11's own check lets NaN through.
+/// Seconds, 0 or more: CLI11's own check accepts NaN.
 std::string not_seconds(const std::string& text)
 {
     double value = 0;
     const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     const bool fine = error == std::errc() && stop == end && value >= 0 && value <= 1e12;
-    return fine ? "" : "'" + text + "' is no number of seconds from 0 to 1e12";
+    return fine ? "" : "'" + text + "' is not a number of seconds from 0 to 1e12";
 }
 
 void add_bus_options(CLI::App& app, DaemonOptions& options, std::string& states, bool& no_bus)
 {
     const std::string group = "The bus";
-    app.add_option("--name", options.name, "of this server on the bus; clients say --server NAME")->envname("PLAB_SERVER")->group(group);
+    app.add_option("--name", options.name, "name of this server on the bus; clients use --server NAME")
+        ->envname("PLAB_SERVER")
+        ->group(group);
     app.add_option("--domain", options.domain, "DDS domain")->envname("PLAB_DOMAIN")->check(CLI::Range(0, 232))->group(group);
     app.add_option("--interface", options.network_interface,
-                   "network interface to open the bus on; without it, this host only (a set CYCLONEDDS_URI wins over both)")
+                   "network interface of the bus; without it, this host only (CYCLONEDDS_URI, if set, overrides both)")
         ->envname("PLAB_INTERFACE")
         ->group(group);
-    app.add_option("--states", states, "largest number of frames per second of real time, or all: each step (default: 60)")->group(group);
+    app.add_option("--states", states, "maximum number of frames per second of real time, or all: every step (default: 60)")->group(group);
     app.add_flag("--no-bus", no_bus, "do not join the bus: no DDS library is loaded")->group(group);
 }
 
-/// The reason if something about the bus does not hold.
+/// The error in the options of the bus, if there is one.
 std::string take_bus_options(const std::string& states, bool no_bus, DaemonOptions& options)
 {
     options.bus = !no_bus;
@@ -68,7 +70,7 @@ std::string take_bus_options(const std::string& states, bool no_bus, DaemonOptio
     const char* const end = states.data() + states.size();
     const auto [stop, error] = std::from_chars(states.data(), end, options.states_per_second);
     if (error == std::errc() && stop == end && options.states_per_second > 0 && options.states_per_second <= 1e6) return {};
-    return "--states is a number of frames per second up to 1e6, or all, not '" + states + "'";
+    return "--states must be a number of frames per second up to 1e6, or all, not '" + states + "'";
 }
 
 void add_record_options(CLI::App& app, DaemonOptions& o, std::string& states)
@@ -78,12 +80,12 @@ void add_record_options(CLI::App& app, DaemonOptions& o, std::string& states)
     app.add_option("--record", r.file, "write the run to FILE.mcap, for plabctl play, plab-view, --replay and other tools")
         ->type_name("FILE")
         ->group(group);
-    app.add_flag("--overwrite", r.overwrite, "a recording that is there already is replaced")->group(group);
-    app.add_option("--record-topics", r.topics, "only these topics, e.g. plab/states; default: all but plab/images")
+    app.add_flag("--overwrite", r.overwrite, "replace an existing recording")->group(group);
+    app.add_option("--record-topics", r.topics, "record only these topics, e.g. plab/states; default: all but plab/images")
         ->delimiter(',')
         ->group(group);
-    app.add_option("--record-states", states, "frames per simulated second, or all: each step (default)")->group(group);
-    app.add_flag("--record-moved", r.moved_only, "frames name only what moved since the last one")->group(group);
+    app.add_option("--record-states", states, "frames per simulated second, or all: every step (default)")->group(group);
+    app.add_flag("--record-moved", r.moved_only, "frames contain only what moved since the previous one")->group(group);
     app.add_option("--record-snapshots", r.snapshot_interval, "simulated seconds between snapshots (default: 5)")
         ->check(&not_seconds, "")
         ->group(group);
@@ -95,24 +97,25 @@ void add_record_options(CLI::App& app, DaemonOptions& o, std::string& states)
 void add_past_options(CLI::App& app, DaemonOptions& o)
 {
     const std::string group = "Going back";
-    app.add_option("--load", o.load, "go on from the snapshot in FILE instead of a scene")->type_name("FILE")->group(group);
-    app.add_option("--save", o.save, "write a snapshot of the end state to FILE")->type_name("FILE")->group(group);
+    app.add_option("--load", o.load, "continue from the snapshot in FILE instead of loading a scene")->type_name("FILE")->group(group);
+    app.add_option("--save", o.save, "write a snapshot of the final state to FILE")->type_name("FILE")->group(group);
     app.add_option("--history", o.history,
                    "simulated seconds between snapshots kept in memory, which plabctl rewind needs; 0: none (default: 1 with a bus)")
         ->check(&not_seconds, "")
         ->group(group);
-    app.add_option("--replay", o.replay.file, "make the runs in the recording FILE again")->type_name("FILE")->group(group);
-    app.add_flag("--progress", o.progress, "with --replay, --shadow: a line every five seconds, also where standard error is no terminal")
+    app.add_option("--replay", o.replay.file, "replay the runs in the recording FILE")->type_name("FILE")->group(group);
+    app.add_flag("--progress", o.progress,
+                 "with --replay, --shadow: print the progress every five seconds, even if standard error is not a terminal")
         ->group(group);
     app.add_flag("--verify", o.replay.verify, "with --replay: compare the state's hash after each step")->group(group);
-    app.add_option("--from", o.replay.from, "with --replay: begin at the last snapshot at or before this step")->group(group);
+    app.add_option("--from", o.replay.from, "with --replay: start from the last snapshot at or before this step")->group(group);
     app.add_option("--run", o.replay.run, "with --replay: only this run of the recording")->group(group);
-    app.add_option("--shadow", o.shadow.id, "with --load, ID=TYPE: run on with and without that swap, and compare")->group(group);
+    app.add_option("--shadow", o.shadow.id, "with --load, ID=TYPE: continue with and without that swap, and compare")->group(group);
     app.add_option("--for", o.shadow.seconds, "with --shadow: simulated seconds (default: 1)")->check(&not_seconds, "")->group(group);
     app.add_flag("--json", o.shadow.json, "with --shadow: print JSON")->group(group);
 }
 
-/// The first of these options that the command line has; "" if it has none.
+/// The first of these options that the command line contains; "" if none.
 std::string first_given(const CLI::App& app, std::initializer_list<const char*> names)
 {
     for (const char* name : names)
@@ -120,35 +123,36 @@ std::string first_given(const CLI::App& app, std::initializer_list<const char*> 
     return {};
 }
 
-/// Why the options cannot go together: what a replay or a shadow has no use for is not ignored.
+/// Why the options cannot be combined: options that a replay or a shadow run does not use are errors.
 std::string why_not_together(const CLI::App& app, bool replay, bool shadow)
 {
     if (const std::string given = first_given(app, {"--for", "--json"}); !shadow && !given.empty())
-        return given + " goes with --shadow ID=TYPE";
+        return given + " requires --shadow ID=TYPE";
     if (!replay && !shadow) return {};
     const std::string what = replay ? "--replay" : "--shadow";
     const std::string given = first_given(
         app, {"--swap", "--set", "--table", "--history", "--record", "--paused", "--check", "--expand", "--explain", "--reference"});
     if (given.empty()) return {};
     if (given == "--swap" || given == "--set")
-        return given + " does not go with " + what + (replay ? ": what is asked stands in the recording" : ": name the swap as ID=TYPE");
-    return given + " goes with a scene or --load, not with " + what;
+        return given + " cannot be combined with " + what +
+               (replay ? ": the recording contains the requests" : ": name the swap as ID=TYPE");
+    return given + " requires a scene or --load, and cannot be combined with " + what;
 }
 
-/// The reason if something about them does not hold.
+/// The error in these options, if there is one.
 std::string take_past_options(const CLI::App& app, const std::string& states, DaemonOptions& o)
 {
     const bool replay = !o.replay.file.empty(), shadow = !o.shadow.id.empty();
     if (const std::string why = why_not_together(app, replay, shadow); !why.empty()) return why;
-    if (o.replay.from && *o.replay.from < 0) return "--from is a step, 0 or later, not " + std::to_string(*o.replay.from);
-    if (!replay && (o.replay.verify || o.replay.from || o.replay.run)) return "--verify, --from and --run go with --replay FILE";
+    if (o.replay.from && *o.replay.from < 0) return "--from must be a step, 0 or later, not " + std::to_string(*o.replay.from);
+    if (!replay && (o.replay.verify || o.replay.from || o.replay.run)) return "--verify, --from and --run require --replay FILE";
     if (int(replay) + int(!o.load.empty()) + int(!o.scene.empty()) > 1) return "a scene, --load and --replay exclude one another";
-    if (shadow && o.load.empty()) return "--shadow goes with --load FILE";
+    if (shadow && o.load.empty()) return "--shadow requires --load FILE";
     if (shadow)
     {
         const std::size_t equal = o.shadow.id.rfind('=');
         if (equal == std::string::npos || equal == 0 || equal + 1 == o.shadow.id.size())
-            return "--shadow wants ID=TYPE, not '" + o.shadow.id + "'";
+            return "--shadow needs ID=TYPE, not '" + o.shadow.id + "'";
         o.shadow.type = o.shadow.id.substr(equal + 1), o.shadow.id.resize(equal);
         o.task = Task::Shadow, o.bus = false;
     }
@@ -157,13 +161,13 @@ std::string take_past_options(const CLI::App& app, const std::string& states, Da
         if (const std::string given = first_given(
                 app, {"--overwrite", "--record-topics", "--record-states", "--record-moved", "--record-snapshots", "--record-compression"});
             !given.empty())
-            return given + " goes with --record FILE";
+            return given + " requires --record FILE";
     if (states.empty() || states == "all") return {};
     double rate = 0;
     const char* const end = states.data() + states.size();
     const auto [stop, error] = std::from_chars(states.data(), end, rate);
     if (error != std::errc() || stop != end || !(rate > 0 && rate <= 1e9))
-        return "--record-states is a number of frames per simulated second, or all, not '" + states + "'";
+        return "--record-states must be a number of frames per simulated second, or all, not '" + states + "'";
     o.record.state_interval = 1 / rate;
     return {};
 }
@@ -184,7 +188,7 @@ Result<ScheduledOperation> parse_swap(const std::string& text)
     out.at = take_step(rest);
     const std::size_t equal = rest.rfind('=');
     if (equal == std::string_view::npos || equal == 0 || equal + 1 == rest.size())
-        return reason("--swap wants [STEP:]ID=TYPE, not '" + text + "'");
+        return reason("--swap needs [STEP:]ID=TYPE, not '" + text + "'");
     out.operation = simulation::SwapOperation{std::string(rest.substr(0, equal)), std::string(rest.substr(equal + 1)), {}};
     return out;
 }
@@ -195,11 +199,11 @@ Result<ScheduledOperation> parse_set(const std::string& text)
     ScheduledOperation out;
     out.at = take_step(rest);
     const std::size_t equal = rest.find('=');
-    if (equal == std::string_view::npos) return reason("--set wants [STEP:]ID.name=value, not '" + text + "'");
+    if (equal == std::string_view::npos) return reason("--set needs [STEP:]ID.name=value, not '" + text + "'");
     const std::string_view target = rest.substr(0, equal);
     const std::size_t dot = target.rfind('.');
     if (dot == std::string_view::npos || dot == 0 || dot + 1 == target.size())
-        return reason("--set wants [STEP:]ID.name=value, not '" + text + "'");
+        return reason("--set needs [STEP:]ID.name=value, not '" + text + "'");
     out.operation = simulation::SetOperation{std::string(target.substr(0, dot)), std::string(target.substr(dot + 1)),
                                              std::string(rest.substr(equal + 1))};
     return out;
@@ -212,21 +216,22 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
     app.set_version_flag("--version", std::string("plabd ") + PLAB_VERSION);
     app.add_option("scene", options.scene, "blueprint (XML)");
     app.add_option("--until", options.until, "simulated seconds to run; without it, until SIGINT or SIGTERM")->check(&not_seconds, "");
-    app.add_option("--out", options.out, "write the end state as JSON to FILE (- is standard output)")->type_name("FILE");
-    app.add_option("--trace", options.trace, "write the course as CSV to FILE")->type_name("FILE");
-    app.add_option("--every", options.every, "simulated seconds between rows of --trace; default: each step")->check(&not_seconds, "");
-    app.add_option("--threads", options.threads, "threads that step; the result is the same for any number")->check(CLI::Range(1, 256));
-    app.add_option("--max-components", options.max_components, "components that a scene may have, generated ones among them")
+    app.add_option("--out", options.out, "write the final state as JSON to FILE (- is standard output)")->type_name("FILE");
+    app.add_option("--trace", options.trace, "write the trajectories as CSV to FILE")->type_name("FILE");
+    app.add_option("--every", options.every, "simulated seconds between rows of --trace; default: every step")->check(&not_seconds, "");
+    app.add_option("--threads", options.threads, "number of threads that compute the step; the result does not depend on it")
+        ->check(CLI::Range(1, 256));
+    app.add_option("--max-components", options.max_components, "maximum number of components in a scene, including generated ones")
         ->check(CLI::Range(1, 100'000'000))
         ->capture_default_str();
     app.add_option("--errors", options.error_share,
-                   "share of the time that shadow steps may take, which measure errors while somebody watches metrics; 0: none")
+                   "maximum share of the time for shadow steps, which measure errors while a client reads metrics; 0: none")
         ->check(CLI::Range(0.0, 0.5))
         ->capture_default_str();
-    app.add_option("--log-level", options.log_level, "what goes to standard error")
+    app.add_option("--log-level", options.log_level, "least severity of messages on standard error")
         ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
-    app.add_flag("--table", options.table, "show a live table of the scene's course");
-    app.add_flag("--hashes", options.hashes, "print the state hash of each step");
+    app.add_flag("--table", options.table, "show a live table of the scene's state");
+    app.add_flag("--hashes", options.hashes, "print the state hash of every step");
     app.add_flag("--maps", options.maps, "print the libraries that are mapped at the end of the run");
     std::string rate;
     app.add_option("--rate", rate, "real, max, or a factor of real time; default: max with --until, else real");
@@ -236,14 +241,14 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
         ->allow_extra_args(false);
     app.add_option("--set", sets, "[STEP:]ID.name=value: set a parameter or state (may be repeated)")->take_all()->allow_extra_args(false);
     bool check = false, expand = false, explain = false;
-    app.add_flag("--check", check, "only check the blueprint");
+    app.add_flag("--check", check, "check the blueprint and exit");
     app.add_flag("--expand", expand, "print the long form of the blueprint");
     app.add_flag("--explain", explain, "print what is loaded, resolved and left out, and why");
     app.add_option("--reference", options.reference,
                    "print the reference of all component types, of one (Response/Rows, Rows) or of a kind")
         ->expected(0, 1)
         ->type_name("[TYPE]");
-    app.add_flag("--paused", options.paused, "wait before the first step until a client says resume or step");
+    app.add_flag("--paused", options.paused, "wait before the first step until a client sends resume or step");
     bool no_bus = false;
     std::string states;
     add_bus_options(app, options, states, no_bus);
@@ -274,7 +279,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
     }
     if (const std::string why = take_bus_options(states, no_bus, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
     if (const std::string why = take_past_options(app, recorded_states, options); !why.empty()) return ParseEnd{2, "plabd: " + why + "\n"};
-    if (options.paused && !options.bus) return ParseEnd{2, "plabd: --paused needs the bus: nobody could say go on\n"};
+    if (options.paused && !options.bus) return ParseEnd{2, "plabd: --paused needs the bus: without it, no client could resume the run\n"};
     for (const auto& [texts, parse] : {std::pair(&swaps, &parse_swap), std::pair(&sets, &parse_set)})
         for (const std::string& text : *texts)
         {

@@ -15,15 +15,15 @@ namespace plab::daemon
 enum class Task
 {
     Run,
-    Check,      ///< load, build, and say whether it holds
+    Check,      ///< load, build, and report errors
     Expand,     ///< print the long form
     Explain,    ///< print what is loaded, resolved and left out, and why
     Reference,  ///< print the manual of all types, or of some
-    Replay,     ///< make a recorded run again
-    Shadow,     ///< a snapshot's future with another algorithm beside the one without
+    Replay,     ///< replay a recorded run
+    Shadow,     ///< simulate from a snapshot with and without another algorithm
 };
 
-/// --record and what goes with it.
+/// --record and its further options.
 struct RecordChoice
 {
     std::string file;  ///< "": nothing is recorded
@@ -35,7 +35,7 @@ struct RecordChoice
     double snapshot_interval = 5;  ///< s, simulated
 };
 
-/// --replay and what goes with it.
+/// --replay and its further options.
 struct ReplayChoice
 {
     std::string file;
@@ -63,40 +63,40 @@ struct DaemonOptions
 {
     Task task = Task::Run;
     std::string scene;
-    std::string reference;  ///< of which types; "": all
+    std::string reference;  ///< types to describe; "": all
     double until = -1;      ///< s; < 0: until a signal
-    std::string out;        ///< JSON of the end state; "-" is standard output
+    std::string out;        ///< JSON of the final state; "-" is standard output
     std::string trace;      ///< CSV over time
     double every = 0;       ///< s between trace rows; 0: each step
-    double rate = -1;       ///< 1: real time; 0: as fast as it goes; < 0: not given
+    double rate = -1;       ///< 1: real time; 0: as fast as possible; < 0: not given
     int threads = 1;
     std::size_t max_components = model::CompileLimits().components;
     double error_share = 0.01;  ///< of real time for shadow steps
     bool table = false;
     bool maps = false;    ///< print the mapped libraries at the end
-    bool hashes = false;  ///< print the state hash of each step
+    bool hashes = false;  ///< print the state hash of every step
     std::string log_level = "info";
     std::vector<ScheduledOperation> operations;
-    std::string load;     ///< snapshot to go on from, instead of a scene
-    std::string save;     ///< snapshot of the end state
+    std::string load;     ///< snapshot to continue from, instead of a scene
+    std::string save;     ///< snapshot of the final state
     double history = -1;  ///< s between snapshots that a rewind needs; 0: none; < 0: not given
     RecordChoice record;
-    bool progress = false;  ///< of a replay: a line every few seconds, also where standard error is no terminal
+    bool progress = false;  ///< of a replay: a line every few seconds, even if standard error is not a terminal
     ReplayChoice replay;
     ShadowChoice shadow;
 
     bool bus = true;
-    std::string name = "plab";      ///< of the server on the bus
+    std::string name = "plab";      ///< name of the server on the bus
     std::uint32_t domain = 0;       ///< DDS domain
     std::string network_interface;  ///< empty: this host only
     double states_per_second = 60;  ///< of real time; 0: each step
     bool paused = false;            ///< waits at step 0
 };
 
-/// What scenes and requests may ask for.
+/// Limits for scenes and requests.
 model::CompileLimits limits_of(const DaemonOptions& options);
 
-/// Fills options, or tells what to print and the exit code (0 after --help and --version, 2 for a wrong use).
+/// Fills the options; otherwise sets what to print and the exit code (0 after --help and --version, 2 for wrong usage).
 struct ParseEnd
 {
     int exit_code = 0;

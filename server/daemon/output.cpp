@@ -81,7 +81,7 @@ std::string interaction_json(const simulation::Simulation& s, std::uint32_t i, c
     return out + (world.component(i).quarantined ? ", \"quarantined\": true}" : "}");
 }
 
-/// A pair that touches: who, since which step, under which contact ids.
+/// A pair in contact: its components, since which step, and the contact ids.
 template <class Pair>
 void append_pair(std::string& out, const simulation::Simulation& s, const Pair& pair, bool resting)
 {
@@ -92,7 +92,7 @@ void append_pair(std::string& out, const simulation::Simulation& s, const Pair& 
            ", \"since\": " + std::to_string(pair.since) + ", \"resting\": " + (resting ? "true" : "false") + ", \"ids\": [" + ids + "]}";
 }
 
-/// Hard pairs, then those that are forces; the latter never rest.
+/// Pairs with rigid contact first, then those with contact forces; the latter never rest.
 std::string contacts_json(const simulation::Simulation& s)
 {
     std::string out;

@@ -1,4 +1,4 @@
-/// The end state that plabd writes, as JSON.
+/// The final state that plabd writes, as JSON.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace plab::daemon
 /// The state of the scene as JSON; numbers with 17 significant digits. Keys are documented in server/docs/output.md.
 std::string end_state_json(const simulation::Simulation& simulation);
 
-/// Writes it to a file; "-" is standard output. False if that failed; the log says why.
+/// Writes it to a file; "-" is standard output. False if that failed; the log contains the reason.
 bool write_end_state(const simulation::Simulation& simulation, const std::string& file);
 
 }  // namespace plab::daemon

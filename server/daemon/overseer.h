@@ -1,4 +1,4 @@
-/// Looks at the step thread from aside, and shows what it is at when a step takes long.
+/// Observes the step thread from another thread, and shows its activity when a step takes long.
 #pragma once
 
 #include <condition_variable>

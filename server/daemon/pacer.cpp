@@ -7,7 +7,7 @@ namespace plab::daemon
 namespace
 {
 
-/// s of real time by which a step may be late before the anchor moves: a hiccup is caught up, overload is not.
+/// s of real time by which a step may be late before the anchor moves: a short delay is caught up, overload is not.
 constexpr double kPatience = 0.1;
 constexpr double kLongest = 1e8;  // s
 
@@ -25,7 +25,7 @@ Pacer::Clock::time_point Pacer::due(double next, double rate, std::uint64_t run,
         anchored_ = true, anchor_ = now, anchor_time_ = next, rate_ = rate, run_ = run;
         return now;
     }
-    // Beyond some years a duration would overflow; nobody waits that long.
+    // A longer duration would overflow after some years; a wait is never that long.
     const std::chrono::duration<double> ahead(std::clamp((next - anchor_time_) / rate, -kLongest, kLongest));
     const Clock::time_point due = anchor_ + std::chrono::duration_cast<Clock::duration>(ahead);
     const double late = std::chrono::duration<double>(now - due).count();

@@ -68,7 +68,7 @@ std::string missing_for_replay(const RecordChoice& choice)
 simulation::HistoryOptions history_of(const DaemonOptions& options)
 {
     simulation::HistoryOptions out;
-    // A server's clients may want to go back; a computation has none.
+    // Clients of a server may want to rewind; a batch computation needs no history.
     out.interval = options.history >= 0 ? options.history : options.bus ? 1 : 0;
     return out;
 }
@@ -92,7 +92,7 @@ Result<simulation::SnapshotFile> read_snapshot(const std::string& file, model::T
     std::ifstream in(file, std::ios::binary | std::ios::ate);
     if (!in) return reason("cannot read " + file + ": " + std::strerror(errno));
     const std::streamoff size = in.tellg();
-    if (size < 0 || static_cast<std::size_t>(size) > kMostSnapshotBytes) return reason(file + ": is no snapshot");
+    if (size < 0 || static_cast<std::size_t>(size) > kMostSnapshotBytes) return reason(file + ": is not a snapshot");
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
     in.seekg(0);
     if (!in.read(reinterpret_cast<char*>(bytes.data()), size)) return reason("cannot read " + file);

@@ -1,5 +1,5 @@
-/// What of plabd concerns recordings: the module that writes and reads them, what a recording says of its origin, and files of
-/// snapshots.
+/// The parts of plabd that concern recordings: the module that writes and reads them, the metadata about the origin of a
+/// recording, and files of snapshots.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@
 namespace plab::daemon
 {
 
-/// record.so, loaded; whatever it made must go before it.
+/// record.so, loaded; objects that it made must be destroyed before it.
 class RecordModule
 {
 public:
@@ -37,12 +37,12 @@ private:
 
 record::RecordOptions record_options(const DaemonOptions& options, const simulation::Simulation& simulation, model::TypeSource& types);
 
-/// Topics without which a recording cannot be replayed, and which this choice leaves out; "" if none.
+/// Topics that a replay needs and this choice leaves out; "" if none.
 std::string missing_for_replay(const RecordChoice& choice);
 
 simulation::HistoryOptions history_of(const DaemonOptions& options);
 
-/// A snapshot's file: written whole or not at all (a new file takes the old one's place).
+/// A snapshot's file: replaced as a whole or not at all (a new file is renamed over the old one).
 Result<void> write_snapshot(const simulation::Snapshot& snapshot, std::span<const std::string> waiting, const std::string& file);
 Result<simulation::SnapshotFile> read_snapshot(const std::string& file, model::TypeSource& types);
 

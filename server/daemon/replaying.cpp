@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "daemon/ending.h"
 #include "daemon/output.h"
 #include "daemon/recording.h"
 #include "daemon/trace.h"
@@ -20,19 +21,13 @@ namespace plab::daemon
 namespace
 {
 
-int fail(const Errors& errors)
-{
-    for (const Error& e : errors) (void)std::fprintf(stderr, "%s\n", e.text().c_str());
-    return 1;
-}
-
-/// Which build recorded: what the file says, or the first snapshot of one that was recorded from the bus. "": nobody tells.
+/// The build that made the recording: from the file, or from the first snapshot if it was recorded from the bus. "": unknown.
 std::string build_of(record::RunLog& log, model::TypeSource& types)
 {
     if (std::string build = log.origin("build"); !build.empty()) return build;
     if (log.snapshots().empty()) return {};
     const auto first = log.read(log.snapshots().front());
-    if (!first) return {};  // the replay tells why, if it needs this one
+    if (!first) return {};  // the replay reports why, if it needs this one
     const auto decoded = simulation::decode(first->data, types);
     return decoded ? decoded->build : std::string();
 }
@@ -41,10 +36,10 @@ void warn_of_another_build(record::RunLog& log, model::TypeSource& types)
 {
     const std::string theirs = build_of(log, types), ours = simulation::build_name();
     if (!theirs.empty() && theirs != ours)
-        spdlog::warn("recorded by another build: digits may differ\n  recorded: {}\n  this one: {}", theirs, ours);
+        spdlog::warn("recorded by a different build: digits may differ\n  recorded: {}\n  this one: {}", theirs, ours);
 }
 
-/// --from names a step that no run has. "" if one has.
+/// An error if --from names a step that no run has; otherwise "".
 std::string beyond_the_end(const replay::ReplayReport& report, const DaemonOptions& options)
 {
     if (!options.replay.from || report.mismatch) return {};
@@ -63,15 +58,15 @@ std::string why_nothing(const record::RunLog& log, const replay::ReplayReport& r
 {
     if (report.steps > 0) return "the recording has no hashes of these steps";
     if (const std::string topics = log.origin("topics"); !topics.empty() && topics.find("plab/hashes") == std::string::npos)
-        return "the recording was made without plab/hashes, which tell how far the run went";
-    if (report.made.empty()) return "no run was begun";
+        return "the recording was made without plab/hashes, so the length of the run is not known";
+    if (report.made.empty()) return "no run was started";
     const replay::ReplayedRun& last = report.made.back();
     if (options.until >= 0 && last.time >= options.until)
         return "--until " + model::format_real(options.until) + " ends where the recording begins";
     return "the recording ends at step " + std::to_string(last.last) + ", where it begins";
 }
 
-/// Interrupted is not verified.
+/// An interrupted replay is not verified.
 void print_how_far(const replay::ReplayReport& report, const DaemonOptions& options)
 {
     if (report.made.empty())
@@ -80,21 +75,21 @@ void print_how_far(const replay::ReplayReport& report, const DaemonOptions& opti
         std::printf("interrupted by %s after step %" PRId64 " of run %" PRIu64, program::name_of_interruption().c_str(),
                     report.made.back().last, report.made.back().run);
     if (options.replay.verify)
-        std::printf(": NOT VERIFIED; %" PRId64 " state hashes were the same until then\n", report.verified);
+        std::printf(": NOT VERIFIED; %" PRId64 " state hashes were identical until then\n", report.verified);
     else
-        std::printf(": the rest was not made again\n");
+        std::printf(": the rest was not replayed\n");
 }
 
 void print_report(const replay::ReplayReport& report, const DaemonOptions& options)
 {
-    std::printf("%s: %" PRIu64 " run%s, %" PRId64 " steps made again, %" PRIu64 " requests\n", options.replay.file.c_str(), report.runs,
+    std::printf("%s: %" PRIu64 " run%s, %" PRId64 " steps replayed, %" PRIu64 " requests\n", options.replay.file.c_str(), report.runs,
                 report.runs == 1 ? "" : "s", report.steps, report.requests);
     if (report.interrupted) print_how_far(report, options);
     if (!options.replay.verify || report.interrupted) return;
     if (report.mismatch)
-        std::printf("DIFFERENT after %" PRId64 " steps that are the same\n%s", report.verified, report.mismatch->text().c_str());
+        std::printf("DIFFERENT after %" PRId64 " identical steps\n%s", report.verified, report.mismatch->text().c_str());
     else if (report.verified > 0)
-        std::printf("verified: %" PRId64 " state hashes are the same\n", report.verified);
+        std::printf("verified: %" PRId64 " state hashes are identical\n", report.verified);
 }
 
 }  // namespace
@@ -112,8 +107,8 @@ public:
         ++steps_;
         if (!line_.is_due()) return;
         char text[160];
-        std::snprintf(text, sizeof text, "run %" PRIu64 ", step %" PRId64 ", t = %.6g s; %" PRId64 " steps made again%s  (Ctrl-C ends)",
-                      s.run(), s.tick(), s.time(), steps_, verifies_ ? ", all the same" : "");
+        std::snprintf(text, sizeof text, "run %" PRIu64 ", step %" PRId64 ", t = %.6g s; %" PRId64 " steps replayed%s  (Ctrl-C ends)",
+                      s.run(), s.tick(), s.time(), steps_, verifies_ ? ", all identical" : "");
         line_.show(text);
     }
     void end() { line_.clear(); }
@@ -137,7 +132,7 @@ int replay_recording(plugins::PluginLibrary& library, const DaemonOptions& optio
 
     simulation::Simulation simulation(library, options.threads);
     simulation.obey(&interruption);
-    // Whatever was recorded was allowed when it was recorded.
+    // Every recorded request was allowed when it was recorded, so no limits apply here.
     model::CompileLimits recorded;
     recorded.components = std::numeric_limits<std::uint32_t>::max();
     simulation.limit(recorded);
@@ -166,7 +161,7 @@ int replay_recording(plugins::PluginLibrary& library, const DaemonOptions& optio
     progress.end();
     if (!report && stop)
     {
-        // A request of the journal was given up in work.
+        // A recorded request was interrupted.
         for (const Error& e : report.errors()) (void)std::fprintf(stderr, "%s\n", e.text().c_str());
         std::printf("interrupted by %s: NOT VERIFIED\n", program::name_of_interruption().c_str());
         return program::code_of_interruption();

@@ -1,4 +1,4 @@
-/// plabd --replay: recorded runs made again, and verified.
+/// plabd --replay: replays and verifies recorded runs.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,8 @@
 namespace plab::daemon
 {
 
-/// `interruption` gives up the step in work. Returns the exit code: 0 done, and with --verify all hashes are the same; 1 they differ, or it
-/// cannot be replayed.
+/// `interruption` abandons the current step. Returns the exit code: 0 done, and with --verify all hashes are identical; 1 they
+/// differ, or a replay is not possible.
 int replay_recording(plugins::PluginLibrary& library, const DaemonOptions& options, const std::atomic<bool>& stop,
                      const Interruption& interruption);
 

@@ -22,9 +22,9 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-/// A paused server shows that it is there this often.
+/// Interval at which a paused server publishes its status.
 constexpr std::chrono::seconds kHeartbeat(1);
-/// Clock, rate and overload are looked at this often, not at each step.
+/// Clock, rate and overload are checked at this interval, not at each step.
 constexpr std::chrono::milliseconds kStatus(100);
 
 void report_events(const simulation::Simulation& s)
@@ -38,7 +38,7 @@ void report_events(const simulation::Simulation& s)
     }
 }
 
-/// Shared objects of this process, a line each (Linux: /proc/self/maps).
+/// Shared objects of this process, one per line (Linux: /proc/self/maps).
 void print_mapped_libraries()
 {
     std::ifstream maps("/proc/self/maps");
@@ -56,7 +56,7 @@ std::string footer(const DaemonOptions& options)
     return "second terminal: " + ctl + " interactions; " + ctl + " swap ID --to TYPE; " + ctl + " --help     Ctrl-C ends";
 }
 
-/// One run of plabd: what the loop carries along.
+/// One run of plabd: the data of its main loop.
 class Run
 {
 public:
@@ -72,7 +72,7 @@ private:
     void begin();
     bool is_at_end() const { return options_.until >= 0 && s_.time() >= options_.until - 0.5 * s_.dt(); }
     bool over() const { return stop_ || s_.gave_up() || service_.shutdown_wanted() || is_at_end(); }
-    /// A signal is a server's ordinary end. A run that has an end of its own did not get there.
+    /// A signal is the ordinary end of a server. A run with an end time of its own did not reach it.
     bool is_cut() const { return stop_ && options_.until >= 0 && !is_at_end(); }
     bool serve();
     void step();
@@ -110,9 +110,9 @@ Result<void> Run::open_trace()
 void Run::begin()
 {
     simulation::Request clock;
-    // Without an end it is a server, and its clients live in real time; with one, it is a computation.
+    // Without an end time it is a server whose clients live in real time; with one, it is a batch computation.
     clock.operations.push_back(simulation::RateOperation{options_.rate >= 0 ? options_.rate : options_.until >= 0 ? 0.0 : 1.0});
-    // A snapshot of a run that stood still goes on all the same: without a bus nobody could say so.
+    // A snapshot of a paused run continues: without a bus, no client could resume it.
     if (options_.paused)
         clock.operations.push_back(simulation::PauseOperation{});
     else
@@ -128,13 +128,13 @@ void Run::begin()
     service_.publish(false);
 }
 
-/// Requests that are due take effect; true if there were any, or one that ends the server.
+/// Carries out requests that are due; true if there were any, or if one requests the shutdown.
 bool Run::serve()
 {
     service_.take_requests();
-    // Whoever is to end does not wait first, as one who is paused would.
+    // A server that is to end does not wait first, even if it is paused.
     if (!s_.apply_due()) return service_.shutdown_wanted();
-    // The catalogue goes first: who has the reply can rely on it.
+    // The catalogue goes first, so that a client that has the reply can rely on it.
     service_.publish(false);
     fine_ = service_.answer() && fine_;
     return true;
@@ -164,19 +164,19 @@ void Run::tell_rate(Clock::time_point now)
     service_.publish_status(meter_.factor(), pacer_.slipped(), pacer_.slipping(now));
     if (pacer_.slipped() == logged_slip_ || now - logged_at_ < std::chrono::seconds(1)) return;
     logged_at_ = now, logged_slip_ = pacer_.slipped();
-    spdlog::warn("too slow for the rate: {:.3f} s slipped so far", logged_slip_);
+    spdlog::warn("too slow for the rate: {:.3f} s of real time lost so far", logged_slip_);
 }
 
-/// The run ends where the step began; a shutdown that did it is answered.
+/// The run ends at the state before the step; if a shutdown request caused this, it is answered.
 void Run::tell_given_up()
 {
     const publish::Busy busy = publish::words_of(s_.progress().look(), simulation::now_ns());
-    spdlog::error("{}: given up, since the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy),
+    spdlog::error("{}: abandoned, because the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy),
                   s_.time());
     service_.take_requests();
 }
 
-/// What still waits goes with the snapshot. True if there is one now.
+/// Requests that still wait are saved with the snapshot. True if a snapshot was made.
 bool Run::save()
 {
     if (options_.save.empty()) return false;
@@ -194,7 +194,7 @@ bool Run::finish()
     const bool saved = save();
     if (const std::size_t own = service_.close(); own > 0 && !saved)
     {
-        spdlog::error("{} requests found no step to take effect at: the run did not reach it", own);
+        spdlog::error("{} requests did not take effect: the run did not reach their step", own);
         fine_ = false;
     }
     if (const std::string why = service_.lost(); !why.empty())
@@ -230,7 +230,7 @@ int Run::go()
             (void)wake_.wait_until(now + kHeartbeat);
             continue;
         }
-        // Requests are served while the next step is not due yet: they wait for no clock, only for a step that runs.
+        // Requests are served while the next step is not due yet: they do not wait for the clock, only for a running step.
         const auto due = pacer_.due(s_.time() + s_.dt(), s_.rate(), s_.run(), now);
         if (due > now && (wake_.wait_until(due) || Clock::now() < due))
         {
@@ -242,7 +242,7 @@ int Run::go()
     overseer.reset();
     if (!finish()) return 1;
     if (!is_cut()) return s_.gave_up() ? kExitGaveUp : 0;
-    spdlog::warn("interrupted by {} at t = {:.9g} s, step {}: --until {:.9g} was not reached, and files end there",
+    spdlog::warn("interrupted by {} at t = {:.9g} s, step {}: --until {:.9g} was not reached, and the files end there",
                  program::name_of_interruption(), s_.time(), s_.tick(), options_.until);
     return program::code_of_interruption();
 }

@@ -10,8 +10,8 @@
 namespace plab::daemon
 {
 
-/// Returns the exit code. `stop` ends the run at the next step boundary; whoever sets it wakes `wake`, and asks the interruption that
-/// the simulation obeys.
+/// Returns the exit code. `stop` ends the run at the next step boundary; the caller that sets it must wake `wake`, and set the
+/// interruption that the simulation checks.
 int run(simulation::Simulation& simulation, Service& service, const DaemonOptions& options, const Wake& wake,
         const std::atomic<bool>& stop);
 

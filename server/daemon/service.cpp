@@ -20,11 +20,11 @@ constexpr std::size_t kMostTimed = 4096;
 
 void wake_up(void* wake) { static_cast<const Wake*>(wake)->wake(); }
 
-/// Text of others, for a log: no control characters, no more than a line.
+/// Makes foreign text safe for a log: no control characters, at most one line.
 std::string one_line(std::string text)
 {
-    constexpr std::size_t kLongest = 300;
-    if (text.size() > kLongest) text.resize(kLongest), text += " ...";
+    constexpr std::size_t kLongestLine = 300;
+    if (text.size() > kLongestLine) text.resize(kLongestLine), text += " ...";
     for (char& c : text)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
     return text;
@@ -147,7 +147,7 @@ void Service::accept(const publish::RequestText& text, control::Wanted wanted, d
     post(std::move(wanted.request), std::move(origin));
 }
 
-/// Who asked. A request that a snapshot made wait again is still that client's, who was answered long ago.
+/// The client that asked. A request that a snapshot restored still belongs to that client, which was answered long ago.
 std::optional<Service::Origin> Service::origin_of(std::uint64_t request)
 {
     if (auto asked = waiting_.extract(request)) return std::move(asked.mapped());
@@ -190,16 +190,16 @@ void Service::shut_down(const publish::RequestText& text)
     shutdown_ = true;
 }
 
-/// Whoever waits for the request hears that it was taken back.
+/// The client that waits for the request is told that it was cancelled.
 void Service::cancel(const publish::RequestText& text, const control::Wanted::Cancelled& which)
 {
     const auto waits = std::find_if(waiting_.begin(), waiting_.end(),
                                     [&](const auto& w) { return w.second.client == which.client && w.second.number == which.number; });
     if (waits == waiting_.end() || !simulation_->withdraw(waits->first))
-        return refuse(text, Errors{reason("no such request waits: it took effect, was refused, or never came")}, 0);
+        return refuse(text, Errors{reason("no such request is waiting: it took effect, was refused, or never arrived")}, 0);
     simulation::Reply taken_back;
     taken_back.step = simulation_->tick(), taken_back.revision = simulation_->revision();
-    taken_back.errors = {reason("taken back before it took effect")};
+    taken_back.errors = {reason("cancelled before it took effect")};
     const Origin origin = std::move(waiting_.extract(waits).mapped());
     note(origin, taken_back);
     ++refused_;
@@ -242,7 +242,7 @@ bool Service::answer()
     for (simulation::Reply& reply : simulation_->take_replies())
     {
         const auto asked = origin_of(reply.request);
-        if (!asked) continue;  // nobody asked for it under this number
+        if (!asked) continue;  // no client sent a request with this number
         const Origin& origin = *asked;
         reply.pause_ns += origin.read_ns;
         ++(reply.done ? done_ : refused_);
@@ -261,7 +261,7 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
 {
     for (const Error& e : reply.errors)
     {
-        // What a client gets wrong is told to the client; the log of the server does not fill up with it.
+        // Errors of a client are reported to the client; they must not fill the server's log.
         spdlog::log(origin.from_bus ? spdlog::level::debug : spdlog::level::err, "request refused at step {}: {}", reply.step,
                     one_line(e.text()));
     }
@@ -281,7 +281,7 @@ void Service::note(const Origin& origin, const simulation::Reply& reply)
         event.kind = "request." + op.verb, event.component = op.target, event.message = op.argument;
         collector_.note(*simulation_, event);
     }
-    // One request may exchange many: a pattern names none of them.
+    // One request may exchange many components; a pattern does not name them individually.
     for (const simulation::SwapReport& swap : reply.swaps)
     {
         event.kind = "request.swap", event.component = swap.id, event.message = swap.from + " -> " + swap.to;

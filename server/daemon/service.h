@@ -1,4 +1,5 @@
-/// What plabd does for clients: requests in, answers and records out. Without a bus it serves the command line only.
+/// What plabd does for clients: receives requests, and sends answers and records. Without a bus it serves the command line
+/// only.
 #pragma once
 
 #include <map>
@@ -21,32 +22,33 @@ class Service final : public ImageSink
 public:
     Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const DaemonOptions& options);
 
-    /// Loads bus.so and joins. `wake` must outlive this, and `interruption`, which a client's shutdown asks.
+    /// Loads bus.so and joins the bus. `wake` must outlive this object, and so must `interruption`, which a client's shutdown
+    /// request sets.
     Result<void> open_bus(const DaemonOptions& options, const Wake& wake, Interruption& interruption);
 
-    /// Loads record.so and begins to write the recording that the options name.
+    /// Loads record.so and starts the recording that the options describe.
     Result<void> open_recording(const DaemonOptions& options);
 
     /// A request of the command line.
     void post(simulation::Request request);
-    /// Requests that waited when a snapshot was written, in its words, wait again.
+    /// Restores the requests that waited when a snapshot was written, in its text form; they wait again.
     Result<void> take_over(const std::vector<std::string>& waiting);
-    /// A snapshot of the present, with what waits.
+    /// A snapshot of the current state, with the waiting requests.
     Result<void> save(const std::string& file) const;
-    /// Requests that have arrived on the bus go to the simulation; those that are nonsense are refused.
+    /// Passes requests that have arrived on the bus to the simulation; invalid ones are refused.
     void take_requests();
-    /// Answers those that took effect (or did not): to clients, as events, as log lines. False if one of the command line
-    /// was refused: a run that was asked for something else must not pass for it.
+    /// Answers requests that took effect or failed: to clients, as events, as log lines. False if one of the command line was
+    /// refused, because the run is then not the one that was asked for.
     bool answer();
     /// Records for observers: after a step, or (`stepped` false) after requests between steps.
     void publish(bool stepped);
-    /// While paused: what observers that have just come must see.
+    /// While paused: sends what new observers must see.
     void idle();
     void publish_status(double rate_reached, double slipped, bool slipping);
 
-    /// The end: clients whose requests still wait are told. The number of the command line's that wait.
+    /// The end: tells clients whose requests still wait. Returns the number of waiting requests of the command line.
     std::size_t close();
-    /// Ends the recording. False if its file is not whole, or something was dropped; said in the log.
+    /// Ends the recording. False if its file is incomplete, or something was dropped; the log has the details.
     bool close_recording();
 
     bool shutdown_wanted() const { return shutdown_; }
@@ -62,13 +64,13 @@ private:
     struct Origin
     {
         bool from_bus = false;
-        bool was_answered = false;  ///< in a run before: a snapshot makes it wait again, and its client has gone on since
+        bool was_answered = false;  ///< in an earlier run: a snapshot restored it, and its client has its answer already
         publish::ClientId client{};
         std::uint64_t number = 0;
         std::int64_t arrived_ns = 0;
-        double read_ns = 0;  ///< what it took to understand it, on the step thread
+        double read_ns = 0;  ///< time to parse it, on the step thread
         std::vector<control::Description> operations;
-        std::vector<publish::OperationText> texts;  ///< the same, as the journal keeps them
+        std::vector<publish::OperationText> texts;  ///< the same as text, for the journal
     };
     void accept(const publish::RequestText& text, control::Wanted wanted, double read_ns);
     void refuse(const publish::RequestText& text, Errors errors, double read_ns);
@@ -90,15 +92,15 @@ private:
     plugins::PluginLibrary* library_;
     std::string scene_file_;
     std::uint32_t threads_;
-    plugins::Module module_;  // goes after bus_
+    plugins::Module module_;  // destroyed after bus_
     std::unique_ptr<bus::Bus> bus_;
-    std::optional<RecordModule> record_module_;  // goes after recording_
+    std::optional<RecordModule> record_module_;  // destroyed after recording_
     std::unique_ptr<record::Recording> recording_;
     publish::Collector collector_;
     const Wake* wake_ = nullptr;
-    SnapshotDesk snapshots_;  // wakes the loop; what it uses stands above
+    SnapshotDesk snapshots_;  // wakes the loop; the members that it uses are declared above
     std::map<std::uint64_t, Origin> waiting_;
-    /// Requests that name a step, also after they took effect: a snapshot may make them wait again.
+    /// Requests that name a step, even after they took effect: a snapshot may restore them.
     std::map<std::uint64_t, Origin> timed_;
     std::uint64_t last_request_ = 0, done_ = 0, refused_ = 0;
     bool shutdown_ = false;

@@ -1,4 +1,4 @@
-/// What of the service concerns recordings, snapshots and requests that wait in them.
+/// The part of the service that concerns recordings, snapshots and the requests that snapshots contain.
 #include <spdlog/spdlog.h>
 
 #include "control/waiting.h"
@@ -64,9 +64,9 @@ std::vector<std::string> Service::words_of(const simulation::Snapshot& snapshot)
         if (const auto said = timed_.find(request->id); said != timed_.end())
             text.operations = said->second.texts;
         else if (const auto asked = waiting_.find(request->id); asked != waiting_.end())
-            text.operations = asked->second.texts;  // names no step: it came with the one that asks for the snapshot
+            text.operations = asked->second.texts;  // without a step: it came together with the request for the snapshot
         else
-            spdlog::warn("a request that waits for step {} is too old: the snapshot goes without it", request->at.value_or(-1));
+            spdlog::warn("a request that waits for step {} is too old: the snapshot does not contain it", request->at.value_or(-1));
         if (request->at) text.at = *request->at;
         if (request->revision) text.revision = static_cast<std::int64_t>(*request->revision);
         out.push_back(control::text_of(text));
@@ -90,7 +90,7 @@ void Service::write_journal(const Origin& origin, const simulation::Reply& reply
     send_named_snapshots(origin);
 }
 
-/// Whoever reads snapshots gets those that are asked for, too: this is how a client brings one home.
+/// Readers of snapshots also get those that clients request: this is how a client downloads one.
 void Service::send_named_snapshots(const Origin& origin)
 {
     if (!collector_.anybody_reads_snapshots()) return;
@@ -105,19 +105,19 @@ void Service::send_named_snapshots(const Origin& origin)
 void Service::make_snapshot(const simulation::Snapshot& snapshot, const std::string& name, const char* cause)
 {
     if (snapshots_.begin(snapshot, words_of(snapshot), name, cause)) return;
-    // Said at the first, the second, the fourth ...: the log does not fill up with it.
+    // Logged at the first, the second, the fourth ... occurrence, so that the log does not fill up.
     if (const std::uint64_t n = snapshots_.left_out(); (n & (n - 1)) == 0)
-        spdlog::warn("{} snapshots were left out so far: they are wanted faster than they can be written down", n);
+        spdlog::warn("{} snapshots were skipped so far: they are requested faster than they can be written", n);
 }
 
-/// Hands over those that have been made; none waits for another, nor the loop for any.
+/// Hands over the snapshots that are complete; neither they nor the loop wait for others.
 void Service::send_snapshots()
 {
     while (auto made = snapshots_.take())
         if (*made)
             collector_.snapshot(**made);
         else
-            spdlog::error("no snapshot was written down: {}", made->error().text());
+            spdlog::error("no snapshot was written: {}", made->error().text());
 }
 
 std::vector<publish::KeptSnapshot> Service::kept_snapshots() const

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "daemon/ending.h"
 #include "daemon/recording.h"
 #include "daemon/runner.h"
 #include "program/interruption.h"
@@ -19,12 +20,12 @@ namespace plab::daemon
 namespace
 {
 
-/// Rows of the course that is told.
-constexpr int kRows = 20;
-/// Steps of one future before the other has its turn: enough that its data are near again for most of them.
+/// Number of printed rows of the comparison.
+constexpr int kShadowRows = 20;
+/// Number of steps of one future before the other has its turn: enough that its data are in the cache for most of them.
 constexpr std::int64_t kPiece = 16;
 
-/// CPU time of this thread, s: what else the machine does is nobody's cost.
+/// CPU time of this thread, s: independent of other load on the machine.
 double thread_seconds()
 {
     timespec now{};
@@ -40,18 +41,12 @@ double median_of(std::vector<double> values)
     return *middle;
 }
 
-int fail(const Errors& errors)
-{
-    for (const Error& e : errors) (void)std::fprintf(stderr, "%s\n", e.text().c_str());
-    return 1;
-}
-
-/// How far two states of a scene are apart.
+/// Distance between two states of a scene.
 struct Gap
 {
     double time = 0;                             ///< s
     double distance = 0, turn = 0;               ///< m, rad: the largest of any body, or shaft (turn)
-    std::string farthest, most_turned;           ///< whose they are
+    std::string farthest, most_turned;           ///< ids of these objects
     double energy_without = 0, energy_with = 0;  ///< J
 };
 
@@ -89,7 +84,7 @@ struct Future
 
 double angle_between(const Quat& a, const Quat& b)
 {
-    if (a == b) return 0;  // the product of the same bits is rounded, and is no exact unit
+    if (a == b) return 0;  // avoids rounding: the product of a quaternion with its own conjugate is not exactly one
     const Quat d = conjugate(a) * b;
     return 2 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::fabs(d.w));
 }
@@ -101,7 +96,7 @@ Gap gap_between(const Future& without, const Future& with)
     const world::World &a = without.simulation.world(), &b = with.simulation.world();
     const auto widen = [](double value, double& most, std::string& whose, const std::string& id)
     {
-        // Something that is lost to infinity is farther than anything.
+        // A position that is no longer finite counts as infinitely far.
         if (value > most || !(value == value)) most = value, whose = id;
     };
     for (const std::uint32_t i : a.in_id_order())
@@ -166,13 +161,13 @@ void print(const Outcome& o, const Future& without, const Future& with, const Sh
 {
     const double steps = static_cast<double>(std::max<std::int64_t>(1, o.steps));
     const std::string from = o.reply.swaps.empty() ? "?" : o.reply.swaps.front().from;
-    std::printf("%s: %s (as it is) beside %s (shadow), from step %" PRId64 " (t = %.9g s), %" PRId64 " steps\n", choice.id.c_str(),
+    std::printf("%s: %s (unchanged) beside %s (shadow), from step %" PRId64 " (t = %.9g s), %" PRId64 " steps\n", choice.id.c_str(),
                 from.c_str(), choice.type.c_str(), o.from, o.begin, o.steps);
-    std::printf("%-24s %14s %14s\n", "", "as it is", "shadow");
+    std::printf("%-24s %14s %14s\n", "", "unchanged", "shadow");
     std::printf("%-24s %14.3f %14.3f\n", "cost, us per step", median_of(without.costs) * 1e-3, median_of(with.costs) * 1e-3);
     std::printf("%-24s %14.3f %14.3f\n", "mean, with rare events", without.cpu_ns / steps * 1e-3, with.cpu_ns / steps * 1e-3);
     std::printf("%-24s %14.3g %14.3g\n", "largest error", without.worst_error, with.worst_error);
-    std::printf("\n%12s %14s  %-20s %14s  %-20s %14s\n", "t (s)", "apart (m)", "by", "turned (rad)", "by", "energy (J)");
+    std::printf("\n%12s %14s  %-20s %14s  %-20s %14s\n", "t (s)", "distance (m)", "by", "angle (rad)", "by", "energy (J)");
     for (const Gap& g : o.trajectory)
         std::printf("%12.6g %14.6g  %-20s %14.6g  %-20s %+14.6g\n", g.time, g.distance, g.farthest.c_str(), g.turn, g.most_turned.c_str(),
                     g.energy_with - g.energy_without);
@@ -197,17 +192,17 @@ int run_shadow(plugins::PluginLibrary& library, const DaemonOptions& options, co
     if (!outcome.reply.done) return fail(outcome.reply.errors);
 
     const auto steps = static_cast<std::int64_t>(std::llround(options.shadow.seconds / without.simulation.dt()));
-    const std::int64_t every = std::max<std::int64_t>(1, steps / kRows);
+    const std::int64_t every = std::max<std::int64_t>(1, steps / kShadowRows);
     program::catch_signals();
     program::Progress progress(options.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal);
     const auto gave_up = [&] { return without.simulation.gave_up() || with.simulation.gave_up(); };
     while (outcome.steps < steps && !stop && !gave_up())
     {
         progress.show_share("shadow of " + options.shadow.id, static_cast<double>(outcome.steps) / static_cast<double>(steps));
-        // A piece ends where a row is told; the first row is that of the first step.
+        // A piece ends where a row is printed; the first row is that of the first step.
         const std::int64_t to_row = outcome.steps == 0 ? 1 : every - outcome.steps % every;
         const std::int64_t piece = std::min({kPiece, to_row, steps - outcome.steps});
-        // Each is first as often as the other: what else the machine does meets both.
+        // Each future goes first equally often, so that other load on the machine affects both.
         const bool turn = without.costs.size() % 2 == 0;
         (turn ? without : with).go(piece, options.shadow.id);
         (turn ? with : without).go(piece, options.shadow.id);
@@ -225,7 +220,7 @@ int run_shadow(plugins::PluginLibrary& library, const DaemonOptions& options, co
     }
     else
         print(outcome, without, with, options.shadow);
-    if (gave_up()) (void)std::fprintf(stderr, "a step was given up: what is told ends before it\n");
+    if (gave_up()) (void)std::fprintf(stderr, "a step was abandoned: the comparison ends before it\n");
     if (!is_cut) return 0;
     (void)std::fprintf(stderr, "plabd: interrupted by %s after %" PRId64 " of %" PRId64 " steps\n", program::name_of_interruption().c_str(),
                        outcome.steps, steps);

@@ -1,4 +1,4 @@
-/// plabd --shadow: what a swap would do, before it is done.
+/// plabd --shadow: shows the effect of a swap before it is made.
 #pragma once
 
 #include <atomic>
@@ -9,9 +9,9 @@
 namespace plab::daemon
 {
 
-/// A snapshot's future twice, in turn, some steps at a time: as it is, and with one interaction exchanged. Prints how far they
-/// part, object by object, and what each costs: CPU time of the step thread, the median of pieces and the mean. Returns the
-/// exit code.
+/// Simulates two futures of a snapshot, alternating after a number of steps: one unchanged, one with an interaction exchanged.
+/// Prints how far they diverge, object by object, and what each costs: CPU time of the step thread, the median of pieces and
+/// the mean. Returns the exit code.
 int run_shadow(plugins::PluginLibrary& library, const DaemonOptions& options, const std::atomic<bool>& stop,
                const Interruption& interruption);
 

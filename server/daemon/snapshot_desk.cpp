@@ -24,7 +24,7 @@ bool SnapshotDesk::begin(const simulation::Snapshot& snapshot, std::vector<std::
         const std::lock_guard lock(mutex_);
         if (tasks_.size() >= (std::string_view(cause) == "periodic" ? kMostPeriodic : kMost)) return ++left_out_, false;
     }
-    // Types are asked here, on the step thread: a plugin may have to be loaded for them.
+    // Types are resolved here, on the step thread, because this may load a plugin.
     if (scene_ != snapshot->world.scene) scene_ = snapshot->world.scene, blueprint_ = blueprint::write_long_form(*scene_, *types_);
     Task task{snapshot, std::move(waiting), {}};
     publish::SnapshotRecord& out = task.record;
@@ -63,7 +63,7 @@ void SnapshotDesk::work()
     {
         changed_.wait(lock, [this] { return is_over_ || !tasks_.empty(); });
         if (is_over_) return;
-        Task& task = tasks_.front();  // stays where it is while others come
+        Task& task = tasks_.front();  // keeps its address while others are added
         lock.unlock();
         auto bytes = simulation::encode(task.snapshot, task.waiting);
         if (bytes) task.record.data = bytes.take();

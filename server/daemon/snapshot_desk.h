@@ -1,5 +1,5 @@
-/// Snapshots on their way to whoever reads them: written down by a thread of its own, since of a large scene that takes longer
-/// than a step.
+/// Snapshots on their way to their readers: serialized by a separate thread, because for a large scene this takes longer than a
+/// step.
 #pragma once
 
 #include <atomic>
@@ -20,8 +20,8 @@
 namespace plab::daemon
 {
 
-/// Makes snapshots into records: bytes, and the blueprint of the scene as it is, in the order in which they came. But for
-/// finish(), nobody waits here; the thread is there from the first snapshot on. All calls are the step thread's.
+/// Converts snapshots to records: bytes, and the blueprint of the scene at that time, in order of arrival. Only finish() waits;
+/// the thread exists from the first snapshot on. All calls are made by the step thread.
 class SnapshotDesk
 {
 public:
@@ -31,10 +31,10 @@ public:
     SnapshotDesk(const SnapshotDesk&) = delete;
     SnapshotDesk& operator=(const SnapshotDesk&) = delete;
 
-    /// `waiting`: the words of the snapshot's waiting requests, one for each. False: too many are waiting to be written
-    /// down, this one is left out (and counted). One that comes now and then finds less room than one that is asked for.
+    /// `waiting`: the snapshot's waiting requests as text, one entry each. False: too many snapshots wait to be serialized, and
+    /// this one is skipped (and counted). Periodic snapshots are allowed less room than requested ones.
     bool begin(const simulation::Snapshot& snapshot, std::vector<std::string> waiting, std::string name, const char* cause);
-    /// The next record, if one is made.
+    /// The next finished record, if there is one.
     std::optional<Result<publish::SnapshotRecord>> take();
     /// Waits until all are made.
     void finish();
@@ -53,14 +53,14 @@ private:
 
     model::TypeSource* types_;
     std::function<void()> say_made_;
-    std::shared_ptr<const model::SceneSpec> scene_;  ///< that blueprint_ is of
+    std::shared_ptr<const model::SceneSpec> scene_;  ///< the scene that blueprint_ describes
     std::string blueprint_;
     std::uint64_t left_out_ = 0;
 
     std::atomic<std::size_t> ready_{0};  ///< records in made_: asked at each step
-    std::mutex mutex_;                   ///< of what follows
+    std::mutex mutex_;                   ///< protects what follows
     std::condition_variable changed_;
-    std::deque<Task> tasks_;  ///< the first one is being written down
+    std::deque<Task> tasks_;  ///< the first one is being serialized
     std::deque<Result<publish::SnapshotRecord>> made_;
     bool is_over_ = false;
     std::thread worker_;

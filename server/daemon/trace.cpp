@@ -13,10 +13,10 @@ namespace plab::daemon
 namespace
 {
 
-/// Stands for the work that a component has done, which is no field of it.
+/// Denotes the work that a component has done, which is not one of its fields.
 constexpr const char* kWork = "work";
 
-/// The numbers of a value; none of texts and of what only a plugin can read.
+/// The numbers of a value; empty for texts and opaque values of a plugin.
 std::vector<double> numbers_of(const Value& value)
 {
     if (const auto* v = std::get_if<double>(&value)) return {*v};
@@ -28,7 +28,7 @@ std::vector<double> numbers_of(const Value& value)
     return {};
 }
 
-/// What the columns of a value are called behind "ID.field".
+/// Suffixes of a value's columns after "ID.field".
 std::vector<std::string> suffixes_of(const Value& value)
 {
     if (std::holds_alternative<Vec3>(value)) return {".x", ".y", ".z"};
@@ -39,7 +39,7 @@ std::vector<std::string> suffixes_of(const Value& value)
     return out;
 }
 
-/// An id or a name in a line of CSV.
+/// Escapes an id or a name for a line of CSV.
 std::string cell(const std::string& text)
 {
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
@@ -58,7 +58,7 @@ std::vector<std::string> fields_of_object(const world::Component& c)
 Value value_of(const simulation::Simulation& s, std::uint32_t i, const std::string& field)
 {
     const world::Component& c = s.world().component(i);
-    // Not every type of body declares all of its motion: what stands still has no speed to set, and is traced all the same.
+    // Not every type of body declares its whole motion: a static body has no speed to set, but is traced as well.
     if (c.facet == Facet::Body || c.facet == Facet::Shaft) return world::get_hosted(s.world().host(), c.facet, c.host_index, field);
     if (field != kWork) return s.world().get(i, field);
     const std::vector<double>& work = s.stepper().work();
@@ -107,7 +107,7 @@ void Trace::sample(const simulation::Simulation& s, bool last)
     for (const double v : {t.kinetic + t.stored, t.kinetic, t.momentum.x, t.momentum.y, t.momentum.z}) row += "," + number(v);
     for (const Columns& c : columns_)
     {
-        // Who is gone, or has been exchanged for a type without that output, leaves its columns empty.
+        // A component that was removed, or exchanged for a type without that output, leaves its columns empty.
         const std::uint32_t i = s.world().find(c.component);
         const bool there = i != kNoIndex && (c.output ? is_listed(s.world(), i) : is_shown(s.world().component(i)));
         const bool known = there && (!c.output || c.field == kWork || s.world().table_of(i).schema().find_field(c.field));

@@ -1,4 +1,4 @@
-/// The course that plabd writes, as CSV. Columns are documented in server/docs/output.md.
+/// The trajectories that plabd writes, as CSV. Columns are documented in server/docs/output.md.
 #pragma once
 
 #include <cstdio>
@@ -14,9 +14,9 @@ namespace plab::daemon
 class Trace
 {
 public:
-    /// Writes the header. Columns are those of the components that the scene has now.
+    /// Writes the header. Its columns are those of the components that the scene has now.
     static Result<std::unique_ptr<Trace>> open(const std::string& file, const simulation::Simulation& simulation, double every);
-    /// A row if the time for one has come; always if `last`.
+    /// Writes a row if one is due; always if `last`.
     void sample(const simulation::Simulation& simulation, bool last = false);
 
 private:
@@ -30,7 +30,7 @@ private:
     {
         std::string component, field;
         std::size_t count = 1;
-        bool output = false;  ///< of an interaction: whoever takes its place may not have it
+        bool output = false;  ///< of an interaction: a component that replaces it may not have this output
     };
     void add(const simulation::Simulation& simulation, std::uint32_t component, const std::string& field, bool output, std::string& header);
 

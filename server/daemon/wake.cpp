@@ -30,7 +30,7 @@ Wake::~Wake()
 void Wake::wake() const
 {
     const std::uint64_t one = 1;
-    // A full counter is a wake that nobody has read yet: nothing is lost.
+    // If the counter is full, an earlier wake has not been read yet: nothing is lost.
     [[maybe_unused]] const auto written = ::write(descriptor_, &one, sizeof one);
 }
 

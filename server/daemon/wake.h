@@ -20,11 +20,11 @@ public:
     Wake& operator=(const Wake&) = delete;
     ~Wake();
 
-    /// From any thread, and from a signal handler.
+    /// May be called from any thread, and from a signal handler.
     void wake() const;
-    /// Until somebody wakes, or `due`. True if somebody did, also before this call.
+    /// Sleeps until a wake or until `due`. True if there was a wake, also before this call.
     bool wait_until(Clock::time_point due) const;
-    /// An eventfd: who adds 1 to it wakes.
+    /// An eventfd: adding 1 to it wakes the loop.
     int descriptor() const { return descriptor_; }
 
 private:

@@ -96,7 +96,7 @@ Scale Scale::around(Kind kind, const std::vector<double>& values)
     if (kind == Kind::SymLog)
     {
         const double reach = std::max({std::fabs(low), std::fabs(high), 1e-300});
-        // At most twelve decades: what is smaller is nothing beside the rest.
+        // At most twelve decades: smaller values are negligible beside the rest.
         out.threshold = std::max(std::isfinite(smallest) ? std::pow(10.0, std::floor(std::log10(smallest))) : reach, reach * 1e-12);
         out.low = low < 0 ? low * 2 : 0, out.high = high > 0 ? high * 2 : 0;
         if (out.low == out.high) out.high = 1;

@@ -1,4 +1,4 @@
-/// Axes: what a value is on the paper, ticks, grid, labels.
+/// Axes: mapping of values to positions, ticks, grid, labels.
 #pragma once
 
 #include "figures/drawing.h"
@@ -21,7 +21,7 @@ struct Scale
     /// 0 at low, 1 at high.
     double at(double value) const;
 
-    /// Around the values, with room; those that are not finite (or, on log axes, not positive) do not count.
+    /// Encloses the values, with a margin; those that are not finite (or, on log axes, not positive) do not count.
     static Scale around(Kind kind, const std::vector<double>& values);
 };
 
@@ -32,16 +32,16 @@ struct Mark
 };
 std::vector<Mark> marks_of(const Scale& scale, int most = 8);
 
-/// Words beside things, each only where nothing stands yet.
+/// Places labels only where there is no other label yet.
 class Labels
 {
 public:
     static constexpr double kSize = 10.5;
 
-    /// Something is there, so far to all sides.
+    /// Marks a place as occupied, by this much in all directions.
     void occupy(Spot at, double reach) { taken_.push_back({at.x - reach, at.y - reach, at.x + reach, at.y + reach}); }
     void occupy(double left, double top, double right, double bottom) { taken_.push_back({left, top, right, bottom}); }
-    /// At the first free corner of `at`; not at all where there is none, or the same words stand near by.
+    /// Places the text at the first free corner of `at`; not at all if there is none, or if the same text is nearby.
     void add(Drawing& drawing, Spot at, const std::string& text, double size = kSize, Ink ink = {Ink::Role::Muted, 0, 0, 0, 0},
              bool bold = false);
 
@@ -54,12 +54,12 @@ private:
     std::vector<std::pair<Spot, std::string>> words_;
 };
 
-/// The area where data stand.
+/// The area of the data.
 struct Panel
 {
     double left = 0, top = 0, width = 1, height = 1;  ///< px
     Scale x, y;
-    std::vector<Mark> x_marks;  ///< instead of the scale's own, if there are any
+    std::vector<Mark> x_marks;  ///< instead of the scale's own ticks, if there are any
 
     Spot at(double vx, double vy) const { return {left + width * x.at(vx), top + height * (1 - y.at(vy))}; }
     double right() const { return left + width; }
@@ -71,7 +71,7 @@ void draw_panel(Drawing& drawing, const Panel& panel, const std::string& x_name,
 
 /// "10⁻⁶", "0.002": short numbers for ticks.
 std::string power_of_ten(int exponent);
-/// "3.2e-07" as people write it: 3.2·10⁻⁷, or plain where that is short.
+/// "3.2e-07" in readable form: 3.2·10⁻⁷, or as a plain number if that is short.
 std::string short_number(double value);
 
 }  // namespace plab::figures

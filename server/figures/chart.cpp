@@ -12,7 +12,7 @@ namespace
 constexpr double kWidth = 980, kLeft = 96, kRight = 28;  // px
 constexpr double kHead = 48, kMomentLine = 15, kPanel = 210, kOnlyPanel = 290, kBetween = 22, kFoot = 56;
 constexpr double kLegendLine = 19, kLegendSize = 12, kMomentSize = 10.5;
-constexpr double kNear = 3;  // px between marks that become one
+constexpr double kNear = 3;  // px; marks closer than this are merged
 const Ink kMuted{Ink::Role::Muted, 0, 0, 0, 0};
 
 struct Group
@@ -63,7 +63,7 @@ Scale values_of(const Group& group, const Chart& chart)
 
 bool is_on(const Scale& x, double at) { return at >= x.low && at <= x.high; }
 
-/// Pieces between the points that have no place on the scale.
+/// The segments between points that have no position on the scale.
 void draw_curve(Drawing& d, const Panel& p, const Curve& curve, const Pen& pen)
 {
     std::vector<Spot> piece;
@@ -103,13 +103,13 @@ void draw_legend(Drawing& d, const Panel& p, const Group& group)
         d.words({p.right() + 40, y + 4}, "and " + std::to_string(rest) + " more", {kLegendSize, kMuted, Anchor::Start, false, false});
 }
 
-/// Lines across all panels; their words in as many lines above the first one as it takes to keep them apart.
+/// Lines across all panels; their texts are in as many rows above the first panel as needed to keep them apart.
 class Moments
 {
 public:
     static constexpr std::size_t kMostLines = 4;
 
-    /// `right`: words may reach so far, above the legend.
+    /// `right`: texts may extend up to here, above the legend.
     Moments(const Chart& chart, const Scale& x, double left, double width, double right) : right_(right)
     {
         for (const Moment& m : chart.moments)
@@ -122,7 +122,7 @@ public:
         for (const Placed& p : placed_)
         {
             const bool is_change = p.moment->kind == Moment::Kind::Change;
-            // From its own words down, so that it does not cross those of others above.
+            // Starts below its own text, so that it does not cross the texts of others above.
             const double begin = top - height() + kMomentLine * static_cast<double>(std::min(p.line, ends_.size()));
             d.line({{p.x, begin}, {p.x, bottom}}, {is_change ? Ink{} : kMuted, is_change ? 1.1 : 1.4, is_change}, p.moment->words);
             if (p.line == kMostLines) continue;
@@ -137,8 +137,8 @@ private:
     {
         const Moment* moment;
         double x;
-        std::size_t line;  ///< kMostLines: no room for its words
-        bool is_left;      ///< they stand to its left
+        std::size_t line;  ///< kMostLines: no room for its text
+        bool is_left;      ///< the text is to the left of its line
     };
     void place(const Moment& m, double x)
     {
@@ -154,10 +154,10 @@ private:
 
     double right_;
     std::vector<Placed> placed_;
-    std::vector<double> ends_;  ///< of the words in each line
+    std::vector<double> ends_;  ///< of the texts in each row
 };
 
-/// Small triangles at the foot of a panel; what is near by shares one.
+/// Small triangles at the bottom of a panel; marks close to each other share one.
 void draw_notices(Drawing& d, const Panel& p, const Chart& chart)
 {
     for (const Moment::Kind kind : {Moment::Kind::Notice, Moment::Kind::Alarm})
@@ -181,12 +181,12 @@ bool has_notices(const Chart& chart)
 
 void draw_group(Drawing& d, const Panel& p, const Chart& chart, const Group& group, bool is_last)
 {
-    // Only the last panel has times at its foot.
+    // Only the last panel has times at its bottom.
     draw_panel(d, p, is_last ? chart.x_name : "", group.unit);
     const std::size_t count = std::min(group.curves.size(), kMostCurves);
     for (std::size_t i = 0; i < count; ++i)
     {
-        // The first are the broadest, so that lines that lie upon one another can all be seen.
+        // The first curves are the broadest, so that coinciding curves are all visible.
         Pen pen = pen_of(i);
         pen.width += 0.7 * static_cast<double>(std::min<std::size_t>(count - 1 - i, 5));
         draw_curve(d, p, *group.curves[i], pen);

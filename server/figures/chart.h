@@ -1,4 +1,4 @@
-/// Curves over time: one panel per unit below one another, a legend beside each, moments marked across all of them.
+/// Curves over time: one panel per unit, one below the other, with a legend beside each, and marked moments across all panels.
 #pragma once
 
 #include <utility>
@@ -8,7 +8,7 @@
 namespace plab::figures
 {
 
-/// Points by time. One whose value is no number breaks the line.
+/// Points by time. A point whose value is NaN interrupts the line.
 struct Curve
 {
     std::string name;
@@ -16,19 +16,19 @@ struct Curve
     std::vector<std::pair<double, double>> points;
 };
 
-/// Something that happened at a time.
+/// An event at a time.
 struct Moment
 {
     enum class Kind : std::uint8_t
     {
-        Change,  ///< a dashed line, its words at the top
-        Break,   ///< a grey line, its words at the top: what is left of it does not go on to its right
-        Notice,  ///< a small mark at the foot
+        Change,  ///< a dashed line with its text at the top
+        Break,   ///< a grey line with its text at the top: curves on its left do not continue to its right
+        Notice,  ///< a small mark at the bottom
         Alarm,   ///< the same, in another colour
     };
     double at = 0;
     Kind kind = Kind::Notice;
-    std::string words;  ///< of notices and alarms only shown as a hint
+    std::string words;  ///< the text of notices and alarms appears only as a hint
 };
 
 struct Chart
@@ -36,12 +36,12 @@ struct Chart
     std::string title, subtitle;
     std::string x_name = "time, s";
     Scale::Kind kind = Scale::Kind::Linear;
-    double least = 0;           ///< of SymLog: what is smaller is drawn linearly
-    std::vector<Curve> curves;  ///< panels in the order in which their units come first
+    double least = 0;           ///< of SymLog: smaller values are drawn linearly
+    std::vector<Curve> curves;  ///< panels are in the order in which their units first occur
     std::vector<Moment> moments;
 };
 
-/// Curves that a panel has room for; what is beyond is named in the legend only, as a number.
+/// Maximum number of curves in a panel; the legend states the number of the others.
 inline constexpr std::size_t kMostCurves = 16;
 
 Drawing draw(const Chart& chart);

@@ -1,7 +1,7 @@
-/// A drawing: a list of lines, areas, markers and words, written as SVG or rendered to PNG. Both come from one list.
-///
+/// A drawing: a list of lines, areas, markers and texts, written as SVG or rendered to PNG from the same list.
 /// Points are in pixels from the upper left corner. Colours are roles, not numbers: SVG follows the reader's light or dark
-/// theme. The series colours are those of Okabe and Ito (2008), told apart by colour-blind readers; shapes differ as well.
+/// theme. The series colours are those of Okabe and Ito (2008), which colour-blind readers can distinguish; shapes differ as
+/// well.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Ink
         Grid,
         Paper,
         Front,   ///< the Pareto front
-        Shade,   ///< what is not resolved
+        Shade,   ///< the unresolved region
         Series,  ///< `index`
         Exact,   ///< red, green, blue
     };
@@ -61,7 +61,7 @@ struct Words
     Ink ink;
     Anchor anchor = Anchor::Start;
     bool bold = false;
-    bool upright = false;  ///< turned by 90 degrees, reading upwards
+    bool upright = false;  ///< rotated by 90 degrees, reading upwards
 };
 
 class Drawing
@@ -74,14 +74,15 @@ public:
     double height() const { return height_; }
     const std::string& title() const { return title_; }
 
-    /// `hint` is shown when the pointer rests on it.
+    /// `hint` is shown when the pointer is over it.
     void line(std::vector<Spot> points, Pen pen, std::string hint = {});
     void area(std::vector<Spot> points, Ink fill, std::string hint = {});
     void box(Spot corner, double width, double height, Ink fill, std::string hint = {});
     void marker(Spot at, int shape, double size, Ink ink, bool filled, std::string hint = {});
     void words(Spot at, std::string text, Words how);
 
-    /// An <svg> element. `standalone`: with the XML head and its own colours; else those of svg_style() must be around.
+    /// An <svg> element. `standalone`: with an XML header and its own colours; otherwise the page must contain those of
+    /// svg_style().
     std::string svg(bool standalone) const;
     /// White paper, `scale` pixels per px.
     Result<void> write_png(const std::string& path, double scale = 1.5) const;
@@ -111,7 +112,7 @@ private:
     std::vector<Item> items_;
 };
 
-/// Classes of all inks, for light and dark.
+/// CSS classes of all inks, for light and dark themes.
 std::string svg_style();
 /// Red, green, blue of an ink on white paper, 0..1.
 struct Rgb
@@ -119,10 +120,10 @@ struct Rgb
     double r = 0, g = 0, b = 0;
 };
 Rgb light_color(const Ink& ink);
-/// About how wide a text is, px.
+/// Approximate width of a text, px.
 double text_width(const std::string& text, double size);
 
-/// & < > and quotes.
+/// Escapes & < > and quotes.
 std::string escape_markup(const std::string& text);
 
 }  // namespace plab::figures

@@ -56,7 +56,7 @@ document.querySelectorAll('table.sortable').forEach(t=>t.querySelectorAll('th').
   h.addEventListener('keydown',e=>{if(e.key==='Enter')sort()})}));
 )";
 
-constexpr std::size_t kLongText = 40;  // bytes: what is longer gets room, and is broken into lines
+constexpr std::size_t kLongText = 40;  // bytes; longer texts get more room, and are broken into lines
 
 std::string class_of(const PageCell& c)
 {
@@ -94,7 +94,7 @@ void Page::list(const std::vector<std::string>& items)
 
 void Page::figure(const Drawing& drawing, const std::string& caption)
 {
-    // A small picture is not blown up.
+    // A small picture is not enlarged.
     std::string svg = drawing.svg(false);
     if (drawing.width() < 800) svg.insert(4, " style=\"max-width:" + std::to_string(static_cast<int>(drawing.width() * 1.1)) + "px\"");
     body_ += "<figure>" + svg + "<figcaption>" + escape_markup(caption) + "</figcaption></figure>\n";

@@ -1,4 +1,4 @@
-/// The frame of a report: one HTML page that needs nothing else. Light and dark, printable.
+/// The frame of a report: one self-contained HTML page. Light and dark, printable.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace plab::figures
 {
 
-/// A table whose columns sort by a click. A cell: what is shown, what it sorts by (empty: the text), a hint.
+/// A table whose columns can be sorted by a click. A cell: the displayed text, the sort key (empty: the text), a hint.
 struct PageCell
 {
     std::string text, key, hint;

@@ -1,4 +1,4 @@
-// The same list through cairo.
+// Renders the same list of shapes with cairo.
 #include <cairo/cairo.h>
 
 #include <cmath>

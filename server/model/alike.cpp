@@ -11,7 +11,7 @@ namespace
 
 constexpr std::size_t kShown = 3;
 
-/// Each number as one '#': "b.12" and "b.7" are cells of one repeat.
+/// Replaces each number by '#': "b.12" and "b.7" are cells of one repeat.
 void add_without_numbers(std::string& out, const std::string& text)
 {
     for (const char c : text)

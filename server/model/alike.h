@@ -1,4 +1,4 @@
-/// Errors of one kind that a repetition makes by the thousand.
+/// Groups similar errors, of which a repetition may cause thousands.
 #pragma once
 
 #include "plab/result.h"
@@ -6,8 +6,8 @@
 namespace plab::model
 {
 
-/// The first few of those that stand at one place and say the same but for numbers, and then how many more there are: none is lost without
-/// a word. The order stays.
+/// Keeps the first few errors at one place whose texts differ only in numbers, and then states how many more there are, so that
+/// none disappears silently. The order is kept.
 Errors first_of_alike(Errors errors);
 
 }  // namespace plab::model

@@ -1,5 +1,5 @@
-/// The blueprint tree: what an author wrote, with the place of each word. Neither XML nor time is known here; the
-/// reader in server/blueprint makes it, compile() in compile.h turns it into a SceneSpec.
+/// The blueprint tree: what an author wrote, with the place of each word. It knows neither XML nor time; the reader in
+/// server/blueprint builds it, compile() in compile.h converts it to a SceneSpec.
 #pragma once
 
 #include <string>
@@ -34,7 +34,7 @@ struct ValueNode
 struct CommandNode
 {
     std::string id, name, subject, type;
-    std::string reference;             ///< <cmdref> standing alone in a list: the command with this id
+    std::string reference;             ///< <cmdref> on its own in a list: the command with this id
     std::vector<TextNode> parameters;  ///< <cmdparam>, names as written ("SetVelocityFactor")
     std::vector<CommandNode> children;
     SourceLocation where;
@@ -47,7 +47,7 @@ struct ComponentNode
     std::vector<TextNode> attributes;     ///< short form: all attributes but id, name, type
     std::vector<TextNode> parameters;     ///< <param>
     std::vector<ValueNode> values;        ///< from foreign XML
-    std::vector<std::string> references;  ///< <compref>: is the referred component, or, several: a group of them
+    std::vector<std::string> references;  ///< <compref>: the component is the one referred to, or, if there are several, a group of them
     std::vector<SourceLocation> reference_places;
     std::vector<ComponentNode> children;
     std::vector<CommandNode> commands;

@@ -1,4 +1,4 @@
-/// compile(): the passes in their order, and the scene that comes out.
+/// compile(): the passes in order, and the resulting scene.
 
 #include "model/compile.h"
 
@@ -18,7 +18,7 @@ namespace detail
 namespace
 {
 
-/// Cells of a repeat move what stands in them; shapes move with their bodies.
+/// Cells of a repeat move the components in them; shapes move with their bodies.
 void move_to_cell(Compilation& c, std::size_t i)
 {
     Draft& d = c.draft(i);
@@ -98,7 +98,7 @@ Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const S
     read_settings(c);
     declare_existing(c);
     declare_components(c);
-    if (c.limit_reported) return c.report.finish(all_ids(c), blueprint.file);  // what follows from it says nothing
+    if (c.limit_reported) return c.report.finish(all_ids(c), blueprint.file);  // follow-up errors would be meaningless
     link_references(c);
     settle_solver(c);
     collect_commands(c);
@@ -126,7 +126,7 @@ Result<std::vector<std::string>> resolve_participant(const SceneSpec& scene, Typ
     const Participants found = find_participants(c.directory, written, role);
     if (found.unknown) return reason(found.why + did_you_mean(written, all_ids(c)));
     if (!found.why.empty()) return reason(found.why);
-    if (found.members.empty()) return reason("role " + role.name + ": " + quoted(written) + " cannot be used, its type is not known");
+    if (found.members.empty()) return reason("role " + role.name + ": " + quoted(written) + " cannot be used: its type is not known");
     std::vector<std::string> ids;
     for (const std::size_t i : found.members) ids.push_back(c.draft(i).id);
     std::sort(ids.begin(), ids.end());

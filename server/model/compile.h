@@ -1,4 +1,4 @@
-/// From the tree that was written to the scene that it means.
+/// Compiles the blueprint tree to the scene that it describes.
 #pragma once
 
 #include "model/blueprint.h"
@@ -9,14 +9,14 @@
 namespace plab::model
 {
 
-/// Resolves types (loading plugins), ids, roles, groups, short forms, repeats and stage lists; checks every value.
-/// All errors are collected. `existing`: the scene that a fragment is added to; its ids can be referred to and not be
-/// defined again; the result then holds the fragment's components only.
+/// Resolves types (loading plugins), ids, roles, groups, short forms, repeats and stage lists; checks every value. All errors
+/// are collected. `existing`: the scene to which a fragment is added; its ids can be referred to but not defined again; the
+/// result then contains the fragment's components only.
 Result<SceneSpec> compile(const Blueprint& blueprint, TypeSource& types, const SceneSpec* existing = nullptr,
                           const CompileLimits& limits = {});
 
-/// The ids that `written` (an id, an alias, an object) stands for in a role with `facets` and `family`: the component
-/// itself, or the only fitting one inside an object. Reason on failure.
+/// The ids that `written` (an id, an alias, an object) denotes in a role with `facets` and `family`: the component itself, or
+/// the only matching one inside an object. On failure, the reason.
 Result<std::vector<std::string>> resolve_participant(const SceneSpec& scene, TypeSource& types, const std::string& written,
                                                      const Role& role);
 

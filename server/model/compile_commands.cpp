@@ -1,4 +1,4 @@
-/// Commands: where they are defined, whom they act on, and the parameters that they set.
+/// Commands: where they are defined, on which components they act, and the parameters that they set.
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ namespace
 
 constexpr std::string_view kStagePrefix = "Stage/";
 
-/// Figure 7 of the paper: a command with a component's type and no subject is that component, unnamed.
+/// Figure 7 of the paper: a command with a component's type and without a subject is itself that component, unnamed.
 bool makes_component(Compilation& c, const Command& command)
 {
     const CommandNode& node = *command.node;
@@ -37,15 +37,15 @@ void make_anonymous(Compilation& c, Command& command)
     bind_type(c, command.anonymous);
 }
 
-/// What a command may not be, whatever it refers to.
+/// Restrictions on a command that do not depend on what it refers to.
 std::string why_malformed(const CommandNode& node, bool is_stage)
 {
     if (!node.reference.empty()) return {};
     if (is_stage && !(node.type.empty() && node.subject.empty())) return "a stage has neither type nor subject";
-    if (is_stage) return node.parameters.empty() ? std::string() : "a cmdparam stands behind no command";
+    if (is_stage) return node.parameters.empty() ? std::string() : "a cmdparam does not follow a command";
     if (node.type.empty() && node.children.empty()) return "needs a type, or commands in it";
-    if (node.type.empty() && !node.subject.empty()) return "a composite has no subject: its parts have";
-    if (node.type.empty() && !node.parameters.empty()) return "a composite has no parameters: the subjects of its parts have";
+    if (node.type.empty() && !node.subject.empty()) return "a composite has no subject: its parts have one each";
+    if (node.type.empty() && !node.parameters.empty()) return "a composite has no parameters: set them on the subjects of its parts";
     if (!node.type.empty() && !node.children.empty()) return "has a type, so it cannot have commands in it";
     return {};
 }
@@ -70,7 +70,7 @@ void collect(Compilation& c, const CommandNode& node, std::size_t owner, bool in
     for (const CommandNode& child : node.children) collect(c, child, owner, in_stage || is_stage);
 }
 
-/// The only component inside a group that exports the command; kNone after a complaint.
+/// The only component inside a group that exports the command; kNone after an error was reported.
 std::size_t subject_inside(Compilation& c, const Command& command, std::size_t group)
 {
     std::vector<std::size_t> found;
@@ -90,7 +90,7 @@ std::size_t subject_inside(Compilation& c, const Command& command, std::size_t g
     return kNone;
 }
 
-/// Its subject is there already; those that short forms make come later.
+/// Its subject exists already; the subjects that short forms generate come later.
 bool can_be_applied(Compilation& c, const Command& command)
 {
     return command.node->subject.empty() || c.directory.find(component_id(command.cell, command.node->subject)) != kNone;
@@ -102,7 +102,7 @@ void apply_parameters(Compilation& c, const Command& command)
     if (i == kNone || !c.draft(i).type) return;
     if (c.draft(i).existing)
         return c.report.add(command.node->where, command_element(command),
-                            "subject " + quoted(c.draft(i).id) + " is in the running scene already: set its parameters by a request");
+                            "subject " + quoted(c.draft(i).id) + " is already in the running scene: set its parameters by a request");
     for (const TextNode& text : command.node->parameters) give_by_setter(c, i, text, command.cell);
 }
 
@@ -177,7 +177,7 @@ std::string written_subject(Compilation& c, const Command& command)
 
 void collect_commands(Compilation& c)
 {
-    const std::size_t written = c.directory.drafts.size();  // anonymous ones are added behind
+    const std::size_t written = c.directory.drafts.size();  // anonymous ones are appended
     for (std::size_t i = 0; i < written; ++i)
         if (const ComponentNode* node = c.draft(i).node)
             for (const CommandNode& command : node->commands) collect(c, command, i, false);

@@ -1,4 +1,4 @@
-/// Which components there are: ids, types, nesting, comprefs.
+/// Declares the components: ids, types, nesting, comprefs.
 
 #include <algorithm>
 #include <limits>
@@ -17,18 +17,18 @@ namespace
 
 constexpr std::size_t kLongestId = 200;
 
-/// What makes `id` unusable; nothing if it can be used.
+/// Why `id` cannot be used; empty if it can.
 std::string why_no_id(const std::string& id)
 {
     if (trimmed(id).empty()) return "needs an id";
-    if (id.size() > kLongestId) return "has an id of " + std::to_string(id.size()) + " characters, at most 200 are allowed";
+    if (id.size() > kLongestId) return "has an id of " + std::to_string(id.size()) + " characters; at most 200 are allowed";
     const auto is_control = [](char ch) { return static_cast<unsigned char>(ch) < 0x20 || ch == 0x7f; };
     if (std::any_of(id.begin(), id.end(), is_control)) return "has an id with a control character";
-    if (id == "*") return "has the id '*', which stands for everyone";
+    if (id == "*") return "has the id '*', which is reserved for all objects";
     return {};
 }
 
-/// A group of one compref and nothing else shares the component that it refers to.
+/// A group that consists of one compref only shares the component that it refers to.
 bool is_alias(const ComponentNode& node)
 {
     return node.type.empty() && node.references.size() == 1 && node.children.empty() && node.values.empty();
@@ -82,7 +82,7 @@ void declare_repeat(Compilation& c, const RepeatNode& node)
     Names& components = c.repeated_names.emplace_back();
     Names& commands = c.repeated_names.emplace_back();
     const std::size_t per_cell = std::max<std::size_t>(1, collect_names(node.components, components, commands));
-    // Three counts of at most 1e6 each: the product of more than one cell's components would not fit 64 bits.
+    // Three counts are at most 1e6 each: the product of more than one cell's components would not fit 64 bits.
     const bool overflows = repeat->cells() > std::numeric_limits<std::size_t>::max() / 16 / per_cell;
     const std::size_t wanted = overflows ? std::numeric_limits<std::size_t>::max() / 16 : repeat->cells() * per_cell;
     if (c.limit_reported || too_many(c, wanted, node.where, "repeat")) return;
@@ -106,9 +106,9 @@ void declare_repeat(Compilation& c, const RepeatNode& node)
     }
 }
 
-bool stands_before(const SourceLocation& a, const SourceLocation& b) { return a.line != b.line ? a.line < b.line : a.column < b.column; }
+bool is_above(const SourceLocation& a, const SourceLocation& b) { return a.line != b.line ? a.line < b.line : a.column < b.column; }
 
-/// The draft that a compref of `i` names, or kNone after a complaint.
+/// The draft that a compref of `i` names, or kNone after an error was reported.
 std::size_t find_reference(Compilation& c, std::size_t i, std::size_t n)
 {
     const Draft& d = c.draft(i);
@@ -119,7 +119,7 @@ std::size_t find_reference(Compilation& c, std::size_t i, std::size_t n)
     return found;
 }
 
-/// Everything inside a group counts as a step of a circle: its comprefs and its children.
+/// Everything inside a group counts as an edge of a possible circular reference: its comprefs and its children.
 void refuse_circles(Compilation& c)
 {
     std::vector<std::vector<std::size_t>> edges(c.directory.drafts.size());
@@ -147,7 +147,7 @@ void refuse_circles(Compilation& c)
     }
 }
 
-/// Points each alias to what it means in the end, so that long chains are walked once.
+/// Points each alias to its final target, so that long chains are followed only once.
 void flatten_aliases(Compilation& c)
 {
     std::vector<std::size_t> path;
@@ -161,7 +161,7 @@ void flatten_aliases(Compilation& c)
             seen[end] = true;
             path.push_back(end);
         }
-        // Where a walk meets its own path, nothing is meant; refuse_circles() says so.
+        // A path that meets itself has no target; refuse_circles() reports that.
         const bool circle = std::find(path.begin(), path.end(), end) != path.end();
         const std::size_t target = c.draft(end).alias == kNone ? end : c.draft(end).alias;
         for (const std::size_t k : path)
@@ -179,7 +179,7 @@ bool too_many(Compilation& c, std::size_t more, const SourceLocation& where, con
     const std::size_t before = c.directory.drafts.size(), most = c.limits.components;
     if (more <= most - std::min(most, before)) return false;
     std::string why = more == 1 ? "is one component too many" : "makes " + std::to_string(more) + " components";
-    if (before > 0 && more > 1) why += " beside the " + std::to_string(before) + " before it";
+    if (before > 0 && more > 1) why += " in addition to the " + std::to_string(before) + " before it";
     why += ": a scene has at most " + std::to_string(most);
     if (!c.limits.raised_by.empty()) why += " (" + c.limits.raised_by + " raises that)";
     if (!std::exchange(c.limit_reported, true)) c.report.add(where, element, why);
@@ -226,7 +226,7 @@ std::size_t add_draft(Compilation& c, Draft draft)
     const auto [it, fresh] = c.directory.index.emplace(d.id, i);
     if (fresh) return i;
     const Draft& first = c.draft(it->second);
-    // As written, not as in the cell, so that a repetition is complained about once.
+    // The id as written, not the one of the cell, so that a repetition is reported once.
     const std::string id = quoted(d.node ? d.node->id : d.id);
     d.broken = true;
     c.complain(i, d.where,
@@ -283,12 +283,12 @@ void declare_existing(Compilation& c)
 
 void declare_components(Compilation& c)
 {
-    // The two lists of the tree are in document order each; together by their places.
+    // Each of the two lists of the tree is in document order; merge them by their places.
     const std::vector<RepeatNode>& repeats = c.blueprint->repeats;
     std::size_t next = 0;
     for (const ComponentNode& node : c.blueprint->components)
     {
-        while (next < repeats.size() && stands_before(repeats[next].where, node.where)) declare_repeat(c, repeats[next++]);
+        while (next < repeats.size() && is_above(repeats[next].where, node.where)) declare_repeat(c, repeats[next++]);
         declare(c, node, kNone, nullptr);
     }
     while (next < repeats.size()) declare_repeat(c, repeats[next++]);

@@ -1,5 +1,4 @@
-/// What authors say about a component: attributes, <param>, embedded values and cmdparams, sorted into fields and
-/// roles.
+/// What authors specify about a component: attributes, <param>, embedded values and cmdparams, assigned to fields and roles.
 
 #include <algorithm>
 #include <array>
@@ -15,7 +14,7 @@ namespace plab::model::detail
 namespace
 {
 
-/// What the paper's listings call what pLab's types declare under other names.
+/// Names in the paper's listings that pLab's types declare under other names.
 struct Alias
 {
     std::string_view papers, ours;
@@ -50,7 +49,7 @@ std::vector<std::string> settable_names(const Schema& schema)
     return names;
 }
 
-/// The field may be set, and is not yet.
+/// Checks that the field may be set and is not set yet.
 bool may_set(Compilation& c, std::size_t i, std::size_t field_index, const SourceLocation& where)
 {
     const Draft& d = c.draft(i);
@@ -71,7 +70,7 @@ void give_field(Compilation& c, std::size_t i, std::size_t field_index, const Te
     if (!may_set(c, i, field_index, text.where)) return;
     Draft& d = c.draft(i);
     const Field& field = d.type->schema.fields()[field_index];
-    GivenField& given = d.fields.emplace_back();  // even if the value is bad: it is not missing
+    GivenField& given = d.fields.emplace_back();  // added even if the value is bad, so that the field does not count as missing
     given.index = field_index;
     given.where = text.where;
     given.value = field.fallback;
@@ -99,7 +98,7 @@ void give_embedded(Compilation& c, std::size_t i, const ValueNode& node)
     c.draft(i).fields.push_back({k, std::move(value), node.where});
 }
 
-/// Ids given by <compref> and <cmdref>; false after a complaint.
+/// Ids given by <compref> and <cmdref>; false after an error was reported.
 bool read_references(Compilation& c, std::size_t i, const TextNode& text, const Cell* cell, GivenRole& given)
 {
     if (!trimmed(text.text).empty())
@@ -121,7 +120,7 @@ bool read_references(Compilation& c, std::size_t i, const TextNode& text, const 
 void read_ids(Compilation& c, const TextNode& text, const Cell* cell, GivenRole& given)
 {
     const std::string whole(trimmed(text.text));
-    // An id may hold blanks.
+    // An id may contain blanks.
     if (c.directory.find(component_id(cell, whole)) != kNone)
     {
         given.references.push_back({component_id(cell, whole), text.where});
@@ -154,11 +153,11 @@ void give_role(Compilation& c, std::size_t i, std::size_t role_index, const Text
     else
     {
         given.unresolved = true;
-        c.complain(i, text.where, role.name + " names nobody: give ids, or leave it out");
+        c.complain(i, text.where, role.name + " names no component: give ids, or leave it out");
     }
 }
 
-/// The only open role that the one referred to may take; else kNone.
+/// The only open role that the referenced component may take; otherwise kNone.
 std::size_t only_fitting_role(Compilation& c, std::size_t i, const TextNode& text, const Cell* cell)
 {
     GivenRole probe;
@@ -207,7 +206,7 @@ void give_by_setter(Compilation& c, std::size_t i, const TextNode& text, const C
     const Schema& schema = c.draft(i).type->schema;
     const std::string name = field_name_of_setter(text.name);
     if (index_of_field(schema, name) != kNone || index_of_role(schema, name) != kNone) return give(c, i, name, text, cell);
-    // "SetAxis2" loses the underline of axis_2.
+    // "SetAxis2" loses the underscore of axis_2.
     for (const std::string& known : settable_names(schema))
         if (setter_of_field_name(known) == text.name) return give(c, i, known, text, cell);
     for (const Alias& alias : kPapersNames)

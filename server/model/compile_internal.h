@@ -1,4 +1,4 @@
-/// What the passes of compile() share. Order of the passes: compile.cpp. Nobody outside this folder includes this.
+/// Shared by the passes of compile(). Order of the passes: compile.cpp. Private to this folder.
 #pragma once
 
 #include <cstddef>
@@ -21,19 +21,19 @@ namespace plab::model::detail
 
 inline constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-/// Complaints of all passes. Hash tables below are only looked up in, never walked, so no order of theirs shows.
+/// Errors of all passes. The hash tables below are only used for lookups and never iterated, so their order has no effect.
 class Report
 {
 public:
     explicit Report(std::size_t most) : most_(most) {}
     void add(const SourceLocation& where, std::string element, std::string why) { add({where, std::move(element), std::move(why)}, {}); }
-    /// A complaint about an id that nobody has: the nearest ids are looked up for those that are shown in the end.
+    /// Reports an unknown id: similar ids are searched for only for the errors that are shown in the end.
     void add_unknown_id(const SourceLocation& where, std::string element, std::string why, std::string wanted)
     {
         add({where, std::move(element), std::move(why)}, std::move(wanted));
     }
     bool empty() const { return complaints_.empty(); }
-    /// Sorted by place, cut to the limit; `ids` are those that exist.
+    /// Sorted by place, limited in number; `ids` are the existing ids.
     Errors finish(const std::vector<std::string>& ids, const std::string& file);
 
 private:
@@ -47,12 +47,12 @@ private:
     std::size_t most_;
     std::size_t dropped_ = 0;
     std::vector<Complaint> complaints_;
-    std::unordered_set<std::string> seen_;  // one complaint per place and reason: a repetition has it in each cell
+    std::unordered_set<std::string> seen_;  // one error per place and reason: a repetition causes it in each cell
 };
 
 using Names = std::unordered_set<std::string>;
 
-/// One cell of a <repeat>: what its ids and positions become.
+/// One cell of a <repeat>: how its ids and positions change.
 struct Cell
 {
     const Names* components = nullptr;  ///< ids that the repeat defines
@@ -61,7 +61,7 @@ struct Cell
     Vec3 offset;         ///< m
 };
 
-/// An id as it reads in a cell; outside of repeats as written.
+/// An id as it is in a cell; outside of repeats unchanged.
 inline std::string component_id(const Cell* cell, const std::string& id)
 {
     return cell && cell->components->contains(id) ? id + cell->suffix : id;
@@ -88,14 +88,14 @@ struct GivenRole
 {
     bool given = false;
     bool everyone = false;
-    bool may_be_type = false;  ///< one word of a short form: an id, or the type of a part to make
-    bool unresolved = false;   ///< complained about already
+    bool may_be_type = false;  ///< a single word of a short form: an id, or the type of a part to generate
+    bool unresolved = false;   ///< an error was already reported
     std::vector<Reference> references;
     std::vector<std::size_t> members;  ///< drafts, in id order
     SourceLocation where;
 };
 
-/// A dotted attribute ("response.restitution"), until the part that it is for is known.
+/// A dotted attribute ("response.restitution"), until its part is known.
 struct GivenPart
 {
     std::size_t role = 0;
@@ -103,7 +103,7 @@ struct GivenPart
     const TextNode* text = nullptr;
 };
 
-/// A component on its way. Those of the existing scene come first and only stand to be referred to.
+/// A component during compilation. Those of the existing scene come first, and can only be referred to.
 struct Draft
 {
     std::string id;
@@ -113,7 +113,7 @@ struct Draft
     const ComponentSpec* existing = nullptr;
     const ComponentType* type = nullptr;
     const Cell* cell = nullptr;
-    bool broken = false;  ///< complained about already: no complaints that follow from it
+    bool broken = false;  ///< an error was already reported: suppress follow-up errors
     bool generated = false;
     bool parts_formed = false;
     std::size_t parent = kNone;
@@ -147,9 +147,9 @@ public:
     std::unordered_map<std::string, std::size_t> index;
 
     std::size_t find(const std::string& id) const;
-    /// Through aliases to the component that is meant; kNone where they go round in a circle.
+    /// Follows aliases to the final component; kNone for a circular reference.
     std::size_t follow(std::size_t i) const;
-    /// Typed components inside a group or below a component, aliases followed, itself left out; each once.
+    /// Typed components inside a group or below a component, with aliases followed, without itself; each once.
     std::vector<std::size_t> inside(std::size_t group) const;
 };
 
@@ -157,15 +157,15 @@ struct Participants
 {
     std::vector<std::size_t> members;
     std::string why;       ///< reason of a failure
-    bool unknown = false;  ///< failed because nobody has the id
-    bool broken = false;   ///< stands for something that was complained about already
+    bool unknown = false;  ///< failed because the id does not exist
+    bool broken = false;   ///< the component has an error that was already reported
 };
 
 /// Whether a component of this type may take this role.
 bool accepts(const Role& role, const ComponentType& type);
 /// "a body or a shaft", "a component of type Response/...".
 std::string describe_wanted(const Role& role);
-/// Whom `written` stands for in `role`.
+/// The components that `written` denotes in `role`.
 Participants find_participants(const Directory& directory, const std::string& written, const Role& role);
 
 /// The state of one compile().
@@ -185,40 +185,40 @@ struct Compilation
     SceneSettings settings;
     SourceLocation solver_place;
     bool solver_broken = false;
-    bool limit_reported = false;  ///< too many components: said once, at the first that has no room
+    bool limit_reported = false;  ///< too many components: reported once, at the first that exceeds the limit
     Directory directory;
     std::deque<Cell> cells;
     std::deque<Names> repeated_names;
     std::vector<Command> commands;  ///< document order
     std::unordered_map<std::string, std::size_t> command_index;
     std::unordered_map<std::string, Result<const ComponentType*>> loaded;
-    std::vector<std::string> type_names;  ///< sorted; asked for once
+    std::vector<std::string> type_names;  ///< sorted; requested once
 
     Draft& draft(std::size_t i) { return directory.drafts[i]; }
     /// "red (State/RigidBody)", for messages.
     std::string element(std::size_t i) const;
     bool is_type_name(const std::string& name);
-    /// Of a type that may be written short; `within`: what its name would begin with.
+    /// The full name of a type that may be shortened; `within`: the beginning that its name should have.
     Result<std::string> full_type_name(const std::string& written, const std::string& within = {});
     /// The type, loaded at most once.
     const Result<const ComponentType*>& require(const std::string& type);
     void complain(std::size_t i, const SourceLocation& where, std::string why) { report.add(where, element(i), std::move(why)); }
 };
 
-/// Whether `more` components are too many beside those that there are; then it complains at `where`.
+/// Whether `more` additional components exceed the limit; then an error is reported at `where`.
 bool too_many(Compilation& c, std::size_t more, const SourceLocation& where, const std::string& element);
-/// Adds a draft; enters its id, refusing empty, ill-formed and used ones.
+/// Adds a draft; registers its id, refusing empty, invalid and used ones.
 std::size_t add_draft(Compilation& c, Draft draft);
-/// Loads the draft's type and sizes its roles; complains and marks it as broken if there is none.
+/// Loads the draft's type and sizes its roles; if there is no type, reports an error and marks the draft as broken.
 void bind_type(Compilation& c, std::size_t i);
 
-/// Gives a field, a role or (dotted) a part's field its value; complains.
+/// Sets a field, a role or (dotted) a part's field; reports errors.
 void give(Compilation& c, std::size_t i, const std::string& name, const TextNode& text, const Cell* cell);
 /// The same for a cmdparam: "SetVelocityFactor".
 void give_by_setter(Compilation& c, std::size_t i, const TextNode& text, const Cell* cell);
-/// The component that a command acts on, or kNone after a complaint.
+/// The component that a command acts on, or kNone after an error was reported.
 std::size_t subject_of(Compilation& c, const Command& command);
-/// As written, for a <cmdref> that stands for the subject; empty if the command has none.
+/// The text of a <cmdref> that stands for the subject; empty if the command has none.
 std::string written_subject(Compilation& c, const Command& command);
 std::string command_element(const Command& command);
 
@@ -230,7 +230,7 @@ struct CommandMatch
 };
 CommandMatch match_command(const ComponentType& type, const std::string& written, const Stage* stage);
 
-/// Circles of a directed graph, as paths of nodes; none if there is none, and not all if there are many.
+/// Cycles of a directed graph, as paths of nodes; empty if there are none, and not all if there are many.
 std::vector<std::vector<std::size_t>> find_circles(const std::vector<std::vector<std::size_t>>& edges);
 
 // The passes, in order.
@@ -241,7 +241,7 @@ void settle_solver(Compilation& c);
 void link_references(Compilation& c);
 void collect_commands(Compilation& c);
 void gather_fields(Compilation& c);
-/// Twice: before parts are formed for the subjects that are there, after it for the parts.
+/// Called twice: before parts are generated, for the existing subjects, and afterwards for the parts.
 void apply_command_parameters(Compilation& c, bool parts_are_formed);
 void form_parts(Compilation& c);
 void resolve_roles(Compilation& c);

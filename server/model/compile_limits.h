@@ -1,4 +1,4 @@
-/// What compiling a blueprint may take.
+/// Limits for compiling a blueprint.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@ namespace plab::model
 
 struct CompileLimits
 {
-    /// Of a scene, generated ones among them: 100,000 bodies take 0.5 GB. Where counts come in (<repeat>, files, requests)
-    /// this is what keeps a slip of the hand from filling the memory.
+    /// Components of a scene, generated ones included: 100,000 bodies take 0.5 GB. Where counts are involved (<repeat>, files,
+    /// requests), this keeps a typing error from exhausting the memory.
     std::size_t components = 100'000;
-    std::string raised_by;     ///< what a user would write to raise it ("--max-components N"), for the message; may be empty
-    std::size_t errors = 100;  ///< reported at once; the rest are counted
+    std::string raised_by;     ///< how a user can raise the limit ("--max-components N"), for the message; may be empty
+    std::size_t errors = 100;  ///< number of reported errors; the rest are counted
 };
 
 }  // namespace plab::model

@@ -1,4 +1,4 @@
-/// What short forms leave unwritten: nested components that fill roles, parts with a default type, the default solver.
+/// What short forms leave out: nested components that fill roles, parts with a default type, the default solver.
 
 #include <algorithm>
 
@@ -17,20 +17,20 @@ bool is_component_role(const Role& role)
     return std::find(role.facets.begin(), role.facets.end(), Facet::Component) != role.facets.end();
 }
 
-/// Roles that a nested component may fill without being named: not those that anything at all would fit.
+/// Roles that a nested component may fill without being named: not those that any component would fit.
 bool takes_unnamed(const Role& role) { return !is_component_role(role) || !role.family.empty(); }
 
 bool is_solver_role(const Role& role) { return role.name == "solver" && role.family.starts_with("Solver"); }
 
 bool is_part_of(const Draft& part, std::size_t whole) { return part.parent == whole; }
 
-/// A nested component, or one that a compref shares, which may fill a role of the component around it.
+/// A nested component, or one shared by a compref, which may fill a role of the enclosing component.
 struct Candidate
 {
     std::string id;              ///< as referred to
     std::size_t target = kNone;  ///< through aliases
     SourceLocation where;
-    bool must_fit = false;  ///< a compref in a typed component has no other meaning
+    bool must_fit = false;  ///< a compref in a typed component has no other purpose
 };
 
 std::vector<Candidate> candidates_of(Compilation& c, std::size_t i)
@@ -48,7 +48,7 @@ std::vector<Candidate> candidates_of(Compilation& c, std::size_t i)
     return out;
 }
 
-/// Whom the roles of `i` name already.
+/// The components that the roles of `i` already name.
 std::unordered_set<std::size_t> named_by(const Compilation& c, const Draft& d)
 {
     std::unordered_set<std::size_t> out;
@@ -77,13 +77,13 @@ std::vector<std::size_t> fitting_roles(Compilation& c, std::size_t i, const Cand
     return fitting;
 }
 
-/// Whether the candidate's id says that it is the part for this role: "red.shape" in "red".
+/// Whether the candidate's id marks it as the part for this role: "red.shape" in "red".
 bool is_called_after(const Draft& d, const Candidate& candidate, const Role& role)
 {
     return candidate.id == d.id + "." + role.name || (d.node && candidate.id == component_id(d.cell, d.node->id + "." + role.name));
 }
 
-/// Gives nested components to the roles that their ids name; returns those that are left.
+/// Assigns nested components to the roles that their ids name; returns the remaining ones.
 std::vector<Candidate> wire_by_id(Compilation& c, std::size_t i, std::vector<bool>& open)
 {
     Draft& d = c.draft(i);
@@ -140,7 +140,7 @@ void wire_children(Compilation& c, std::size_t i)
     }
 }
 
-/// In an object without type, the only shape belongs to the only state, if that names none.
+/// In an object without type, the only shape belongs to the only state, if the state names no shape.
 void wire_object(Compilation& c, std::size_t group)
 {
     std::vector<std::size_t> states;
@@ -168,7 +168,7 @@ void wire_object(Compilation& c, std::size_t group)
     if (open) fill(*open, shapes.front());
 }
 
-/// Makes the part "<id>.<role>" of this type, or takes the one of that id which the author wrote.
+/// Makes the part "<id>.<role>" of this type, or takes the one with that id which the author wrote.
 void make_part(Compilation& c, std::size_t i, std::size_t k, const std::string& type, const SourceLocation& where)
 {
     const std::string role = c.draft(i).type->schema.roles()[k].name;
@@ -188,7 +188,7 @@ void make_part(Compilation& c, std::size_t i, std::size_t k, const std::string& 
     bind_type(c, add_draft(c, std::move(part)));
 }
 
-/// An explicit component that is called as the part would be; kNone if there is none.
+/// An explicit component with the id that the part would have; kNone if there is none.
 std::size_t find_written_part(Compilation& c, std::size_t i, const Role& role)
 {
     const Draft& d = c.draft(i);
@@ -197,7 +197,7 @@ std::size_t find_written_part(Compilation& c, std::size_t i, const Role& role)
     return c.directory.find(component_id(d.cell, d.node->id + "." + role.name));
 }
 
-/// A single word with a slash that is no id is the type of a part to make.
+/// A single word with a slash that is not an id is the type of a part to generate.
 void make_named_part(Compilation& c, std::size_t i, std::size_t k)
 {
     GivenRole& given = c.draft(i).roles[k];
@@ -211,7 +211,7 @@ void make_named_part(Compilation& c, std::size_t i, std::size_t k)
     }
     else if (*name != written)
     {
-        // A word that is short for a type which does not fit here is an id that nobody has.
+        // A word that abbreviates a type which does not fit here is treated as an unknown id.
         const Result<const ComponentType*>& type = c.require(*name);
         if (!type || !accepts(role, **type)) return;
         written = name.take();
@@ -257,7 +257,7 @@ void complete_role(Compilation& c, std::size_t i, std::size_t k)
     if (wanted && !role.default_type.empty() && is_component_role(role)) make_part(c, i, k, role.default_type, d.where);
 }
 
-/// Gives dotted attributes to the parts that they are for.
+/// Passes dotted attributes to the parts that they address.
 void hand_down(Compilation& c, std::size_t i, const GivenPart& part)
 {
     Draft& d = c.draft(i);
@@ -268,11 +268,11 @@ void hand_down(Compilation& c, std::size_t i, const GivenPart& part)
     if (given.references.size() != 1)
         return c.complain(i, part.text->where, name + " needs a part to set: give " + role.name + " the type of one");
     const std::size_t target = c.directory.follow(c.directory.find(given.references.front().id));
-    if (target == kNone || c.draft(target).broken || !c.draft(target).type) return;  // complained about elsewhere
+    if (target == kNone || c.draft(target).broken || !c.draft(target).type) return;  // the error was reported elsewhere
     if (!is_part_of(c.draft(target), i) && target != find_written_part(c, i, role))
-        return c.complain(i, part.text->where, name + ": " + quoted(c.draft(target).id) + " is no part of this component, set it there");
+        return c.complain(i, part.text->where, name + ": " + quoted(c.draft(target).id) + " is not a part of this component: set it there");
     if (c.draft(target).existing)
-        return c.complain(i, part.text->where, name + ": " + quoted(c.draft(target).id) + " is in the running scene already");
+        return c.complain(i, part.text->where, name + ": " + quoted(c.draft(target).id) + " is already in the running scene");
     give(c, target, part.name, *part.text, d.cell);
 }
 
@@ -282,10 +282,10 @@ void form_parts(Compilation& c)
 {
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
         if (const Draft& d = c.draft(i); !d.existing && d.type_name.empty()) wire_object(c, i);
-    // The list grows: parts have roles of their own.
+    // The list grows, because parts have roles of their own.
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
     {
-        // A part without place (its id is too long) ends what could be an endless nesting of default types.
+        // A part without a place (its id is too long) ends a nesting of default types that could be endless.
         if (c.draft(i).existing || !c.draft(i).type || (c.draft(i).generated && c.draft(i).broken)) continue;
         wire_children(c, i);
         for (std::size_t k = 0; k < c.draft(i).roles.size(); ++k) complete_role(c, i, k);

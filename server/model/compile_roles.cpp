@@ -1,4 +1,4 @@
-/// Who takes part in what: from written ids to participants, and what participants may not be.
+/// Resolves participants: from written ids to components, and the restrictions on participants.
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@ namespace plab::model::detail
 namespace
 {
 
-/// All lists of participants together: "*" in every component of a large scene would fill the memory.
+/// Limit for all lists of participants together: "*" in every component of a large scene would exhaust the memory.
 constexpr std::size_t kMostParticipants = 4'000'000;
 
 void refuse(Compilation& c, std::size_t i, GivenRole& given, const SourceLocation& where, std::string why)
@@ -20,10 +20,10 @@ void refuse(Compilation& c, std::size_t i, GivenRole& given, const SourceLocatio
     c.complain(i, where, std::move(why));
 }
 
-/// "*": everyone who fits, but the component itself.
+/// "*": all components that fit, except the component itself.
 void add_everyone(Compilation& c, std::size_t i, const Role& role, GivenRole& given)
 {
-    if (role.one) return refuse(c, i, given, given.where, "role " + role.name + " takes one participant, and '*' stands for all");
+    if (role.one) return refuse(c, i, given, given.where, "role " + role.name + " takes one participant, but '*' means all objects");
     for (std::size_t k = 0; k < c.directory.drafts.size(); ++k)
         if (const Draft& d = c.draft(k); k != i && d.type && !d.broken && accepts(role, *d.type)) given.members.push_back(k);
 }
@@ -49,7 +49,7 @@ void check_count(Compilation& c, std::size_t i, const Role& role, GivenRole& giv
     const std::size_t has = given.members.size();
     const std::string wanted = describe_wanted(role);
     if (has > role.max) return refuse(c, i, given, given.where, "role " + role.name + " takes one participant, has " + std::to_string(has));
-    // Whoever is meant by "*" may come later.
+    // Objects that "*" denotes may be added later.
     if (given.everyone || has >= role.min) return;
     if (!given.given) return refuse(c, i, given, c.draft(i).where, role.name + " is missing: name " + wanted);
     refuse(c, i, given, given.where,
@@ -82,7 +82,7 @@ std::vector<std::size_t> existing_members(const Compilation& c, const Draft& d, 
 
 void check_exclusive(Compilation& c)
 {
-    std::unordered_map<std::string, std::size_t> taken;  // by role and participant: who acts
+    std::unordered_map<std::string, std::size_t> taken;  // by role and participant: the component that acts on it
     for (std::size_t i = 0; i < c.directory.drafts.size(); ++i)
     {
         Draft& d = c.draft(i);
@@ -96,13 +96,13 @@ void check_exclusive(Compilation& c)
                 if (!fresh && it->second != i)
                     c.complain(i, d.roles[k].where.line > 0 ? d.roles[k].where : d.where,
                                quoted(c.draft(member).id) + " is " + role.name + " of " + c.element(it->second) +
-                                   " already, and can be so of one component only");
+                                   " already: only one component can have it in this role");
             }
         }
     }
 }
 
-/// A component that takes part in one that takes part in it; shapes that place one another as well.
+/// Finds components that participate in each other; also shapes that position each other.
 void check_circles(Compilation& c)
 {
     std::vector<std::vector<std::size_t>> edges(c.directory.drafts.size());

@@ -95,11 +95,11 @@ void read_camera(Compilation& c, const ComponentNode& node)
     for (const TextNode& text : node.parameters) read_camera_attribute(c, node, text, camera);
     const std::string element = "camera " + quoted(camera.name);
     if (camera.name.empty()) c.report.add(node.where, "camera", "needs an id");
-    if (camera.position == camera.look_at) c.report.add(node.where, element, "must not look at where it stands");
+    if (camera.position == camera.look_at) c.report.add(node.where, element, "must not look at its own position");
     if (cross(camera.look_at - camera.position, camera.up) == Vec3{})
         c.report.add(node.where, element, "must not look along its up direction");
     for (const Camera& other : c.settings.cameras)
-        if (other.name == camera.name) c.report.add(node.where, element, "is there twice");
+        if (other.name == camera.name) c.report.add(node.where, element, "is given twice");
     c.settings.cameras.push_back(std::move(camera));
 }
 
@@ -110,7 +110,7 @@ void read_settings(Compilation& c)
     c.solver_place = c.blueprint->where;
     if (c.existing)
     {
-        // A fragment lives by the settings of the scene that it joins.
+        // A fragment uses the settings of the scene to which it is added.
         c.settings = c.existing->settings;
         for (const TextNode& text : c.blueprint->settings)
             complain(c, text, text.name + " belongs to the scene, not to a part that is added");
@@ -137,7 +137,7 @@ void settle_solver(Compilation& c)
         const Draft& d = c.draft(found);
         if (d.broken || d.type_name.starts_with("Solver/")) return;
         c.solver_broken = true;
-        return c.report.add(c.solver_place, "scene", "solver " + quoted(written) + " is no component of type Solver/...");
+        return c.report.add(c.solver_place, "scene", "solver " + quoted(written) + " is not a component of type Solver/...");
     }
     c.solver_broken = true;
     if (Result<std::string> name = c.full_type_name(written, "Solver/")) written = name.take();

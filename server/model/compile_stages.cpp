@@ -14,13 +14,13 @@ namespace plab::model::detail
 namespace
 {
 
-constexpr std::string_view kStagePrefix = "Stage/";
+constexpr std::string_view kStageTypePrefix = "Stage/";
 constexpr Stage kStages[] = {Stage::Init, Stage::PreStep, Stage::Step, Stage::PostStep, Stage::Rewind, Stage::Deinit};
-/// A list that refers to itself in halves would grow without end.
+/// A list that refers to itself twice would grow exponentially.
 constexpr std::size_t kLongestList = 100'000;
 constexpr std::size_t kDeepestComposite = 64;
 
-bool is_stage(const CommandNode& node) { return node.name.starts_with(kStagePrefix); }
+bool is_stage(const CommandNode& node) { return node.name.starts_with(kStageTypePrefix); }
 
 bool is_simulation(const CommandNode& node) { return std::any_of(node.children.begin(), node.children.end(), is_stage); }
 
@@ -45,9 +45,9 @@ public:
         for (const CommandNode& child : simulation.children)
         {
             if (!is_stage(child))
-                complain(child, "a simulation command holds stages only (Stage/Init, Stage/PreStep, ...)");
+                complain(child, "a simulation command can contain only stages (Stage/Init, Stage/PreStep, ...)");
             else if (!seen.insert(child.name).second)
-                complain(child, "stage " + quoted(child.name) + " is there twice");
+                complain(child, "stage " + quoted(child.name) + " is given twice");
             else if (const std::optional<Stage> stage = find_stage(child))
                 read_stage(child, *stage);
         }
@@ -59,8 +59,7 @@ private:
         c_->report.add(node.where, command_element({&node, owner_, c_->draft(owner_).cell}), std::move(why));
     }
 
-    /// Whoever stands inside takes part with what is listed only. Parts that the author left unwritten keep their
-    /// defaults.
+    /// Components inside take part only with the listed commands. Parts that the author left out keep their defaults.
     void enter_scope()
     {
         std::vector<std::size_t> open{owner_};
@@ -79,7 +78,7 @@ private:
         std::vector<std::string> known;
         for (const Stage stage : kStages)
         {
-            known.push_back(std::string(kStagePrefix) + std::string(name_of(stage)));
+            known.push_back(std::string(kStageTypePrefix) + std::string(name_of(stage)));
             if (known.back() == node.name) return stage;
         }
         complain(node, "unknown stage " + quoted(node.name) + did_you_mean(node.name, known) + " (stages are " + quoted_list(known) + ")");
@@ -103,13 +102,13 @@ private:
         }
     }
 
-    /// Appends what a list item stands for.
+    /// Appends the commands that a list item denotes.
     void expand(const CommandNode& node, std::size_t owner)
     {
         if (++items_ > kLongestList) return;
         if (!node.reference.empty()) return expand_reference(node, owner);
         if (!node.type.empty()) return select(node, owner);
-        if (is_stage(node) || is_simulation(node)) return complain(node, "a stage stands only in a simulation command");
+        if (is_stage(node) || is_simulation(node)) return complain(node, "a stage can only be part of a simulation command");
         if (path_.size() >= kDeepestComposite) return complain(node, "composites are nested deeper than 64");
         if (std::find(path_.begin(), path_.end(), &node) != path_.end()) return complain_circle(node);
         path_.push_back(&node);
@@ -131,7 +130,7 @@ private:
         std::string text;
         for (auto it = std::find(path_.begin(), path_.end(), &node); it != path_.end(); ++it)
             text += quoted((*it)->id.empty() ? (*it)->name : (*it)->id) + " -> ";
-        complain(node, "circle of commands: " + text + quoted(node.id.empty() ? node.name : node.id));
+        complain(node, "circular reference of commands: " + text + quoted(node.id.empty() ? node.name : node.id));
     }
 
     void select(const CommandNode& node, std::size_t owner)
@@ -141,8 +140,7 @@ private:
         const std::size_t i = subject_of(*c_, command);
         if (i == kNone || !c_->draft(i).type) return;
         if (c_->draft(i).existing)
-            return complain(node,
-                            "subject " + quoted(c_->draft(i).id) + " is in the running scene already: it keeps the commands that it has");
+            return complain(node, "subject " + quoted(c_->draft(i).id) + " is already in the running scene: it keeps its commands");
         if (command.anonymous != kNone) return select_all(node, i);
         const CommandMatch match = match_command(*c_->draft(i).type, node.type, &stage_);
         if (match.index < 0) return complain(node, match.why);
@@ -161,14 +159,14 @@ private:
         return made ? i : kNone;
     }
 
-    /// A component made by a command takes part with what it has for the stage, and with what prepares it.
+    /// A component made by a command takes part with its commands of that stage, and with those that prepare it.
     void select_all(const CommandNode& node, std::size_t i)
     {
         const std::vector<CommandInfo>& commands = c_->draft(i).type->info.commands;
         std::vector<Selected> found;
         for (std::size_t k = 0; k < commands.size(); ++k)
             if (stage_of(commands[k].phase) == stage_) found.push_back({i, static_cast<int>(k), &node});
-        if (found.empty()) return complain(node, "has nothing to do in Stage/" + std::string(name_of(stage_)));
+        if (found.empty()) return complain(node, "does no work in Stage/" + std::string(name_of(stage_)));
         std::stable_sort(found.begin(), found.end(), [&](const Selected& a, const Selected& b) { return phase(a) < phase(b); });
         list_.insert(list_.end(), found.begin(), found.end());
         for (std::size_t k = 0; k < commands.size(); ++k)
@@ -183,14 +181,14 @@ private:
 
     Phase phase(const Selected& s) const { return c_->draft(s.component).type->info.commands[static_cast<std::size_t>(s.command)].phase; }
 
-    /// The step runs phases in one order; a list that reads otherwise would promise what does not happen.
+    /// The step runs phases in one fixed order; a list in a different order would promise something that does not happen.
     void check_order()
     {
         for (std::size_t k = 1; k < list_.size(); ++k)
         {
             const Selected &before = list_[k - 1], &after = list_[k];
             if (phase(before) <= phase(after)) continue;
-            complain(*after.node, "stands behind " + quoted(before.node->type) + " (phase " + quoted(name_of(phase(before))) +
+            complain(*after.node, "comes after " + quoted(before.node->type) + " (phase " + quoted(name_of(phase(before))) +
                                       "), but the step runs its phase " + quoted(name_of(phase(after))) + " first: put it before");
         }
     }
@@ -200,11 +198,11 @@ private:
     Stage stage_ = Stage::Init;
     std::vector<Selected> list_;
     std::set<std::pair<std::size_t, int>> listed_;  // components with their commands
-    std::size_t items_ = 0;                         // looked at, those that are refused included
+    std::size_t items_ = 0;                         // number of items processed, including refused ones
     std::vector<const CommandNode*> path_;          // composites being expanded
 };
 
-/// A command outside of stage lists only exports; what it exports must exist all the same.
+/// A command outside of stage lists is only exported, but what it exports must exist.
 void check_export(Compilation& c, const Command& command)
 {
     const CommandNode& node = *command.node;
@@ -237,7 +235,7 @@ void select_commands(Compilation& c)
             if (!is_simulation(command)) continue;
             if (first)
                 c.report.add(command.where, command_element({&command, i, c.draft(i).cell}),
-                             "a component has one simulation command, and " + quoted(first->name) + " is it already");
+                             "a component can have only one simulation command, which is already " + quoted(first->name));
             else
                 Selection(c, i).read(command);
             first = &command;

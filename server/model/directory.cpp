@@ -1,4 +1,4 @@
-/// Whom an id stands for.
+/// Finds the components that an id denotes.
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ std::size_t Directory::find(const std::string& id) const
 
 std::size_t Directory::follow(std::size_t i) const
 {
-    // A chain without circle is no longer than there are drafts.
+    // A chain without a cycle is at most as long as the number of drafts.
     for (std::size_t steps = 0; steps <= drafts.size(); ++steps)
     {
         if (i == kNone || drafts[i].alias == kNone) return i;
@@ -77,7 +77,7 @@ std::string describe(const Draft& draft)
     return quoted(draft.id) + " is " + draft.type->info.name + std::string(words[static_cast<int>(draft.type->info.facet)]);
 }
 
-/// What an object or a group gives to a role.
+/// The participants that an object or a group provides for a role.
 Participants find_inside(const Directory& directory, std::size_t group, const Role& role)
 {
     Participants out;

@@ -8,7 +8,7 @@
 namespace plab::model
 {
 
-/// 17 significant digits, from which the same bits are read; `otherwise` for what is not finite.
+/// 17 significant digits, which read back to the same bits; `otherwise` for values that are not finite.
 std::string exact_text(double value, std::string_view otherwise);
 /// 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);

@@ -19,7 +19,7 @@ std::string join(std::initializer_list<double> numbers)
     return out;
 }
 
-/// +0, to the bit: what three numbers leave out of a matrix.
+/// Whether it is +0, bit for bit: the elements that a matrix of three numbers leaves out.
 bool is_plain_zero(double x) { return x == 0 && !std::signbit(x); }
 
 std::string format_matrix(const Mat3& a)

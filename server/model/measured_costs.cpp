@@ -8,7 +8,7 @@ namespace plab::model
 namespace
 {
 
-/// Costs nearer than this are not put into an order: the machine had other work.
+/// Costs closer than this are not ordered: the difference may be other load on the machine.
 constexpr double kAlike = 1.1;
 
 std::string figure(double us)

@@ -1,5 +1,5 @@
-/// What a step costs with each algorithm, by kind of scene: measured, not promised. Renewed by build/bin/bench_algorithms --measured, whose
-/// output takes the place of the rows below.
+/// The cost of a step with each algorithm, by kind of scene, as measured. Updated with build/bin/bench_algorithms --measured,
+/// whose output replaces the rows below.
 #pragma once
 
 #include <array>
@@ -11,12 +11,12 @@
 namespace plab::model
 {
 
-/// s: the measuring does not wait longer for a step.
+/// s: the measurement does not wait longer for a step.
 inline constexpr int kDearestStep = 5;
 inline constexpr double kDear = std::numeric_limits<double>::infinity();
 
-/// us of processor time per step of 1/240 s, one thread, in three kinds of scene; < 0: refused there; kDear: a step takes more than
-/// kDearestStep.
+/// us of processor time per step of 1/240 s, one thread, in three kinds of scene; < 0: cannot be used there; kDear: a step
+/// takes more than kDearestStep.
 struct MeasuredCost
 {
     std::string_view type;
@@ -52,11 +52,11 @@ inline constexpr MeasuredCost kMeasuredCosts[] = {
     {"Constraint/AngularVelocity/Impulse", 2.98, 68.3, 7.76},
 };
 
-/// Types that can take one another's place and were measured in the same scenes.
+/// Types that can replace one another and were measured in the same scenes.
 struct MeasuredFamily
 {
     std::string_view prefix;                 ///< of its types' names
-    std::array<std::string_view, 3> scenes;  ///< few, many, tied in words
+    std::array<std::string_view, 3> scenes;  ///< descriptions of the scenes: few, many, coupled
 };
 inline constexpr std::string_view kCubes[] = {"a cube at rest", "192 cubes in stacks of 3", "a stack of 20 cubes"};
 inline constexpr MeasuredFamily kMeasuredFamilies[] = {
@@ -67,7 +67,7 @@ inline constexpr MeasuredFamily kMeasuredFamilies[] = {
     {"Solver/", {"a body in flight", "192 bodies in flight", "3 hinged bodies"}},
 };
 
-/// A family's types in one kind of scene, cheapest first; those that are refused there are left out.
+/// A family's types in one kind of scene, cheapest first, without those that cannot be used there.
 struct MeasuredLadder
 {
     struct Algorithm
@@ -78,13 +78,13 @@ struct MeasuredLadder
     std::string_view family, scene;
     std::vector<Algorithm> algorithms;
 
-    /// From 1: as many types cost less than this one, by more than a tenth. 0: it is not in the ladder.
+    /// From 1: number of types that are cheaper than this one by more than a tenth, plus one. 0: it is not in the list.
     std::size_t place_of(std::string_view type) const;
     /// "`Direct` 178 < `SequentialImpulse` 455 ~ `SoftStep` 470"; ~: within a tenth of the one before.
     std::string text() const;
 };
 
-/// Three for each family whose types' names begin so; of all with an empty prefix.
+/// Three lines for each family whose types' names begin with this prefix; all families for an empty prefix.
 std::vector<MeasuredLadder> measured_ladders(std::string_view prefix = {});
 
 /// "12.3 us (1st of 3) for a cube at rest, 456 us (3rd of 3) for ...": empty if it was not measured.

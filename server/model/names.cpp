@@ -11,11 +11,11 @@ namespace plab::model
 namespace
 {
 
-/// Longer names are nobody's typing errors, and comparing them costs the product of their lengths.
+/// Longer names are unlikely to be typing errors, and comparing them costs the product of their lengths.
 constexpr std::size_t kLongestCompared = 120;
 
-/// Optimal string alignment distance (insert, delete, replace, swap neighbours), blind to case; stops counting at
-/// `most` + 1. Source: Boytsov, "Indexing methods for approximate dictionary searching", ACM JEA 16 (2011), section 2.
+/// Optimal string alignment distance (insert, delete, replace, swap neighbours), ignoring case; stops counting at `most` + 1.
+/// Source: Boytsov, "Indexing methods for approximate dictionary searching", ACM JEA 16 (2011), section 2.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most)
 {
     const std::size_t n = a.size(), m = b.size();
@@ -49,7 +49,7 @@ std::string_view last_part(std::string_view name)
 
 constexpr std::size_t kFar = 1000;
 
-/// How far `known` is from `wanted`; kFar if it is no suggestion. A match of last parts alone counts as one edit.
+/// Distance from `known` to `wanted`; kFar if it is not a suggestion. A match of the last parts alone counts as one edit.
 std::size_t score(std::string_view wanted, std::string_view known)
 {
     if (known.size() > kLongestCompared) return kFar;

@@ -1,4 +1,4 @@
-/// Names that a writer may have meant, and the names of setters.
+/// Suggestions for misspelled names, and the names of setters.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 namespace plab::model
 {
 
-/// Up to `most` names near to `wanted` (edit distance, case and last part considered), nearest first.
+/// Up to `most` names similar to `wanted` (edit distance, case and last part considered), most similar first.
 std::vector<std::string> nearest_names(std::string_view wanted, const std::vector<std::string>& known, std::size_t most = 3);
-/// ", did you mean 'a' or 'b'?" or nothing.
+/// ", did you mean 'a' or 'b'?" or an empty text.
 std::string did_you_mean(std::string_view wanted, const std::vector<std::string>& known);
 
 /// "velocity_factor" from "SetVelocityFactor" or "VelocityFactor".

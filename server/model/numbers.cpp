@@ -23,16 +23,16 @@ bool is_infinity(std::string_view word) { return equal_ignoring_case(word, "inf"
 
 bool is_nan(std::string_view word) { return word.size() >= 3 && equal_ignoring_case(word.substr(0, 3), "nan"); }
 
-/// Why `word`, of which from_chars left `rest`, is no number.
+/// Why `word`, of which from_chars left `rest`, is not a number.
 Error not_a_number(std::string_view word, std::string_view rest)
 {
-    if (is_nan(without_sign(word))) return reason(quoted(word) + " is not a number that can be computed with");
+    if (is_nan(without_sign(word))) return reason(quoted(word) + " is not a finite number");
     if (word.find(',') != std::string_view::npos)
-        return reason(quoted(word) + ": use a point, not a comma, in numbers, and blanks between them");
+        return reason(quoted(word) + ": use a point, not a comma, in numbers, and spaces between them");
     const std::string_view digits = without_sign(word);
-    if (digits.starts_with("0x") || digits.starts_with("0X")) return reason(quoted(word) + ": write the number in decimals");
+    if (digits.starts_with("0x") || digits.starts_with("0X")) return reason(quoted(word) + ": write the number in decimal notation");
     if (rest.size() < word.size() && is_unit_symbol(rest))
-        return reason(quoted(word) + ": put a blank between number and unit, '" + std::string(word.substr(0, word.size() - rest.size())) +
+        return reason(quoted(word) + ": put a space between number and unit, '" + std::string(word.substr(0, word.size() - rest.size())) +
                       " " + std::string(rest) + "'");
     return reason(quoted(word) + " is not a number");
 }
@@ -54,7 +54,7 @@ Result<double> parse_plain_real(std::string_view word)
 {
     const std::string_view digits = without_sign(word);
     if (is_infinity(digits)) return (word.front() == '-' ? -1 : 1) * std::numeric_limits<double>::infinity();
-    // from_chars would read "nan" and "infinity"; only digits and a point may begin a number here.
+    // from_chars would accept "nan" and "infinity"; here a number must begin with a digit or a point.
     if (digits.empty() || !(is_digit(digits.front()) || digits.front() == '.')) return not_a_number(word, word);
     return parse_with_from_chars<double>(word);
 }
@@ -94,7 +94,7 @@ Result<std::uint64_t> parse_unsigned(std::string_view word)
 {
     Result<std::uint64_t> whole = parse_with_from_chars<std::uint64_t>(word);
     if (!whole && parse_real(word) && whole.error().reason.find("range") == std::string::npos)
-        return reason(quoted(word) + " is not a whole number of 0 or more");
+        return reason(quoted(word) + " is not a whole number, 0 or greater");
     return whole;
 }
 

@@ -1,4 +1,4 @@
-/// Single numbers as authors write them, and back, whatever the process's locale says.
+/// Single numbers as authors write them, and back, independent of the process's locale.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 namespace plab::model
 {
 
-/// Whether a word stands where a number is meant (else a unit begins there): a sign, a digit, a point, nan, inf.
+/// Whether a word is meant as a number (otherwise a unit begins there): a sign, a digit, a point, nan, inf.
 bool looks_like_number(std::string_view word);
 
-/// "0.5", "-1e3", "1/240", "inf". Infinity is the caller's to refuse. Refused here: NaN, hexadecimal, commas, trailing
-/// text.
+/// "0.5", "-1e3", "1/240", "inf". The caller has to refuse infinity if necessary. Refused here: NaN, hexadecimal, commas,
+/// trailing text.
 Result<double> parse_real(std::string_view word);
 
 /// A whole number of 64 bits.

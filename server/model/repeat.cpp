@@ -14,7 +14,7 @@ namespace plab::model::detail
 namespace
 {
 
-/// More cells than any limit allows, and few enough for products of three counts to fit 64 bits.
+/// More cells than any limit allows, but few enough that products of three counts fit 64 bits.
 constexpr std::int64_t kMostPerAxis = 1'000'000;
 
 Result<void> read_count(const TextNode& text, Repeat& out)
@@ -102,7 +102,7 @@ Result<Repeat> read_repeat(const RepeatNode& node)
     }
     if (!seen.contains("count")) errors.push_back({node.where, {}, "count is missing: give 1 to 3 whole numbers"});
     if (node.components.empty()) errors.push_back({node.where, {}, "holds no component to repeat"});
-    if (out.dimensions == 2 && out.step.z != 0) errors.push_back({node.where, {}, "step goes along z, but count has no third number"});
+    if (out.dimensions == 2 && out.step.z != 0) errors.push_back({node.where, {}, "step has a z component, but count has no third number"});
     if (!errors.empty()) return errors;
     return out;
 }

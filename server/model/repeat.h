@@ -1,4 +1,4 @@
-/// <repeat>: rows, columns, grids and seeded fillings.
+/// <repeat>: rows, columns, grids and seeded random fillings.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ struct Repeat
     std::array<std::int64_t, 3> cell(std::size_t n) const;
     /// ".i", ".i.j" or ".i.j.k", as many as there are counts.
     std::string suffix(std::size_t n) const;
-    /// m. A row goes along the whole of `step`; in a grid each count has its axis. `id` makes the jitter the cell's
-    /// own.
+    /// m. A row extends along the whole of `step`; in a grid each count has its own axis. `id` makes the jitter different for
+    /// each cell.
     Vec3 offset(std::size_t n, std::uint64_t seed, const std::string& id) const;
 };
 

@@ -9,12 +9,12 @@ namespace plab::model::detail
 namespace
 {
 
-/// Complaints that are kept; the rest are only counted, so that a hostile file costs no memory.
+/// Number of errors that are kept; the rest are only counted, so that a hostile file costs no memory.
 constexpr std::size_t kMostKept = 20'000;
 
-bool stands_before(const SourceLocation& a, const SourceLocation& b)
+bool precedes(const SourceLocation& a, const SourceLocation& b)
 {
-    if ((a.line == 0) != (b.line == 0)) return b.line == 0;  // what has no place comes last
+    if ((a.line == 0) != (b.line == 0)) return b.line == 0;  // errors without a place come last
     if (a.file != b.file) return a.file < b.file;
     return a.line != b.line ? a.line < b.line : a.column < b.column;
 }
@@ -36,7 +36,7 @@ void Report::add(Error error, std::string wanted)
 Errors Report::finish(const std::vector<std::string>& ids, const std::string& file)
 {
     std::stable_sort(complaints_.begin(), complaints_.end(),
-                     [](const Complaint& a, const Complaint& b) { return stands_before(a.error.where, b.error.where); });
+                     [](const Complaint& a, const Complaint& b) { return precedes(a.error.where, b.error.where); });
     Errors out;
     for (Complaint& complaint : complaints_)
     {

@@ -17,10 +17,8 @@ namespace plab::model
 namespace
 {
 
-/// Directions and rotations this near to length 1 are left as they are, so that a printed one reads back to its bits.
+/// Directions and rotations this close to length 1 are not changed, so that a printed one reads back to the same bits.
 constexpr double kUnitTolerance = 1e-14;
-
-std::string subject(const Field& field) { return field.name.empty() ? "the value" : field.name; }
 
 std::string_view type_words(FieldType type)
 {
@@ -30,7 +28,7 @@ std::string_view type_words(FieldType type)
     return words[static_cast<int>(type)];
 }
 
-/// Each number of a value; of a matrix the diagonal, which is what bounds speak of.
+/// Each number of a value; of a matrix the diagonal, to which bounds refer.
 std::vector<double> bounded_numbers(const Value& value)
 {
     if (const auto* n = std::get_if<std::int64_t>(&value)) return {static_cast<double>(*n)};
@@ -63,7 +61,7 @@ std::vector<double> all_numbers(const Value& value)
     return out;
 }
 
-/// Only the ratios of its numbers count.
+/// Types for which only the ratios of the numbers count.
 bool is_direction(const Field& field)
 {
     return std::any_of(field.rules.begin(), field.rules.end(), [](const Rule& r) { return r.kind == Rule::Kind::UnitLength; });
@@ -74,22 +72,22 @@ Result<void> check_finite(const Value& value, const Field& field)
     const bool whole = std::holds_alternative<std::int64_t>(value) || std::holds_alternative<Integers>(value);
     for (const double x : all_numbers(value))
     {
-        if (std::isnan(x)) return reason(subject(field) + " must be a number, not nan");
-        if (std::isinf(x) && !field.may_be_infinite) return reason(subject(field) + " must be finite, not " + format_real(x));
+        if (std::isnan(x)) return reason(subject_of(field) + " must be a number, not nan");
+        if (std::isinf(x) && !field.may_be_infinite) return reason(subject_of(field) + " must be finite, not " + format_real(x));
         const bool measured = field.type != FieldType::Rotation && field.type != FieldType::EntryList && !is_direction(field);
         if (!whole && measured && std::isfinite(x) && std::fabs(x) > kLargestGiven)
-            return reason(subject(field) + " must be at most " + format_real(kLargestGiven) + " in size, not " + format_real(x) +
-                          ": its square would leave the numbers");
+            return reason(subject_of(field) + " must be at most " + format_real(kLargestGiven) + " in size, not " + format_real(x) +
+                          ": its square would overflow");
     }
     if (const auto* v = std::get_if<Vec3>(&value))
         if (const int n = std::isinf(v->x) + std::isinf(v->y) + std::isinf(v->z); n == 1 || n == 2)
-            return reason(subject(field) + " must have three finite numbers, or three infinite ones: not given");
+            return reason(subject_of(field) + " must have three finite numbers, or three infinite ones for 'not given'");
     return {};
 }
 
 Error broken(const Field& field, const std::string& rule, double has)
 {
-    return reason(subject(field) + " must be " + rule + ", not " + format_real(has));
+    return reason(subject_of(field) + " must be " + rule + ", not " + format_real(has));
 }
 
 Result<void> check_bound(const Value& value, const Field& field, const Rule& rule)
@@ -107,7 +105,8 @@ Result<void> check_bound(const Value& value, const Field& field, const Rule& rul
     return {};
 }
 
-/// Scales numbers to length 1; false if all are zero. Scaled by the largest first: squares of 1e-200 are zero.
+/// Scales numbers to length 1; false if all are zero. Divides by the largest first, because squares of 1e-200 underflow to
+/// zero.
 bool normalise(std::span<double> v)
 {
     double sum = 0;
@@ -140,12 +139,12 @@ Result<void> check_nonzero(Value& value, const Field& field, const Rule& rule)
     auto* v = std::get_if<Vec3>(&value);
     if (rule.kind == Rule::Kind::UnitLength && v)
     {
-        if (!normalise(*v)) return reason(subject(field) + " must not be zero: it is a direction");
+        if (!normalise(*v)) return reason(subject_of(field) + " must not be zero: it is a direction");
         return {};
     }
     const std::vector<double> n = bounded_numbers(value);
     if (v ? (v->x == 0 && v->y == 0 && v->z == 0) : std::any_of(n.begin(), n.end(), [](double x) { return x == 0; }))
-        return reason(subject(field) + " must not be zero");
+        return reason(subject_of(field) + " must not be zero");
     return {};
 }
 
@@ -153,7 +152,7 @@ Result<void> check_option(const Value& value, const Field& field, const Rule& ru
 {
     const auto* text = std::get_if<std::string>(&value);
     if (!text || std::find(rule.options.begin(), rule.options.end(), *text) != rule.options.end()) return {};
-    return reason(subject(field) + " must be " + quoted_list(rule.options, "or") + ", not " + quoted(*text) +
+    return reason(subject_of(field) + " must be " + quoted_list(rule.options, "or") + ", not " + quoted(*text) +
                   did_you_mean(*text, rule.options));
 }
 
@@ -174,23 +173,23 @@ Result<void> check_rule(Value& value, const Field& field, const Rule& rule)
     return check_option(value, field, rule);
 }
 
-/// What each type demands of itself.
+/// Checks that each type makes independently of its rules.
 Result<void> check_shape(Value& value, const Field& field)
 {
     if (auto* q = std::get_if<Quat>(&value))
     {
         double n[] = {q->w, q->x, q->y, q->z};
-        if (!normalise(n)) return reason(subject(field) + " must not be the zero quaternion");
+        if (!normalise(n)) return reason(subject_of(field) + " must not be the zero quaternion");
         *q = {n[0], n[1], n[2], n[3]};
     }
-    if (const auto* a = std::get_if<Mat3>(&value); a && *a != transposed(*a)) return reason(subject(field) + " must be symmetric");
+    if (const auto* a = std::get_if<Mat3>(&value); a && *a != transposed(*a)) return reason(subject_of(field) + " must be symmetric");
     if (const auto* entries = std::get_if<Entries>(&value))
     {
         std::set<std::string> names;
         for (const Entry& e : *entries)
         {
-            if (e.name.empty()) return reason(subject(field) + " has an entry without name");
-            if (!names.insert(e.name).second) return reason(subject(field) + " has two entries named " + quoted(e.name));
+            if (e.name.empty()) return reason(subject_of(field) + " has an entry without name");
+            if (!names.insert(e.name).second) return reason(subject_of(field) + " has two entries named " + quoted(e.name));
         }
     }
     return {};
@@ -200,12 +199,12 @@ Result<void> check_shape(Value& value, const Field& field)
 
 Result<void> check_value(Value& value, const Field& field)
 {
-    // Whole numbers are numbers where they are exact as such.
+    // Whole numbers are accepted as numbers where they are exact.
     constexpr std::int64_t kExact = std::int64_t{1} << 53;
     const auto* whole = std::get_if<std::int64_t>(&value);
     if (whole && field.type == FieldType::Real && *whole >= -kExact && *whole <= kExact) value = static_cast<double>(*whole);
     if (type_of(value) != field.type)
-        return reason(subject(field) + " must be " + std::string(type_words(field.type)) + ", not " +
+        return reason(subject_of(field) + " must be " + std::string(type_words(field.type)) + ", not " +
                       std::string(type_words(type_of(value))));
     if (Result<void> r = check_finite(value, field); !r) return r;
     if (Result<void> r = check_shape(value, field); !r) return r;

@@ -1,5 +1,5 @@
-/// A scene, resolved and checked: a flat list of components with values, roles and the commands that take part.
-/// The one form that the world is built from; requests add to it and take from it, --expand prints it.
+/// A scene, resolved and checked: a flat list of components with values, roles and the commands that take part. The world is
+/// built only from this form; requests add to it and remove from it, --expand prints it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace plab::model
 {
 
-/// A step length, exact where the text was: 1/240, 0.001 (= 1/1000). seconds == numerator / denominator.
+/// A step length, exact if the text was: 1/240, 0.001 (= 1/1000). seconds == numerator / denominator.
 struct StepLength
 {
     double seconds = 1.0 / 240;
@@ -38,8 +38,8 @@ struct SceneSettings
 {
     StepLength dt;
     std::uint64_t seed = 1;
-    std::string solver = "solver";                 ///< id of the solver of whoever names none
-    std::string solver_type = "Solver/Automatic";  ///< its type, where the scene has no component of that id
+    std::string solver = "solver";                 ///< id of the solver of objects that name none
+    std::string solver_type = "Solver/Automatic";  ///< its type, if the scene has no component with that id
     std::string title;
     std::vector<Camera> cameras;
 };
@@ -55,23 +55,23 @@ struct RoleSpec
 {
     std::string name;
     std::vector<std::string> members;  ///< ids of typed components with a facet that the role accepts, in id order
-    bool everyone = false;             ///< "*": all that fit, also those added later
+    bool everyone = false;             ///< "*": all that fit, including those added later
     SourceLocation where;
 };
 
 struct ComponentSpec
 {
     std::string id;
-    std::string name;                ///< for people
+    std::string name;                ///< display name
     std::string type;                ///< empty: a group
     std::string parent;              ///< id; empty at top level
     std::string alias_of;            ///< compref: shares that component; then type is empty
     std::vector<std::string> group;  ///< comprefs of a group without type, when there are several
-    std::vector<FieldSpec> fields;   ///< what the author gave; the rest are the declared defaults
+    std::vector<FieldSpec> fields;   ///< fields that the author gave; the rest have the declared defaults
     std::vector<RoleSpec> roles;
     bool explicit_commands = false;     ///< a simulation command selects: only `commands` take part
     std::vector<std::string> commands;  ///< names of exported commands that take part
-    bool generated = false;             ///< the short form left it unwritten
+    bool generated = false;             ///< generated because the short form left it out
     SourceLocation where;
 };
 

@@ -17,15 +17,15 @@ namespace plab::model
 namespace
 {
 
-/// Shorter steps drown in rounding, longer ones are typing errors.
+/// Shorter steps are dominated by rounding, longer ones are typing errors.
 constexpr double kShortestStep = 1e-9;  // s
 constexpr double kLongestStep = 3600;   // s
 /// n * numerator must fit 64 bits for any n that a run can reach (9e10 steps).
 constexpr std::int64_t kMostNumerator = 100'000'000;
-/// Whole numbers up to here are doubles.
+/// Whole numbers up to here are exact as doubles.
 constexpr std::int64_t kMostDenominator = std::int64_t{1} << 53;
 
-/// A fraction of whole numbers, reduced; no value once it left 64 bits.
+/// A fraction of whole numbers, reduced; no value once it exceeds 64 bits.
 class Fraction
 {
 public:
@@ -34,7 +34,7 @@ public:
     void multiply(std::int64_t n, std::int64_t d)
     {
         const Fraction other(n, d);
-        // Crosswise, so that the products are as small as they can be.
+        // Reduces crosswise, so that the products are as small as possible.
         const std::int64_t g = std::gcd(numerator_, other.denominator_), h = std::gcd(other.numerator_, denominator_);
         lost_ = lost_ || other.lost_ || __builtin_mul_overflow(numerator_ / g, other.numerator_ / h, &numerator_) ||
                 __builtin_mul_overflow(denominator_ / h, other.denominator_ / g, &denominator_);
@@ -54,7 +54,7 @@ private:
     bool lost_ = false;
 };
 
-/// The exact value of a positive decimal such as "0.001" or "1e-3"; nothing if it does not fit.
+/// The exact value of a positive decimal such as "0.001" or "1e-3"; empty if it does not fit.
 std::optional<Fraction> exact_decimal(std::string_view word)
 {
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -90,7 +90,7 @@ std::optional<Fraction> exact_decimal(std::string_view word)
     return out;
 }
 
-/// The exact fraction that a word and its unit give.
+/// The exact fraction of a number and its unit.
 std::optional<Fraction> exact_seconds(std::string_view word, const UnitFactor& unit)
 {
     const std::size_t slash = word.find('/');

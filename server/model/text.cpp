@@ -42,7 +42,7 @@ std::string quoted(std::string_view text)
 {
     constexpr std::size_t kMost = 80;
     std::size_t n = std::min(text.size(), kMost);
-    // Not within a UTF-8 sequence: continuation bytes are 10xxxxxx.
+    // Do not cut within a UTF-8 sequence: continuation bytes are 10xxxxxx.
     while (n < text.size() && n > 0 && (static_cast<unsigned char>(text[n]) & 0xc0) == 0x80) --n;
     std::string shown(text.substr(0, n));
     for (char& c : shown)

@@ -38,7 +38,7 @@ bool is_type_name(std::string_view name)
     return !begins && (parts == 2 || parts == 3);
 }
 
-/// Names that begin with `within` and whose last words are `written`.
+/// Names that begin with `within` and whose last parts are `written`.
 std::vector<std::string> names_ending_in(std::string_view written, const std::vector<std::string>& names, std::string_view within)
 {
     const std::string ending = "/" + std::string(written);
@@ -48,7 +48,7 @@ std::vector<std::string> names_ending_in(std::string_view written, const std::ve
     return out;
 }
 
-/// Collects what is wrong with one type.
+/// Collects the errors of one type.
 class TypeCheck
 {
 public:
@@ -56,7 +56,7 @@ public:
 
     void run()
     {
-        if (!is_type_name(type_->info.name)) complain("type names read Kind/Algorithm or Kind/Family/Algorithm");
+        if (!is_type_name(type_->info.name)) complain("type names must have the form Kind/Algorithm or Kind/Family/Algorithm");
         if (type_->info.family.empty()) complain("its family is empty");
         for (const Field& field : type_->schema.fields()) check_field(field);
         for (const Role& role : type_->schema.roles()) check_role(role);
@@ -74,7 +74,7 @@ private:
     void check_name(const std::string& name)
     {
         if (!is_snake_case(name)) complain(quoted(name) + " must be in snake_case");
-        if (name == "id" || name == "name" || name == "type") complain(quoted(name) + " is an attribute of every component");
+        if (name == "id" || name == "name" || name == "type") complain(quoted(name) + " is already an attribute of every component");
         if (!names_.insert(name).second) complain(quoted(name) + " is declared twice");
     }
 
@@ -85,7 +85,7 @@ private:
         if (settable && field.type == FieldType::Opaque) complain(field.name + " cannot be set: its type has no text form");
         for (const Rule& rule : field.rules)
             if (rule.kind == Rule::Kind::OneOf && (rule.options.empty() || field.type != FieldType::Text))
-                complain(field.name + " has options that cannot be chosen from");
+                complain(field.name + " has options, but its type cannot have any");
         if (!settable || field.required || field.fallback.index() == 0) return;
         Value value = field.fallback;
         if (Result<void> r = check_value(value, field); !r) return complain("the default breaks its own rule: " + r.error().reason);
@@ -96,12 +96,12 @@ private:
     {
         check_name(role.name);
         const bool takes_components = std::find(role.facets.begin(), role.facets.end(), Facet::Component) != role.facets.end();
-        if (role.facets.empty()) complain("role " + role.name + " accepts nobody: it names no facet");
+        if (role.facets.empty()) complain("role " + role.name + " accepts no component: it names no facet");
         if (role.min > role.max) complain("role " + role.name + " needs more participants than it takes");
         if (!role.default_type.empty() && !takes_components) complain("role " + role.name + " has a default type but takes no components");
         if (!role.default_type.empty() && !role.default_type.starts_with(role.family))
             complain("role " + role.name + " has a default type outside its family " + role.family);
-        if (role.exclusive && !role.writes) complain("role " + role.name + " is exclusive, so it must say that it writes");
+        if (role.exclusive && !role.writes) complain("role " + role.name + " is exclusive, so it must be declared as writing");
     }
 
     const ComponentType* type_;
@@ -151,11 +151,11 @@ std::string ComponentType::why_not_exchangeable(const ComponentType& other) cons
     {
         const Role* b = other.schema.find_role(a.name);
         if (!b) continue;
-        if (a.facets != b->facets || a.family != b->family) return "role " + a.name + " takes other kinds of participants";
-        if ((a.one == nullptr) != (b->one == nullptr)) return "role " + a.name + " is of one in the one and of many in the other";
+        if (a.facets != b->facets || a.family != b->family) return "role " + a.name + " takes different kinds of participants";
+        if ((a.one == nullptr) != (b->one == nullptr)) return "role " + a.name + " takes one participant in one type and many in the other";
     }
-    // An optional role that only one of them has is lost or left empty; a required one must have somebody in it, or a
-    // type of which somebody can be made.
+    // An optional role that only one of the types has is dropped or left empty; a required one must have a participant, or a
+    // default type from which one can be made.
     const auto lacks_required = [](const Schema& from, const Schema& in)
     {
         return std::any_of(from.roles().begin(), from.roles().end(),

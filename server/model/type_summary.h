@@ -1,5 +1,5 @@
-/// A component type in words: what listings, manifests and the bus say of it. Plain text, so that it can be known
-/// without loading the plugin.
+/// A component type in words, for listings, manifests and the bus. Plain text, so that it is available without loading the
+/// plugin.
 #pragma once
 
 #include <string>
@@ -37,12 +37,12 @@ struct TypeSummary
 /// `loaded` is true in what this returns. Scratch fields are left out.
 TypeSummary summary_of(const ComponentType& type);
 
-// The words that it uses, for the reference manual and listings as well.
+// The texts that it uses, also for the reference manual and listings.
 std::string_view name_of(FieldKind kind);
 std::string_view name_of(FieldType type);
 /// "positive, at most 1"; empty if there are no rules.
 std::string rules_in_words(const Field& field);
-/// Who fits a role: "body or shaft".
+/// The kinds of components that fit a role: "body or shaft".
 std::string facets_in_words(const Role& role);
 
 }  // namespace plab::model

@@ -23,7 +23,7 @@ struct Symbol
     Dimension dimension;  // metre, kilogram, second, radian
 };
 
-// The first of a dimension is the one without factor, where there is one.
+// The first unit of a dimension is the one without a factor, if there is one.
 constexpr Symbol kSymbols[] = {
     {"m", 1, 1, 0, {{1, 0, 0, 0}}},        {"cm", 1, 100, 0, {{1, 0, 0, 0}}},    {"mm", 1, 1000, 0, {{1, 0, 0, 0}}},
     {"km", 1000, 1, 0, {{1, 0, 0, 0}}},    {"um", 1, 1e6, 0, {{1, 0, 0, 0}}},    {"kg", 1, 1, 0, {{0, 1, 0, 0}}},
@@ -52,7 +52,7 @@ Error unknown_unit(std::string_view name)
     return reason("unknown unit " + quoted(name) + did_you_mean(name, known));
 }
 
-/// Exponents and factors this large are typing errors; they also keep the sums below within their types.
+/// Exponents and factors this large are typing errors; the limit also keeps the sums below from overflowing.
 constexpr int kMostPower = 12;
 
 void reduce(UnitFactor& f)
@@ -68,7 +68,7 @@ void reduce(UnitFactor& f)
     f.denominator /= a;
 }
 
-/// Multiplies by symbol^power; false if that gets out of hand.
+/// Multiplies by symbol^power; false if the result exceeds the limits.
 bool multiply(UnitFactor& f, const Symbol& symbol, int power)
 {
     for (std::size_t i = 0; i < f.dimension.power.size(); ++i)
@@ -96,7 +96,7 @@ public:
     Result<UnitFactor> read()
     {
         UnitFactor out;
-        // "1/s": a quotient without numerator.
+        // "1/s": a quotient without a numerator.
         if (text_.starts_with("1") && trimmed(text_.substr(1)).starts_with("/")) at_ = 1;
         bool first = at_ == 0;
         while (skip_blanks(), at_ < text_.size())
@@ -133,7 +133,7 @@ private:
             const char* const from = text_.data() + at_ + 1;
             const auto [end, ec] = std::from_chars(from, text_.data() + text_.size(), power);
             if (ec != std::errc() || std::abs(power) > kMostPower || power == 0)
-                return reason(quoted(text_) + " has a power that is not a small whole number");
+                return reason(quoted(text_) + " has an exponent that is not a small whole number");
             at_ = static_cast<std::size_t>(end - text_.data());
             if (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '/' && text_[at_] != '*')
                 return reason(quoted(text_) + " is not a unit");
@@ -163,7 +163,7 @@ bool unit_fits(const Dimension& written, const Dimension& declared)
     if (written == declared) return true;
     const bool rest_agrees =
         written.power[0] == declared.power[0] && written.power[1] == declared.power[1] && written.power[2] == declared.power[2];
-    // Only where there is mass: "2 Hz" for rad/s would hide whether turns or radians were meant.
+    // Only if mass is involved: "2 Hz" for rad/s would hide whether turns or radians are meant.
     return rest_agrees && written.power[3] == 0 && declared.power[1] != 0;
 }
 

@@ -10,8 +10,8 @@
 namespace plab::model
 {
 
-/// What a written unit makes of a number: value * numerator / denominator * pi^pi_power, in SI and radians.
-/// Kept as a fraction so that "7 cm" is the double nearest to 0.07 and "180 deg" is the one nearest to pi.
+/// How a written unit converts a number: value * numerator / denominator * pi^pi_power, in SI and radians. Kept as a fraction
+/// so that "7 cm" is the double nearest to 0.07 and "180 deg" is the one nearest to pi.
 struct UnitFactor
 {
     double numerator = 1;
@@ -22,10 +22,10 @@ struct UnitFactor
     double to_si(double value) const;
 };
 
-/// Products by blank or "*", quotients by "/" (which divides by the next unit only), powers by "^".
+/// Products by space or "*", quotients by "/" (which divides by the next unit only), powers by "^".
 Result<UnitFactor> parse_unit(std::string_view text);
 
-/// Whether a quantity of dimension `written` may stand where `declared` is wanted. Radians must agree, with one
+/// Whether a quantity of dimension `written` is acceptable where `declared` is required. Radians must agree, with one
 /// exception: a mechanical quantity per radian may be written without it ("N m s" for N m s/rad).
 bool unit_fits(const Dimension& written, const Dimension& declared);
 

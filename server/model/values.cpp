@@ -14,29 +14,29 @@
 namespace plab::model
 {
 
+std::string subject_of(const Field& field) { return field.name.empty() ? "the value" : field.name; }
+
 namespace
 {
 
 /// The field's name as the subject of a sentence.
-std::string subject(const Field& field) { return field.name.empty() ? "the value" : field.name; }
+Error complain(const Field& field, const std::string& why) { return reason(subject_of(field) + ": " + why); }
 
-Error complain(const Field& field, const std::string& why) { return reason(subject(field) + ": " + why); }
-
-/// Numbers and the unit behind them, already in SI.
+/// Numbers and the unit after them, already converted to SI.
 struct Numbers
 {
     std::vector<double> values;
     std::string unit;
 };
 
-/// The unit of a field in text; refuses one of another dimension.
+/// The unit in the text of a field; one of another dimension is refused.
 Result<UnitFactor> parse_fitting_unit(std::string_view text, const Unit& declared, const Field& field)
 {
     Result<UnitFactor> written = parse_unit(text);
     if (!written) return complain(field, written.error().reason);
     if (unit_fits(written->dimension, declared.dimension)) return written;
-    if (declared == unit::one) return reason(subject(field) + " is a pure number and takes no unit such as " + quoted(text));
-    return reason(subject(field) + " must be in " + describe_unit(declared) + ", not in " + quoted(text));
+    if (declared == unit::one) return reason(subject_of(field) + " is a pure number and takes no unit such as " + quoted(text));
+    return reason(subject_of(field) + " must be in " + describe_unit(declared) + ", not in " + quoted(text));
 }
 
 /// Words as long as they are numbers, then a unit up to the end.
@@ -44,7 +44,7 @@ Result<Numbers> parse_numbers(std::string_view text, const Field& field)
 {
     Numbers out;
     std::string_view rest = trimmed(text);
-    if (rest.empty()) return reason(subject(field) + " is empty");
+    if (rest.empty()) return reason(subject_of(field) + " is empty");
     while (!rest.empty())
     {
         const std::string_view word = rest.substr(0, rest.find_first_of(" \t\n\r"));
@@ -54,7 +54,7 @@ Result<Numbers> parse_numbers(std::string_view text, const Field& field)
         out.values.push_back(*number);
         rest = trimmed(rest.substr(word.size()));
     }
-    if (out.values.empty()) return reason(subject(field) + " must be a number, not " + quoted(rest));
+    if (out.values.empty()) return reason(subject_of(field) + " must be a number, not " + quoted(rest));
     out.unit = rest;
     return out;
 }
@@ -71,14 +71,14 @@ Result<std::vector<double>> parse_reals(std::string_view text, const Field& fiel
     {
         const bool was_finite = std::isfinite(x);
         x = factor->to_si(x);
-        if (was_finite && !std::isfinite(x)) return reason(subject(field) + " is out of range");
+        if (was_finite && !std::isfinite(x)) return reason(subject_of(field) + " is out of range");
     }
     return std::move(numbers->values);
 }
 
 Error wrong_count(const Field& field, const std::string& wanted, std::size_t has)
 {
-    return reason(subject(field) + " needs " + wanted + ", has " + std::to_string(has));
+    return reason(subject_of(field) + " needs " + wanted + ", has " + std::to_string(has));
 }
 
 Result<Value> parse_boolean(std::string_view text, const Field& field)
@@ -88,8 +88,8 @@ Result<Value> parse_boolean(std::string_view text, const Field& field)
         if (word == yes) return Value(true);
     for (const std::string_view no : {"false", "no", "0"})
         if (word == no) return Value(false);
-    if (word.empty()) return reason(subject(field) + " is empty");
-    return reason(subject(field) + " must be true or false, not " + quoted(word));
+    if (word.empty()) return reason(subject_of(field) + " is empty");
+    return reason(subject_of(field) + " must be true or false, not " + quoted(word));
 }
 
 Result<Integers> parse_integers(std::string_view text, const Field& field)
@@ -97,7 +97,7 @@ Result<Integers> parse_integers(std::string_view text, const Field& field)
     Integers out;
     for (const std::string_view word : split_words(text))
     {
-        if (!out.empty() && !looks_like_number(word)) return reason(subject(field) + " takes no unit such as " + quoted(word));
+        if (!out.empty() && !looks_like_number(word)) return reason(subject_of(field) + " takes no unit such as " + quoted(word));
         Result<std::int64_t> number = parse_integer(word);
         if (!number) return complain(field, number.error().reason);
         out.push_back(*number);
@@ -109,7 +109,7 @@ Result<Value> parse_single_integer(std::string_view text, const Field& field)
 {
     Result<Integers> numbers = parse_integers(text, field);
     if (!numbers) return numbers.errors();
-    if (numbers->empty()) return reason(subject(field) + " is empty");
+    if (numbers->empty()) return reason(subject_of(field) + " is empty");
     if (numbers->size() != 1) return wrong_count(field, "1 number", numbers->size());
     return Value(numbers->front());
 }
@@ -122,7 +122,7 @@ Result<Value> parse_vector(std::string_view text, const Field& field)
     return Value(Vec3{(*n)[0], (*n)[1], (*n)[2]});
 }
 
-/// "x y z angle [unit]" behind the word "axis".
+/// "x y z angle [unit]" after the word "axis".
 Result<Value> parse_axis_angle(std::string_view text, const Field& field)
 {
     Result<Numbers> numbers = parse_numbers(text, field);
@@ -137,8 +137,8 @@ Result<Value> parse_axis_angle(std::string_view text, const Field& field)
         angle = factor->to_si(angle);
     }
     const double scale = std::max({std::fabs(n[0]), std::fabs(n[1]), std::fabs(n[2])});
-    if (!(scale > 0)) return reason(subject(field) + " has an axis of length zero");
-    if (!std::isfinite(scale) || !std::isfinite(angle)) return reason(subject(field) + " must be finite");
+    if (!(scale > 0)) return reason(subject_of(field) + " has an axis of length zero");
+    if (!std::isfinite(scale) || !std::isfinite(angle)) return reason(subject_of(field) + " must be finite");
     const Vec3 axis = normalized(Vec3{n[0] / scale, n[1] / scale, n[2] / scale});
     return Value(normalized(exp_rotation(axis * angle)));
 }
@@ -222,7 +222,7 @@ Result<Value> parse_by_type(std::string_view text, const Field& field)
         case FieldType::Opaque:
             break;
     }
-    return reason(subject(field) + " has no text form");
+    return reason(subject_of(field) + " has no text form");
 }
 
 }  // namespace

@@ -15,13 +15,16 @@ namespace plab::model
 /// dimension. Applies check_value. The error carries only a reason.
 Result<Value> parse_value(std::string_view text, const Field& field);
 
+/// The name of a field in messages: its name, or "the value".
+std::string subject_of(const Field& field);
+
 /// Checks type, finiteness and rules of a value made elsewhere; normalises directions and rotations in place.
 Result<void> check_value(Value& value, const Field& field);
 
 /// Text that parses back to the same bits (17 significant digits where needed), without unit.
 std::string format_value(const Value& value);
 
-/// Parses "1/240", "0.001", "2 ms": exact where it can be. Must be positive and finite.
+/// Parses "1/240", "0.001", "2 ms": exact if possible. Must be positive and finite.
 Result<StepLength> parse_step_length(std::string_view text);
 
 }  // namespace plab::model

@@ -13,7 +13,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// One name per file, however it was written.
+/// One canonical name per file, however its path was written.
 std::string canonical(const std::string& path)
 {
     std::error_code failed;
@@ -48,7 +48,8 @@ std::vector<std::string> PluginLibrary::default_directories()
         if (end > begin) out.push_back(path.substr(begin, end - begin));
         begin = end + 1;
     }
-    // What was built with the program is always there: a plugin of one's own is for scenes that need the others as well.
+    // The plugins that were built with the program are always available: scenes that need a user's own plugin need the others
+    // as well.
     if (const std::string installed = installed_plugin_directory(); !installed.empty()) out.push_back(installed);
     return out;
 }
@@ -95,8 +96,7 @@ Result<const model::ComponentType*> PluginLibrary::require(const std::string& na
     if (at == homes_.end()) return unknown(name);
     const std::vector<const Manifest*>& homes = at->second;
     if (homes.size() > 1)
-        return reason("type '" + name + "' is in two plugins, " + homes[0]->plugin + " and " + homes[1]->plugin +
-                      "; take one of them away");
+        return reason("type '" + name + "' is in two plugins, " + homes[0]->plugin + " and " + homes[1]->plugin + "; remove one of them");
     if (auto plugin = load_plugin(homes[0]->plugin); !plugin) return plugin.errors();
     if (const model::ComponentType* type = registry_.find(name)) return type;
     return reason("type '" + name + "' is in " + homes[0]->path + ", but its plugin does not declare it; build the plugin again");
@@ -122,7 +122,7 @@ Result<PluginInfo> PluginLibrary::open(const std::string& path)
     if (!plugin) return plugin.errors();
     PluginInfo info{plugin->name, path, {}};
     for (const TypeInfo& type : plugin->registrar.types()) info.types.push_back(type.name);
-    // Kept even if the registry refuses: its errors may have been made with the plugin's code.
+    // Kept even if the registry refuses it: the errors may refer to the plugin's code.
     libraries_.push_back(std::move(plugin->library));
     if (auto added = registry_.add(std::move(plugin->registrar), info.name); !added)
     {

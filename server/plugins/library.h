@@ -1,5 +1,5 @@
-/// The plugin library: knows from manifests which plugin has which type, and loads a plugin when one of its types is
-/// asked for, not before.
+/// The plugin library: knows from manifests which plugin has which type, and loads a plugin only when one of its types is
+/// requested.
 #pragma once
 
 #include <deque>
@@ -21,8 +21,8 @@ struct PluginInfo
     std::vector<std::string> types;  ///< in the order of their declaration
 };
 
-/// Plugins stay loaded for as long as the library lives; whatever uses their types must be gone before it.
-/// Not thread-safe: to be asked while a scene is built, not in the step.
+/// Plugins stay loaded as long as the library exists; everything that uses their types must be destroyed before it. Not
+/// thread-safe: use it while a scene is built, not during a step.
 class PluginLibrary final : public model::TypeSource
 {
 public:
@@ -38,28 +38,28 @@ public:
 
     Result<const model::ComponentType*> require(const std::string& name) override;
     std::vector<std::string> names() const override;
-    /// All types that can be had, sorted by name, each as its plugin (if it is loaded) or its manifest tells it.
+    /// All available types, sorted by name, each as described by its plugin (if it is loaded) or by its manifest.
     std::vector<model::TypeSummary> summaries() const;
 
-    /// Loads a plugin by its file, whatever the manifests say.
+    /// Loads a plugin by its file name, independent of the manifests.
     Result<PluginInfo> load_plugin(const std::string& path);
 
     const std::vector<PluginInfo>& loaded() const { return loaded_; }
-    /// Folders and manifests that could not be read. Not fatal: a scene may do without them.
+    /// Folders and manifests that could not be read. Not fatal: a scene may not need them.
     const Errors& problems() const { return problems_; }
 
 private:
     Result<PluginInfo> open(const std::string& path);
     Error unknown(const std::string& name) const;
 
-    // Members go in reverse order: the registry, which holds tables and declarations made by plugins, before their
+    // Members are destroyed in reverse order: the registry, which holds tables and declarations made by plugins, before their
     // code.
     std::vector<LibraryHandle> libraries_;
     model::TypeRegistry registry_;
     std::vector<PluginInfo> loaded_;
     std::vector<Manifest> manifests_;
-    std::map<std::string, std::vector<const Manifest*>> homes_;  ///< by type; more than one is an error when asked for
-    std::map<std::string, Errors> failed_;                       ///< by path: told again each time, not tried again
+    std::map<std::string, std::vector<const Manifest*>> homes_;  ///< by type; more than one is an error when the type is requested
+    std::map<std::string, Errors> failed_;                       ///< by path: the same errors are reported again, without another attempt
     Errors problems_;
 };
 

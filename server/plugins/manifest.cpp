@@ -28,7 +28,7 @@ Result<Manifest> read_manifest(const std::string& path)
     std::string line;
     if (!in || !std::getline(in, line)) return Error{{path, 0, 0}, {}, "cannot be read"};
     if (line != kManifestHeader)
-        return at_line(path, 1, "is no manifest of this version: the first line must be '" + std::string(kManifestHeader) + "'");
+        return at_line(path, 1, "is not a manifest of this version: the first line must be '" + std::string(kManifestHeader) + "'");
     ManifestReader reader;
     for (std::size_t n = 2; std::getline(in, line); ++n)
         if (const auto added = reader.add(line); !added) return at_line(path, n, added.error().reason);
@@ -69,7 +69,7 @@ std::vector<Manifest> find_manifests(const std::string& directory, Errors& probl
     for (fs::directory_iterator it(directory, failed), last; !failed && it != last; it.increment(failed))
         if (it->path().extension() == ".manifest") paths.push_back(it->path().string());
     if (failed) problems.push_back({{}, {}, "plugin folder " + directory + " cannot be read: " + failed.message()});
-    std::sort(paths.begin(), paths.end());  // the system's order is any order
+    std::sort(paths.begin(), paths.end());  // the order of directory entries is unspecified
 
     std::vector<Manifest> out;
     for (const std::string& path : paths)

@@ -31,10 +31,10 @@ struct Manifest
 
 Result<Manifest> read_manifest(const std::string& path);
 
-/// Writes beside `path` and renames, so that a reader sees the old manifest or the new one, never a part.
+/// Writes a temporary file beside `path` and renames it, so that a reader sees the old manifest or the new one, never a part.
 Result<void> write_manifest(const std::string& path, const std::string& plugin, std::vector<model::TypeSummary> types);
 
-/// All manifests of a folder, by file name. What is wrong with single ones goes to `problems`.
+/// All manifests of a folder, by file name. Errors in single ones go to `problems`.
 std::vector<Manifest> find_manifests(const std::string& directory, Errors& problems);
 
 }  // namespace plab::plugins

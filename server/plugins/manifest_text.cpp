@@ -10,7 +10,7 @@ namespace
 {
 
 constexpr std::size_t kMostTypes = 10'000;
-constexpr std::size_t kMostPerType = 1'000;  ///< roles, and fields
+constexpr std::size_t kMostPerType = 1'000;  ///< roles, and also fields
 constexpr std::size_t kLongestName = 200;
 constexpr std::size_t kLongestLine = 1'000'000;
 constexpr std::string_view kHexDigits = "0123456789abcdef";
@@ -62,7 +62,7 @@ std::string line_of(std::initializer_list<std::string_view> cells)
     return out + "\n";
 }
 
-/// The cells behind the word that the line begins with.
+/// The cells after the keyword of the line.
 Result<std::vector<std::string>> cells_of(std::string_view line)
 {
     std::vector<std::string> out;
@@ -82,7 +82,7 @@ Result<Number> number_of(const std::string& text, const char* what)
 {
     Number n{};
     const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), n);
-    if (failed != std::errc() || end != text.data() + text.size()) return reason(std::string(what) + " is no whole number that fits");
+    if (failed != std::errc() || end != text.data() + text.size()) return reason(std::string(what) + " is not a whole number in range");
     return n;
 }
 
@@ -101,7 +101,7 @@ Result<void> ManifestReader::add(std::string_view line)
     struct Kind
     {
         std::string_view word;
-        std::size_t cells;  // with the word
+        std::size_t cells;  // including the keyword
         Result<void> (ManifestReader::*add)(Cells&);
     };
     constexpr Kind kinds[] = {{"plugin", 2, &ManifestReader::add_plugin},
@@ -120,7 +120,7 @@ Result<void> ManifestReader::add(std::string_view line)
                           std::to_string(cells->size()));
         return (this->*kind.add)(*cells);
     }
-    return reason("begins with no word of a manifest; plugin, type, role and field are allowed");
+    return reason("does not begin with a keyword of a manifest; plugin, type, role and field are allowed");
 }
 
 Result<void> ManifestReader::add_plugin(Cells& cells)
@@ -133,7 +133,7 @@ Result<void> ManifestReader::add_plugin(Cells& cells)
 
 Result<void> ManifestReader::add_type(Cells& cells)
 {
-    if (!is_type_name(cells[1])) return reason("is no type name; letters, digits, '_' and '/' are allowed");
+    if (!is_type_name(cells[1])) return reason("is not a type name; letters, digits, '_' and '/' are allowed");
     if (types_.size() >= kMostTypes) return reason("more than " + std::to_string(kMostTypes) + " types");
     auto order = number_of<int>(cells[3], "the order of convergence");
     if (!order) return order.errors();
@@ -162,7 +162,7 @@ Result<void> ManifestReader::add_field(Cells& cells)
     if (types_.empty()) return reason("a field before the first type");
     std::vector<model::FieldSummary>& fields = types_.back().fields;
     if (fields.size() >= kMostPerType) return reason("more than " + std::to_string(kMostPerType) + " fields of one type");
-    if (cells[6] != "required" && cells[6] != "optional") return reason("a field is 'required' or 'optional'");
+    if (cells[6] != "required" && cells[6] != "optional") return reason("a field must be 'required' or 'optional'");
     fields.push_back({std::move(cells[1]), std::move(cells[2]), std::move(cells[3]), std::move(cells[4]), std::move(cells[5]),
                       std::move(cells[7]), std::move(cells[8]), cells[6] == "required"});
     return {};

@@ -1,4 +1,4 @@
-/// The lines of a manifest, one at a time. Its format stands in manifest.h.
+/// The lines of a manifest, one at a time. Its format is documented in manifest.h.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 namespace plab::plugins
 {
 
-/// Collects what the lines say. An error carries only a reason; its line is the caller's to know.
+/// Collects the content of the lines. An error contains only a reason; the caller knows the line number.
 class ManifestReader
 {
 public:
-    /// One line behind the header.
+    /// One line after the header.
     Result<void> add(std::string_view line);
-    /// What was read. An error if it does not make a manifest: no plugin, a type twice.
+    /// The result. An error if it does not make a manifest: no plugin, a type twice.
     Result<std::vector<model::TypeSummary>> finish();
 
 private:
@@ -31,7 +31,7 @@ private:
     std::vector<model::TypeSummary> types_;
 };
 
-/// All lines behind the header, the types in the order in which they stand.
+/// All lines after the header, with the types in their order.
 std::string manifest_lines(const std::string& plugin, const std::vector<model::TypeSummary>& types);
 
 }  // namespace plab::plugins

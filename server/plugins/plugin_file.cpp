@@ -15,7 +15,7 @@ Error refused(const std::string& path, const std::string& why) { return reason("
 
 std::string compiler_of(const PluginStamp& stamp) { return stamp.compiler ? std::string(" (compiler ") + stamp.compiler + ")" : ""; }
 
-/// Nothing is thrown across the boundary, and where a plugin breaks that, it ends here.
+/// No exception may cross the boundary; if a plugin throws nevertheless, the exception is caught here.
 Result<void> register_types(RegisterFunction entry, OpenPlugin& plugin)
 {
     try
@@ -36,7 +36,7 @@ void LibraryCloser::operator()(void* library) const { dlclose(library); }
 
 std::string why_not_usable(const PluginStamp& stamp)
 {
-    // The version and the size come first in every stamp there ever was; the rest means something only if they fit.
+    // Version and size come first in every version of the stamp; the rest is meaningful only if they match.
     const std::string rebuild = "; build it again with this SDK";
     if (stamp.sdk_version != kSdkVersion)
         return "was built for version " + std::to_string(stamp.sdk_version) + " of the SDK, version " + std::to_string(kSdkVersion) +
@@ -63,7 +63,7 @@ Result<OpenPlugin> open_plugin(const std::string& path)
         return refused(file, std::string("cannot be loaded: ") + (why ? why : "unknown reason"));
     }
     const auto* stamp = static_cast<const PluginStamp*>(dlsym(plugin.library.get(), kStampSymbol));
-    if (!stamp) return refused(file, std::string("is no pLab plugin: it has no symbol ") + kStampSymbol);
+    if (!stamp) return refused(file, std::string("is not a pLab plugin: it has no symbol ") + kStampSymbol);
     if (const std::string why = why_not_usable(*stamp); !why.empty()) return refused(file, why);
     const auto entry = reinterpret_cast<RegisterFunction>(dlsym(plugin.library.get(), kRegisterSymbol));
     if (!entry) return refused(file, std::string("has no symbol ") + kRegisterSymbol);

@@ -18,7 +18,7 @@ constexpr std::int64_t kSameSignal = 500'000'000;  // ns
 
 constexpr std::array<std::pair<int, const char*>, 3> kSignals{{{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}};
 
-// A signal handler reaches nothing but static data, and of these lock-free ones only.
+// A signal handler may access only static data, and of these only lock-free ones.
 std::atomic<bool> interrupted{false};
 std::atomic<int> first_signal{0};
 std::atomic<std::int64_t> first_time{0};  // ns
@@ -35,7 +35,7 @@ std::int64_t now()
     return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
 }
 
-/// As if it had never been caught.
+/// Restores the default action and raises the signal, as if it had never been caught.
 void end_by(int signal)
 {
     struct sigaction usual
@@ -48,7 +48,7 @@ void end_by(int signal)
 
 extern "C" void note_signal(int signal)
 {
-    const int error = errno;  // who was interrupted looks at its own
+    const int error = errno;  // the interrupted code examines its own errno
     int none = 0;
     if (first_signal.compare_exchange_strong(none, signal))
     {
@@ -60,7 +60,7 @@ extern "C" void note_signal(int signal)
     if (const int descriptor = wake_descriptor; descriptor >= 0)
     {
         const std::uint64_t one = 1;
-        [[maybe_unused]] const auto written = ::write(descriptor, &one, sizeof one);  // full: a wake that nobody has read yet
+        [[maybe_unused]] const auto written = ::write(descriptor, &one, sizeof one);  // full: an earlier wake has not been read yet
     }
     errno = error;
 }

@@ -20,7 +20,7 @@ constexpr std::size_t kUsualWidth = 80, kBarWidth = 30;
 
 bool begins_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }
 
-/// At most so many columns, without control characters.
+/// Limits the text to a number of columns, and removes control characters.
 std::string one_line(const std::string& text, std::size_t most)
 {
     std::string out;
@@ -57,7 +57,7 @@ void Progress::show(const std::string& text)
         return;
     }
     is_shown_ = true;
-    // One column stays free: a full line would move on to the next one.
+    // One column stays free: a full line would wrap to the next one.
     std::fprintf(stderr, "\r\033[K%s", one_line(text, width_ - 1).c_str());
     std::fflush(stderr);
 }

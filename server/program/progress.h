@@ -1,5 +1,5 @@
-/// How far long work is: one line on standard error that is written again and again where that is a terminal; elsewhere nothing,
-/// or a line every few seconds for who asks for it.
+/// Progress of long work: one line on standard error that is redrawn in place on a terminal; otherwise nothing, or, if
+/// requested, a line every few seconds.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,8 @@ namespace plab::program
 
 enum class ProgressTo : std::uint8_t
 {
-    Terminal,  ///< standard error, if it is one
-    Lines,     ///< the same; and where it is none, a line every five seconds
+    Terminal,  ///< on standard error, if it is a terminal
+    Lines,     ///< the same; otherwise a line every five seconds
     Nowhere,
 };
 
@@ -21,7 +21,7 @@ class Progress
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Nothing is shown before `after`: work that is done by then needs no bar.
+    /// Nothing is shown before `after`: short work needs no progress bar.
     explicit Progress(ProgressTo to = ProgressTo::Terminal, std::chrono::milliseconds after = std::chrono::seconds(1));
     ~Progress() { clear(); }
     Progress(const Progress&) = delete;
@@ -30,13 +30,13 @@ public:
     bool is_terminal() const { return is_terminal_; }
     /// Columns of the terminal.
     std::size_t width() const { return width_; }
-    /// Ten times a second on a terminal, else every five seconds.
+    /// Ten times per second on a terminal, otherwise every five seconds.
     bool is_due() const { return (is_terminal_ || is_lines_) && Clock::now() >= next_; }
-    /// Now, due or not: one line, cut to the terminal's width. Control characters become '?'.
+    /// Prints one line now, shortened to the terminal's width. Control characters become '?'.
     void show(const std::string& text);
     /// If it is due: "WHAT  [#####.....]  50 %, about 3 s left".
     void show_share(const std::string& what, double share);
-    /// Takes the line away: before anything else is written.
+    /// Removes the line; call it before anything else is written.
     void clear();
 
 private:
@@ -47,7 +47,7 @@ private:
 
 /// "[#####.....]  50 %", with `width` places.
 std::string bar(double share, std::size_t width);
-/// "about 3 s left", "about 2 min left"; "" where it is too early to tell.
+/// "about 3 s left", "about 2 min left"; "" while it is too early to estimate.
 std::string time_left(double share, double seconds_passed);
 
 }  // namespace plab::program

@@ -46,7 +46,7 @@ std::string text_of(const Busy& busy)
 {
     char time[32];
     std::snprintf(time, sizeof time, "%.1f", busy.seconds);
-    return busy.what + ", for " + time + " s, " + std::to_string(busy.work) + " evaluations and looks";
+    return busy.what + ", for " + time + " s, " + std::to_string(busy.work) + " evaluations and queries";
 }
 
 }  // namespace plab::publish

@@ -79,7 +79,7 @@ void CatalogueTracker::compare(const simulation::Simulation& s, Tick boundary)
     for (std::string& id : d.gone) touched_.erase(id), gone_.insert(std::move(id));
 }
 
-/// Whether `spec` changes along with what is touched already.
+/// Whether `spec` changes along with the components that are already known to change.
 bool CatalogueTracker::touch_what_follows(const world::World& world, const model::ComponentSpec& spec)
 {
     if (touched_.contains(spec.id)) return false;
@@ -91,7 +91,7 @@ bool CatalogueTracker::touch_what_follows(const world::World& world, const model
     bool follows = !spec.parent.empty() && touched_.contains(spec.parent);
     for (const model::RoleSpec& role : spec.roles)
     {
-        // "*" means somebody else now; a body's mass comes from its shape.
+        // "*" refers to other components now; a body's mass comes from its shape.
         follows = follows || (role.everyone && came_or_went_);
         follows = follows || std::any_of(role.members.begin(), role.members.end(), is_touched_shape);
     }
@@ -101,7 +101,7 @@ bool CatalogueTracker::touch_what_follows(const world::World& world, const model
 
 void CatalogueTracker::spread(const simulation::Simulation& s)
 {
-    // All of it is told anyway.
+    // The whole catalogue is sent anyway.
     if (everything_) return;
     for (bool grown = true; grown;)
     {
@@ -112,7 +112,7 @@ void CatalogueTracker::spread(const simulation::Simulation& s)
 
 void CatalogueTracker::mark_loaded_types(const world::World& world)
 {
-    // Whoever has a table came from a plugin, which was loaded with all of its types.
+    // A type with a table came from a plugin, which was loaded with all of its types.
     if (tables_ == world.tables().size()) return;
     tables_ = world.tables().size();
     std::set<std::string_view> plugins;

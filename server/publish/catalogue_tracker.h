@@ -1,4 +1,4 @@
-/// The catalogue of a running scene: what it is made of, and what of that has changed.
+/// Tracks the catalogue of a running scene: what it consists of, and which part of that has changed.
 #pragma once
 
 #include <set>
@@ -17,18 +17,19 @@ class CatalogueTracker
 public:
     explicit CatalogueTracker(std::vector<model::TypeSummary> types) : types_(std::move(types)) {}
 
-    /// Takes note of what happened. `boundary`: the step before which requests took effect.
+    /// Records what happened. `boundary`: the step before which requests took effect.
     void follow(const simulation::Simulation& simulation, const simulation::Changes& changes, Tick boundary);
-    /// What scripts set is news from now on: they may set it at each step, which is more often than anybody reads it.
+    /// Fields that scripts set no longer count as changes: scripts may set them at each step, which is more often than any
+    /// client reads them.
     void release_scripted(const simulation::Simulation& simulation);
 
-    /// Whether there is anything to tell.
+    /// Whether there is anything to send.
     bool news() const { return everything_ || scene_changed_ || types_changed_ || !touched_.empty() || !gone_.empty(); }
     /// Whether that is the whole scene.
     bool all_new() const { return everything_; }
     CatalogueChange everything(const simulation::Simulation& simulation) const;
     CatalogueChange changes(const simulation::Simulation& simulation) const;
-    /// Everything was told.
+    /// Everything was sent.
     void clear();
 
     const Roster& roster() const { return roster_; }
@@ -43,7 +44,7 @@ private:
     std::vector<model::TypeSummary> types_;
     std::uint64_t run_ = 0, revision_ = 0;
     double dt_ = 0;
-    std::size_t tables_ = 0;  ///< of the world, when types were last looked at
+    std::size_t tables_ = 0;  ///< tables of the world when the types were last checked
     bool everything_ = false, scene_changed_ = false, types_changed_ = false;
     bool came_or_went_ = false;
     std::set<std::string> touched_, gone_;

@@ -12,12 +12,14 @@ namespace
 {
 
 constexpr Nanoseconds kSecond = 1'000'000'000;
-/// Between samples of metrics that requests ask for: a client that sends a thousand a second does not get as many.
+/// Minimum time between samples of metrics that requests trigger: a client that sends a thousand requests per second does not
+/// get as many samples.
 constexpr Nanoseconds kShortestSample = 50'000'000;
-/// Between samples for those who count simulated time: a run that is faster than the clock is not held up by its figures.
+/// Minimum real time between samples for observers with an interval of simulated time: a run that is faster than real time is
+/// not slowed down by its metrics.
 constexpr Nanoseconds kShortestOwnSample = 1'000'000;
 
-/// What makes a status news.
+/// Whether a status differs in anything that must be sent at once.
 auto matter_of(const Status& s)
 {
     return std::tie(s.scene_file, s.run, s.revision, s.dt, s.paused, s.rate_asked, s.slipping, s.threads, s.requests_done,
@@ -43,7 +45,7 @@ void Collector::attach(Observer& observer)
     published_at_ = 0;
 }
 
-/// Whether somebody watches the stream who has not seen anything of it yet.
+/// Whether a new observer of the stream has not received anything of it yet.
 bool Collector::fresh(const Observer& observer, Stream stream, Wish& wish)
 {
     const Wish now{observer.wants(stream), observer.joins(stream)};
@@ -52,12 +54,12 @@ bool Collector::fresh(const Observer& observer, Stream stream, Wish& wish)
     return out;
 }
 
-/// Whether something is due by the observer's own interval of simulated time, or by the server's turn if it has none.
+/// Whether something is due by the observer's own interval of simulated time, or, if it has none, by the server's schedule.
 bool Collector::in_turn(const Observer& observer, Stream stream, double time, double& next, bool servers_turn)
 {
     const std::optional<double> interval = observer.interval(stream);
     if (!interval) return servers_turn;
-    // Steps do not fall on the grid: the nearest one is taken.
+    // Steps do not fall exactly on the grid: the nearest one is taken.
     if (time < next - 1e-6 * *interval) return false;
     next += *interval;
     if (next <= time) next = time + *interval;
@@ -68,13 +70,13 @@ void Collector::begin_run(const simulation::Simulation& s)
 {
     if (s.run() == run_) return;
     run_ = s.run();
-    // Time has begun again.
+    // Simulated time has restarted.
     for (Watcher& w : watchers_) w.next_frame = w.next_metrics = s.time();
 }
 
 void Collector::collect(const simulation::Simulation& s, const simulation::Changes& changes, bool stepped)
 {
-    // Events are numbered whether anybody reads them or not.
+    // Events are numbered whether or not they are read.
     const Counts counts = stepped ? count(s.events()) : Counts{};
     if (!watchers_.empty())
     {
@@ -85,7 +87,7 @@ void Collector::collect(const simulation::Simulation& s, const simulation::Chang
         catalogue_.follow(s, changes, stepped ? s.tick() - 1 : s.tick());
         if (scripted_.due(now)) catalogue_.release_scripted(s);
         tell_catalogue(s, now);
-        // What stands still must be seen as it stands, however soon after the last frame.
+        // The final state of a paused scene must be sent, however soon after the last frame.
         tell_states(s, now, s.paused() ? When::Now : When::InTurn);
         tell_events(s, counts);
         tell_metrics(s, now, requested ? When::Now : When::InTurn);
@@ -139,10 +141,10 @@ void Collector::tell_states(const simulation::Simulation& s, Nanoseconds now, Wh
         if (!w.states.wanted || !due) continue;
         Frame& frame = w.observer->begin_frame();
         fill_frame(s, catalogue_.roster(), frame);
-        // Its own: who gets every tenth has not missed nine.
+        // Numbered per observer: one that gets every tenth frame has not missed nine.
         frame.number = ++w.frames;
         w.observer->end_frame();
-        // Out of turn: the next one is due an interval from here.
+        // Out of turn: the next one is due one interval from now.
         if (const auto interval = w.observer->interval(Stream::States); for_all && interval) w.next_frame = s.time() + *interval;
     }
 }

@@ -1,4 +1,4 @@
-/// Single entries of the catalogue, as the world has them now.
+/// Single entries of the catalogue, with the current values of the world.
 #pragma once
 
 #include "publish/records.h"
@@ -8,7 +8,7 @@
 namespace plab::publish
 {
 
-/// Fields of these kinds (bit per FieldKind) as text that a request may send back.
+/// Fields of these kinds (one bit per FieldKind) as text that a request may send back.
 std::vector<Parameter> parameters_of(const world::World& world, std::uint32_t component, unsigned kinds);
 
 ObjectEntry object_entry(const simulation::Simulation& simulation, const Roster::Member& member, const std::string& name);

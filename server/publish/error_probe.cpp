@@ -13,12 +13,13 @@ namespace plab::publish
 namespace
 {
 
-/// A look that would hold the loop up for longer is not made.
+/// A measurement that would block the loop for longer is not made.
 constexpr Nanoseconds kLongestLook = 20'000'000;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Who feels it: bodies and shafts of its roles; everybody where it has none, as a solver or a response.
+/// The objects that feel the component: bodies and shafts of its roles; all objects if it has no roles, such as a solver or a
+/// response.
 std::vector<std::uint32_t> concerned(const world::World& world, std::uint32_t component)
 {
     std::vector<std::uint32_t> out;
@@ -31,7 +32,7 @@ std::vector<std::uint32_t> concerned(const world::World& world, std::uint32_t co
     return out;
 }
 
-/// Radius of gyration, m: what an angle is worth in metres.
+/// Radius of gyration, m: converts an angle to a length.
 double radius_of(const Bodies& bodies, std::uint32_t b)
 {
     const Mat3& inertia = bodies.inertia_B[b];
@@ -103,7 +104,7 @@ Result<ErrorFigure> shadow_error(const simulation::Simulation& s, std::uint32_t 
     }
     simulation::Request request;
     request.operations.push_back(simulation::SwapOperation{s.world().id_of(component), finer, {}});
-    request.trial.budget = simulation::TrialChoice::Budget::None;  // its first step follows here anyway
+    request.trial.budget = simulation::TrialChoice::Budget::None;  // no trial: the first step follows here anyway
     if (const simulation::Reply reply = with_finer.carry_out_now(request); !reply.done) return reply.errors;
     if (!as_it_is.step_once() || !with_finer.step_once()) return Error{{}, "", "a step took too long"};
     const Apart difference = apart(as_it_is, with_finer, ids, s.dt());
@@ -130,7 +131,7 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
     if (share_ <= 0) return;
     if (run_ != s.run() || revision_ != s.revision())
     {
-        run_ = s.run(), revision_ = s.revision(), longest_ /= 2;  // what was dear may be less so
+        run_ = s.run(), revision_ = s.revision(), longest_ /= 2;  // a measurement that was expensive may be cheaper now
         std::erase_if(known_,
                       [&](const auto& known)
                       {
@@ -144,13 +145,13 @@ void ErrorProbe::follow(const simulation::Simulation& s, Nanoseconds now)
     const model::ComponentType& type = *s.world().type_of(i);
     const std::string finer = finer_than(type.info.name);
     last_ = s.world().id_of(i);
-    // Two restored copies, and a step of each.
+    // Two restored copies, and one step of each.
     const auto expected = std::max(longest_, static_cast<Nanoseconds>(4 * s.stepper().cost().step().median));
     if (expected > kLongestLook)
     {
         due_ = now + 1'000'000'000;
         known_[last_] = {type.info.name,
-                         {kUnknown, "", "a shadow step would hold the loop up for " + std::to_string(expected / 1'000'000) + " ms"}};
+                         {kUnknown, "", "a shadow step would block the loop for " + std::to_string(expected / 1'000'000) + " ms"}};
         return;
     }
     const Nanoseconds begin = monotonic_now();

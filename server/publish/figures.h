@@ -1,4 +1,4 @@
-/// Figures and words about a running scene that several outputs show: the bus, the end state, the table, --explain.
+/// Figures and texts about a running scene that several outputs show: the bus, the final state, the table, --explain.
 #pragma once
 
 #include <string>
@@ -20,9 +20,9 @@ struct Cost
 {
     simulation::Spread last;   ///< of the last steps; no samples: no step has been made yet
     double mean = 0;           ///< since the scene was built
-    std::uint32_t shared = 1;  ///< so many components of its type share what the type costs; 1: measured by itself
+    std::uint32_t shared = 1;  ///< number of components of the type that share the cost of the type; 1: measured individually
 };
-/// By directory index; nothing for groups.
+/// By directory index; empty for groups.
 class Costs
 {
 public:
@@ -34,13 +34,14 @@ private:
     std::vector<Cost> by_table_;  ///< of one row
 };
 
-/// kinetic - kinetic at start - work: what the methods lost or made up, J.
+/// kinetic - kinetic at start - work: energy that the methods created or lost, J.
 double unexplained(const simulation::Simulation& simulation, const simulation::Totals& totals);
 
-/// Who answers for what a detection finds: "Resolution/Bisection (rewinds the whole world), Response/Impulse".
+/// Which components process the results of a detection: "Resolution/Bisection (rewinds the whole world), Response/Impulse".
 std::string answer_of(const simulation::Simulation& simulation, const simulation::Detector& detector);
 
-/// What does the work of each interaction, in words, by directory index; empty for what is no interaction.
+/// The algorithm that does the work of each interaction, in words, by directory index; empty for components that are not
+/// interactions.
 std::vector<std::string> resolved_algorithms(const simulation::Simulation& simulation);
 
 }  // namespace plab::publish

@@ -7,7 +7,7 @@ namespace plab::publish
 namespace
 {
 
-/// "impact" of "contact.impact"; null if it is no collision.
+/// "impact" of "contact.impact"; null if it is not a collision.
 const char* collision_kind(std::string_view kind)
 {
     constexpr std::string_view kPrefix = "contact.";
@@ -17,12 +17,6 @@ const char* collision_kind(std::string_view kind)
     return nullptr;
 }
 
-/// The i-th vector among an event's values; zero where the kind carries fewer.
-Vec3 vector_in(const std::vector<double>& values, std::size_t i)
-{
-    return values.size() >= 3 * i + 3 ? Vec3{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Vec3{};
-}
-
 std::string id_of(const world::World& world, Ref ref) { return ref.valid() ? world.id_of(ref) : std::string(); }
 
 CollisionRecord collision_of(const world::World& world, const Event& e, const char* kind)
@@ -30,8 +24,8 @@ CollisionRecord collision_of(const world::World& world, const Event& e, const ch
     CollisionRecord out;
     out.kind = kind, out.time = e.time;
     out.detector = world.id_of(e.component), out.a = id_of(world, e.a), out.b = id_of(world, e.b);
-    out.position = vector_in(e.values, 0), out.normal = vector_in(e.values, 1), out.impulse = vector_in(e.values, 2);
-    if (e.values.size() >= 10) out.depth = e.values[9];
+    if (e.contact)
+        out.position = e.contact->point, out.normal = e.contact->normal, out.impulse = e.contact->impulse, out.depth = e.contact->depth;
     return out;
 }
 
@@ -41,6 +35,9 @@ EventRecord event_of(const world::World& world, const Event& e)
     out.kind = e.kind, out.severity = e.severity, out.time = e.time;
     out.component = world.id_of(e.component), out.a = id_of(world, e.a), out.b = id_of(world, e.b);
     out.message = e.message, out.values = e.values;
+    // The wire gives the place of such a contact as six values: point and normal.
+    if (e.contact)
+        for (const Vec3& v : {e.contact->point, e.contact->normal}) out.values.insert(out.values.end(), {v.x, v.y, v.z});
     return out;
 }
 

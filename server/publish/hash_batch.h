@@ -1,5 +1,5 @@
-/// State hashes of consecutive steps, gathered so that a thousand steps a second are no thousand samples. None waits here
-/// for longer than 3 ms, as long as steps come as fast as they came.
+/// State hashes of consecutive steps, gathered so that a thousand steps per second do not become a thousand samples. None waits
+/// here for longer than 3 ms, as long as steps keep their pace.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace plab::publish
 class HashBatch
 {
 public:
-    /// A record to hand over, if the new hash completes one or does not follow the last one.
+    /// A complete record to hand over, if the new hash completes one or does not follow the last one.
     std::optional<HashRecord> add(std::uint64_t run, Tick step, std::uint64_t hash, Nanoseconds now)
     {
         std::optional<HashRecord> out;
@@ -22,12 +22,12 @@ public:
         if (!record_.hashes.empty() && (record_.run != run || next != step)) out = flush();
         if (record_.hashes.empty()) record_.run = run, record_.step = step, record_.first = next_, since_ = now;
         record_.hashes.push_back(hash), ++next_;
-        // The next hash is a step away: the first of these would have to wait for it.
+        // The next hash is one step away: the first of these would have to wait for it.
         const Nanoseconds step_time = now - std::exchange(last_, now);
         if (!out && (record_.hashes.size() >= kMost || now - since_ + step_time > kLongest)) out = flush();
         return out;
     }
-    /// Whatever has been gathered and waits for long, or in any case.
+    /// The gathered hashes, if they have waited for long, or unconditionally.
     std::optional<HashRecord> flush_old(Nanoseconds now) { return now - since_ >= kLongest ? flush() : std::nullopt; }
     std::optional<HashRecord> flush()
     {
@@ -40,7 +40,7 @@ private:
     static constexpr Nanoseconds kLongest = 3'000'000;
     HashRecord record_;
     std::uint64_t next_ = 1;
-    Nanoseconds since_ = 0;  ///< the first of them
+    Nanoseconds since_ = 0;  ///< time of the first of them
     Nanoseconds last_ = 0;
 };
 

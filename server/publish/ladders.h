@@ -1,4 +1,4 @@
-/// Which algorithm of a ladder is the next finer one: what a shadow step measures an error against.
+/// The next finer algorithm of a ladder: the reference against which a shadow step measures an error.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ struct Finer
 {
     std::string_view type, finer;
 };
-/// By accuracy in the same role, not by cost: server/docs/reference.md has what each costs in which kind of scene, as measured. Contact
-/// laws that are forces stand alone: another law is another model.
+/// Ordered by accuracy in the same role, not by cost: server/docs/reference.md lists the measured cost of each in each kind of
+/// scene. Contact laws that are forces are not ordered: another law is another model.
 inline constexpr Finer kFiner[] = {
     {"Constraint/AngularVelocity/Assign", "Constraint/AngularVelocity/Graph"},
     {"Constraint/AngularVelocity/Impulse", "Constraint/AngularVelocity/Graph"},
@@ -35,7 +35,7 @@ inline constexpr Finer kFiner[] = {
     {"Solver/StoermerVerlet", "Solver/RungeKutta4"},
 };
 
-/// Empty where none of the family is finer.
+/// Empty if none of the family is finer.
 inline std::string finer_than(std::string_view type)
 {
     for (const Finer& f : kFiner)

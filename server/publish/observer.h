@@ -1,5 +1,5 @@
-/// Who watches a run: the bus, a recorder. The step thread calls these between steps; none of them waits, and the only
-/// memory that they hold is that of bounded rings.
+/// Receives the records of a run: implemented by the bus and by a recorder. The step thread calls these functions between
+/// steps; none of them may wait, and they may hold memory only in bounded rings.
 #pragma once
 
 #include <optional>
@@ -26,18 +26,18 @@ class Observer
 public:
     virtual ~Observer() = default;
 
-    /// Whether anybody wants this stream now. Where nobody does, nothing is collected or copied.
+    /// Whether this stream is wanted now. Streams that no observer wants are neither collected nor copied.
     virtual bool wants(Stream stream) const = 0;
-    /// Counts those who began to want it: whoever is new gets a frame, or a sample of metrics, also while nothing moves.
+    /// Counts the readers that began to want it: a new reader gets a frame, or a sample of metrics, even if nothing moves.
     virtual std::uint64_t joins(Stream) const { return 0; }
-    /// s of simulated time between what it gets of States, Metrics or Snapshots; 0: each step. Nothing: as the server
-    /// does it, by real time.
+    /// Interval of simulated time between States, Metrics or Snapshots, s; 0: each step. Empty: use the server's schedule, by
+    /// real time.
     virtual std::optional<double> interval(Stream) const { return {}; }
 
-    /// What follows belongs to this time of this run, unless it says otherwise.
+    /// Everything that follows belongs to this time of this run, unless it says otherwise.
     virtual void moment(std::uint64_t /*run*/, double /*time*/) {}
-    /// A frame to fill, its vectors with the memory of an earlier one; end_frame() hands it over. The oldest unsent one
-    /// is given up when all are full.
+    /// Returns a frame to fill, whose vectors keep the memory of an earlier one; end_frame() hands it over. If all frames are
+    /// in use, the oldest unsent one is dropped.
     virtual Frame& begin_frame() = 0;
     virtual void end_frame() = 0;
     virtual void collisions(Batch<CollisionRecord>&& batch) = 0;
@@ -45,11 +45,11 @@ public:
     virtual void metrics(Metrics&& metrics) = 0;
     virtual void image(Image&& image) = 0;
     virtual void journal(JournalRecord&& entry) = 0;
-    /// The hash of the state after a step; asked for at each step in turn while Hashes is wanted.
+    /// Receives the hash of the state after a step; called for each step in order while Hashes is wanted.
     virtual void hash(std::uint64_t run, Tick step, std::uint64_t hash) = 0;
     virtual void snapshot(SnapshotRecord&& snapshot) = 0;
     virtual void status(const Status& status) = 0;
-    /// False if there was no room: the next change must be everything.
+    /// False if there was no room: the next change must then contain everything.
     virtual bool catalogue(CatalogueChange&& change) = 0;
 };
 

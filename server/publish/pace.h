@@ -1,4 +1,4 @@
-/// How often something is due, by real time.
+/// Decides when something is due, by real time.
 #pragma once
 
 #include <chrono>
@@ -14,17 +14,17 @@ inline Nanoseconds monotonic_now()
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// A grid in time. Who is asked at steps, which come when they come, still reaches the rate on average.
+/// A grid in time. Steps come at arbitrary times, yet the average rate is kept.
 class Pace
 {
 public:
     /// 0: always due.
     explicit Pace(double per_second) : period_(per_second > 0 ? static_cast<Nanoseconds>(1e9 / per_second) : 0) {}
 
-    /// Whether it is due now; if so, the next time is a period later.
+    /// Whether it is due now; if so, the next time is one period later.
     bool due(Nanoseconds now)
     {
-        // A step that ends a little early is taken: waiting for the next one would make uneven intervals of even steps.
+        // Accept a step that ends a little early: waiting for the next one would make intervals uneven.
         if (now < next_ - period_ / 8) return false;
         next_ += period_;
         if (next_ <= now) next_ = now + period_;

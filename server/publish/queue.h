@@ -1,5 +1,5 @@
-/// A bounded queue between two threads that keeps the order and refuses what it has no room for. Where the newest entry
-/// matters more than the oldest, use Ring.
+/// A bounded queue between two threads that keeps the order and refuses entries that find no room. If the newest entry matters
+/// more than the oldest, use Ring.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ public:
     Queue(const Queue&) = delete;
     Queue& operator=(const Queue&) = delete;
 
-    /// False: it is full, and `value` is as it was.
+    /// False: the queue is full, and `value` is unchanged.
     bool push(T& value)
     {
         const std::uint64_t pushed = pushed_.load(std::memory_order_relaxed);
@@ -38,7 +38,7 @@ public:
         popped_.store(popped + 1, std::memory_order_release);
         return out;
     }
-    /// What waits, as either side may see it.
+    /// Number of waiting entries, as either side may see it.
     std::size_t size() const
     {
         const std::uint64_t popped = popped_.load(std::memory_order_acquire);

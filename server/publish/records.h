@@ -1,6 +1,5 @@
-/// What leaves a running scene, as plain data: the step thread fills it, other threads send or write it.
-///
-/// The bus gives the same fields the types of idl/plab.idl, where units and meanings stand.
+/// The data that leaves a running scene, as plain structs: the step thread fills them, other threads send or write them.
+/// The bus maps the fields to the types of idl/plab.idl, where units and meanings are documented.
 #pragma once
 
 #include <array>
@@ -97,12 +96,12 @@ struct SceneEntry
 /// What changed in the catalogue.
 struct CatalogueChange
 {
-    bool everything = false;  ///< what is not named here is gone
+    bool everything = false;  ///< components that are not listed here no longer exist
     SceneEntry scene;
     std::vector<ObjectEntry> objects;
     std::vector<ShapeEntry> shapes;
     std::vector<InteractionEntry> interactions;
-    std::vector<model::TypeSummary> types;  ///< empty: as before
+    std::vector<model::TypeSummary> types;  ///< empty: unchanged
     std::vector<std::string> gone;          ///< ids of components of any kind
 };
 
@@ -124,7 +123,7 @@ struct EventRecord
     std::vector<double> values;
 };
 
-/// What one step brought.
+/// The events of one step.
 template <class T>
 struct Batch
 {
@@ -138,12 +137,12 @@ struct InteractionMetrics
 {
     std::string component, requested, resolved;
     double cost_ns = 0;  ///< median of the last steps; 0 before the first
-    double error = 0;    ///< 0 where none is known: then there is no account of it
+    double error = 0;    ///< 0 if none is known: then there is no account of it
     double work = 0;
     bool quarantined = false;
-    /// Outputs, and accounts (kind "account") that say what the figures above are: cost_quartiles (ns), cost_steps (how many the
-    /// median is of), cost_shared_by (so many components of its type share what the type costs; 1: measured by itself), and error
-    /// (its unit; the text is its meaning) or, where none is known, no_error (why).
+    /// Outputs, and accounts (kind "account") that explain the figures above: cost_quartiles (ns), cost_steps (number of steps
+    /// of the median), cost_shared_by (number of components of its type that share the cost of the type; 1: measured
+    /// individually), and error (its unit; the text is its meaning) or, if none is known, no_error (the reason).
     std::vector<Parameter> outputs;
 };
 
@@ -190,12 +189,12 @@ struct Status
     bool paused = false;
     double rate_asked = 0, rate_reached = 0, slipped = 0;
     bool slipping = false;
-    std::string busy;              ///< "" or what a step or trial that takes long is at
+    std::string busy;              ///< "" or the activity of a step or trial that takes long
     double states_per_second = 0;  ///< 0: each step
     std::uint32_t threads = 1;
     std::uint64_t last_event = 0, last_collision = 0;
     std::uint64_t requests_done = 0, requests_refused = 0;
-    double rewind_from = -1;  ///< s; < 0: it cannot be rewound
+    double rewind_from = -1;  ///< s; < 0: a rewind is not possible
     std::vector<KeptSnapshot> snapshots;
     RecordingStatus recording;
 };
@@ -210,7 +209,7 @@ struct Image
     std::vector<std::uint8_t> rgba;  ///< rows from the top
 };
 
-/// A request as it came, in text; server/control makes operations of it.
+/// A request as received, in text; server/control converts it to operations.
 struct OperationText
 {
     std::string verb, target, argument, blueprint;
@@ -222,7 +221,7 @@ struct RequestText
     ClientId client{};
     std::uint64_t number = 0;
     std::int64_t at = -1, revision = -1;
-    std::int64_t arrived_ns = 0;  ///< monotonic
+    std::int64_t arrived_ns = 0;  ///< monotonic time
     std::vector<OperationText> operations;
 };
 
@@ -248,7 +247,7 @@ struct HashRecord
     std::vector<std::uint64_t> hashes;
 };
 
-/// Everything that a run needs to go on from there.
+/// Everything that a run needs to continue from there.
 struct SnapshotRecord
 {
     std::uint64_t run = 0, revision = 0;

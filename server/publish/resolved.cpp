@@ -1,4 +1,5 @@
-// What does the work of each interaction: solvers by the groups that they really advance, detections by who answers.
+// The algorithm that does the work of each interaction: solvers by the groups that they actually advance, detections by the
+// components that process their results.
 #include <algorithm>
 #include <map>
 
@@ -9,11 +10,11 @@ namespace plab::publish
 namespace
 {
 
-/// What a solver has to do in the present structure.
+/// The work of a solver in the current structure.
 struct Use
 {
     std::size_t groups = 0, objects = 0, mixed = 0, resting = 0;
-    std::map<std::uint32_t, std::size_t> others;  ///< objects that name it and are advanced by another solver, by that one
+    std::map<std::uint32_t, std::size_t> others;  ///< objects that name it but are advanced by another solver, by that solver
 };
 
 std::string counted(std::size_t n, const std::string& what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
@@ -61,7 +62,7 @@ std::map<std::uint32_t, Use> uses_of_solvers(const simulation::Simulation& s)
     return out;
 }
 
-/// What a text output of a component says now; empty if it has none of that name.
+/// The current value of a text output of a component; empty if it has none of that name.
 std::string text_of(const world::World& world, std::uint32_t component, const std::string& output)
 {
     if (!world.table_of(component).schema().find_field(output)) return {};
@@ -70,7 +71,7 @@ std::string text_of(const world::World& world, std::uint32_t component, const st
     return text ? *text : std::string();
 }
 
-/// What a solver that chooses or falls back says that it uses, and why; empty if that is what its name says.
+/// The method that a solver with a choice or fallback reports, and why; empty if it is what its name says.
 std::string choice_of(const world::World& world, std::uint32_t solver)
 {
     const std::string method = text_of(world, solver, "resolved"), why = text_of(world, solver, "reason");
@@ -82,11 +83,11 @@ std::string words_for_solver(const world::World& world, std::uint32_t solver, co
 {
     std::string out = use.groups == 0 ? "nothing" : world.type_of(solver)->info.name;
     if (use.groups > 0) out += ": " + counted(use.groups, "group") + ", " + counted(use.objects, "object") + choice_of(world, solver);
-    if (use.groups == 0 && use.others.empty()) out += ": nobody that moves names it";
+    if (use.groups == 0 && use.others.empty()) out += ": no moving object uses it";
     if (use.mixed > 0) out += "; in " + counted(use.mixed, "group") + " some members name another solver";
     for (const auto& [other, objects] : use.others)
-        out += "; " + counted(objects, "object") + " that named it: " + world.type_of(other)->info.name + " (" + world.id_of(other) +
-               "), whose group they are in";
+        out += "; " + counted(objects, "object") + " that use it: " + world.type_of(other)->info.name + " (" + world.id_of(other) +
+               "), of whose group they are members";
     if (use.resting > 0) out += "; " + counted(use.resting, "group") + " with resting contacts: time stepping";
     return out;
 }

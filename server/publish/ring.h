@@ -20,10 +20,9 @@ namespace plab::publish
 {
 
 /// Exactly one thread pushes and exactly one pops; neither ever waits for the other.
-///
-/// Each slot has one word: a ticket (how many entries came before) and who has the slot. The entry with ticket t lies in
+/// Each slot has one word: a ticket (the number of entries before it) and the owner of the slot. The entry with ticket t is in
 /// slot t mod size. The producer takes a Ready slot away from the consumer, and the consumer one from the producer, by
-/// compare-and-swap, so exactly one of them gets it. A slot that is being read is stepped over: its ticket is left out.
+/// compare-and-swap, so exactly one of them gets it. The producer skips a slot that is being read: its ticket is left out.
 template <class T>
 class Ring
 {
@@ -34,7 +33,7 @@ public:
     Ring& operator=(const Ring&) = delete;
 
     // Producer ---------------------------------------------------------------------------------------------------------
-    /// A slot to fill, with what an earlier entry left in it. Hidden from the consumer until end_push().
+    /// A slot to fill, which still holds the data of an earlier entry. Hidden from the consumer until end_push().
     T& begin_push();
     void end_push();
 
@@ -44,7 +43,7 @@ public:
     void end_pop();
 
     // Both -------------------------------------------------------------------------------------------------------------
-    /// Entries that were given up because nobody had read them in time.
+    /// Entries that were dropped because they were not read in time.
     std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
     /// Whether there may be something to read.
     bool empty() const { return read_.load(std::memory_order_acquire) >= pushed_.load(std::memory_order_acquire); }
@@ -69,9 +68,9 @@ private:
     std::vector<Slot> slots_;
     std::uint64_t next_ = 0;  ///< producer's: ticket of the next entry
     Slot* written_ = nullptr;
-    alignas(64) std::atomic<std::uint64_t> pushed_{0};  ///< all tickets below were pushed, or left out
+    alignas(64) std::atomic<std::uint64_t> pushed_{0};  ///< all smaller tickets were pushed, or left out
     std::atomic<std::uint64_t> dropped_{0};
-    alignas(64) std::atomic<std::uint64_t> read_{0};  ///< consumer's: ticket of the next entry, the others only look
+    alignas(64) std::atomic<std::uint64_t> read_{0};  ///< consumer's: ticket of the next entry; other threads only read it
     Slot* held_ = nullptr;
 };
 
@@ -79,8 +78,8 @@ template <class T>
 T& Ring<T>::begin_push()
 {
     assert(!written_ && "end_push() first");
-    // Each turn that finds a slot in the consumer's hands goes on to the next one. There is always one that it does not
-    // hold, and it can empty each slot only once while nothing is pushed: no more than two rounds.
+    // Each turn that finds a slot held by the consumer continues with the next one. There is always one that it does not hold,
+    // and it can empty each slot only once while nothing is pushed: no more than two rounds.
     for (;; ++next_)
     {
         Slot& slot = slot_of(next_);
@@ -112,7 +111,7 @@ T* Ring<T>::begin_pop()
     assert(!held_ && "end_pop() first");
     const std::uint64_t pushed = pushed_.load(std::memory_order_acquire);
     std::uint64_t ticket = read_.load(std::memory_order_relaxed);
-    // Older ones have been overwritten already.
+    // Older ones have already been overwritten.
     if (pushed > slots_.size() && ticket < pushed - slots_.size()) ticket = pushed - slots_.size();
     for (; ticket < pushed && !held_; ++ticket)
     {

@@ -8,7 +8,7 @@ namespace
 Roster::Kind kind_of(Facet facet)
 {
     if (facet == Facet::Shape) return Roster::Kind::Shape;
-    // Quantities have no place in space: they are told with their fields, as interactions are.
+    // Quantities have no pose in space: they are published with their fields, like interactions.
     return facet == Facet::Body || facet == Facet::Shaft ? Roster::Kind::Object : Roster::Kind::Interaction;
 }
 
@@ -36,7 +36,7 @@ Roster::Differences Roster::update(const world::World& world, Tick boundary)
     {
         for (; known != members_.end() && (!id || known->first < *id); known = members_.erase(known)) out.gone.push_back(known->first);
     };
-    // Both stand in the order of ids: one walk finds who came and who went.
+    // Both lists are sorted by id: one pass finds which components were added and removed.
     for (const std::uint32_t i : world.in_id_order())
     {
         const world::Component& c = world.component(i);

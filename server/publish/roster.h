@@ -1,4 +1,4 @@
-/// Who is in the scene: handles of objects, and since when each component does its work by the type that it has.
+/// The components of the scene: handles of objects, and since when each component has its current type.
 #pragma once
 
 #include <map>
@@ -26,12 +26,12 @@ public:
         Kind kind = Kind::Object;
         const model::ComponentType* type = nullptr;
         Tick since = 0;
-        std::uint32_t handle = 0;  ///< objects only; from 1, never used again in a run
+        std::uint32_t handle = 0;  ///< objects only; starts at 1, never reused within a run
     };
     struct Differences
     {
         std::vector<std::string> came, retyped, gone;
-        bool other_kind = false;  ///< an id stands for something quite different now
+        bool other_kind = false;  ///< the id now denotes a component of another kind
     };
     /// An object by its row in the host's table.
     struct Place
@@ -39,15 +39,15 @@ public:
         std::uint32_t handle = 0, row = 0;
     };
 
-    /// A new run: nobody is known, handles begin anew.
+    /// A new run: no component is known, handles restart.
     void restart();
-    /// To be called when the structure may have changed; `boundary` is the step at which it did.
+    /// Call when the structure may have changed; `boundary` is the step at which it did.
     Differences update(const world::World& world, Tick boundary);
 
     /// Null if there is no such component, or if it is a group.
     const Member* find(const std::string& id) const;
     const std::map<std::string, Member>& members() const { return members_; }
-    /// In the order of their ids, static ones too.
+    /// In order of their ids, static objects included.
     const std::vector<Place>& bodies() const { return bodies_; }
     const std::vector<Place>& shafts() const { return shafts_; }
     std::size_t count(Kind kind) const { return counts_[static_cast<std::size_t>(kind)]; }

@@ -13,7 +13,7 @@ namespace plab::publish
 namespace
 {
 
-/// A rate over less real time says more about the clock than about the run.
+/// Over a shorter real time, a rate would measure the clock rather than the run.
 constexpr Nanoseconds kShortestWindow = 100'000'000;
 
 void fill_ledger(const simulation::Simulation& s, Metrics& out)
@@ -48,7 +48,7 @@ InteractionMetrics metrics_of(const simulation::Simulation& s, std::uint32_t i, 
 
 void Sampler::read_rate(const simulation::Simulation& s, Nanoseconds now)
 {
-    // A rate across a reset, a restore or a rewind is one of nothing.
+    // A rate across a reset, a restore or a rewind is meaningless.
     if (std::exchange(run_, s.run()) != s.run()) rate_since_ = 0, real_time_factor_ = 0;
     const Nanoseconds passed = now - rate_since_;
     if (rate_since_ != 0 && passed < kShortestWindow && s.time() >= rate_from_) return;

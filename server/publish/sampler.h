@@ -12,7 +12,7 @@ namespace plab::publish
 class Sampler
 {
 public:
-    /// `error_share`: of real time that looks at errors may take.
+    /// `error_share`: largest share of real time for measuring errors.
     explicit Sampler(double error_share) : errors_(error_share) {}
     Metrics sample(const simulation::Simulation& simulation, Nanoseconds now);
 

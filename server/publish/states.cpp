@@ -7,7 +7,7 @@ namespace plab::publish
 
 BodyState state_of(const Bodies& bodies, std::uint32_t row, std::uint32_t handle)
 {
-    // Most frames B stand in the centre of mass.
+    // The frame B of most bodies is at the centre of mass.
     if (bodies.center_B[row] == Vec3{})
         return {handle, bodies.position[row], bodies.orientation[row], bodies.velocity[row], bodies.angular_velocity[row]};
     const Pose X_WB = bodies.pose(row);
@@ -22,7 +22,7 @@ void fill_frame(const simulation::Simulation& s, const Roster& roster, Frame& fr
     frame.shafts.clear();
     const Bodies& bodies = s.world().host().bodies;
     const Shafts& shafts = s.world().host().shafts;
-    // Over what the frame held before: entries that stay are not built anew.
+    // Overwrites what the frame held before, so that existing entries are not rebuilt.
     frame.bodies.resize(roster.bodies().size());
     std::size_t count = 0;
     for (const Roster::Place& body : roster.bodies())

@@ -1,4 +1,4 @@
-/// Frames: where everything is.
+/// Fills frames with the poses and velocities of all moving objects.
 #pragma once
 
 #include "publish/records.h"
@@ -8,10 +8,10 @@
 namespace plab::publish
 {
 
-/// Pose and velocity of the frame B that the author sees; the tables keep those of the centre of mass.
+/// Pose and velocity of the frame B that the author defined; the tables keep those of the centre of mass.
 BodyState state_of(const Bodies& bodies, std::uint32_t row, std::uint32_t handle);
 
-/// Bodies that are not static, and shafts. Allocates nothing where the frame held as many before.
+/// Bodies that are not static, and shafts. Does not allocate if the frame held as many before.
 void fill_frame(const simulation::Simulation& simulation, const Roster& roster, Frame& frame);
 
 }  // namespace plab::publish

@@ -1,4 +1,4 @@
-/// What a thread that serves the step thread sleeps on. Any thread may ring; many rings before it wakes are one.
+/// What a thread that serves the step thread sleeps on. Any thread may ring; several rings before it wakes count as one.
 #pragma once
 
 #include <semaphore.h>
@@ -23,14 +23,14 @@ public:
     {
         if (!algorithm_.exchange(true, std::memory_order_acq_rel)) (void)sem_post(&semaphore_);
     }
-    /// Until a ring, or for so long. What was algorithm for before this returns is seen by what follows it.
+    /// Sleeps until a ring, or for this time. Whatever was written before the ring is visible to what follows the return.
     void sleep(std::chrono::nanoseconds longest)
     {
         timespec end{};
         (void)clock_gettime(CLOCK_MONOTONIC, &end);
         const std::int64_t ns = end.tv_nsec + longest.count();
         end.tv_sec += static_cast<std::time_t>(ns / 1'000'000'000), end.tv_nsec = static_cast<long>(ns % 1'000'000'000);
-        // An interrupted wait is an early pass, which does no harm.
+        // An interrupted wait only makes one early pass, which is harmless.
         (void)sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &end);
         (void)algorithm_.exchange(false, std::memory_order_acq_rel);
     }

@@ -11,7 +11,7 @@
 namespace plab::record
 {
 
-/// A server's status with what the recorder adds of itself.
+/// A server's status, with what the recorder adds about itself.
 struct Entry
 {
     using Body = std::variant<std::unique_ptr<publish::Frame>, publish::Batch<publish::CollisionRecord>,
@@ -20,8 +20,8 @@ struct Entry
     std::uint64_t run = 0;
     double time = 0;            ///< s, simulated, in that run
     std::int64_t stamp_ns = 0;  ///< since 1970
-    std::size_t bytes = 0;      ///< about what it holds in memory
-    recording::Losses lost;     ///< what found no room before it; times are left out
+    std::size_t bytes = 0;      ///< approximate memory that it uses
+    recording::Losses lost;     ///< what was dropped before it for lack of room; without times
     Body body;
 };
 

@@ -170,14 +170,15 @@ Result<std::optional<publish::HashRecord>> FileLog::next_hashes()
 
 Result<std::optional<publish::Frame>> FileLog::frame(std::uint64_t run, Tick step)
 {
-    // Frames may name only what moved: all of the run's up to there make the one that is asked for.
+    // Frames may contain only what moved: merge all frames of the run up to that one to get a complete one.
     publish::Frame merged;
     bool there = false;
     auto done = each<plab_v2_Frame>(query_of(wire::topic_of<plab_v2_Frame>().name, run),
                                     [&](const plab_v2_Frame& f, std::uint64_t)
                                     {
                                         if (f.run != run) return true;
-                                        // Of several after one step the last counts: a request may have changed states.
+                                        // If there are several after one step, the last one counts: a request may have changed
+                                        // states.
                                         if (there && f.step > merged.step) return false;
                                         merge(f, merged);
                                         there = f.step >= step;
@@ -212,7 +213,7 @@ std::string FileLog::damage() const
 {
     const recording::FileIndex& index = reader_.index();
     if (!index.troubles.empty()) return index.troubles.front().text();
-    return index.is_closed ? std::string() : reader_.name() + " was not closed: what came last may be missing";
+    return index.is_closed ? std::string() : reader_.name() + " was not closed: the last messages may be missing";
 }
 
 }  // namespace plab::record

@@ -1,4 +1,4 @@
-/// A run log that lies in a recording.
+/// A run log in the file of a recording.
 #pragma once
 
 #include <map>
@@ -28,7 +28,7 @@ public:
 
 private:
     explicit FileLog(recording::Reader reader) : reader_(std::move(reader)) {}
-    /// Part of the time line in which a run has messages.
+    /// A part of the time line in which a run has messages.
     struct Span
     {
         std::uint64_t from = 0, to = 0;

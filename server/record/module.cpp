@@ -1,4 +1,4 @@
-// What record.so exports. Nothing is thrown across the module's border.
+// What record.so exports. No exception may cross the module's boundary.
 #include <exception>
 
 #include "record/file_log.h"

@@ -8,7 +8,7 @@ namespace plab::record
 namespace
 {
 
-// Raw bits: a state that changed from 0 to -0 has moved. What the compiler leaves between members is not looked at.
+// Compares raw bits: a state that changed from 0 to -0 has moved. Padding between members is not compared.
 bool same(const publish::BodyState& a, const publish::BodyState& b)
 {
     constexpr std::size_t kFrom = offsetof(publish::BodyState, position);
@@ -21,7 +21,7 @@ bool same(const publish::ShaftState& a, const publish::ShaftState& b)
            std::memcmp(&a.speed, &b.speed, sizeof a.speed) == 0;
 }
 
-/// Both are sorted alike while the structure stays: place by place.
+/// Both are in the same order while the structure does not change, so compare place by place.
 template <class State>
 void keep_moved(const std::vector<State>& now, std::vector<State>& last, std::vector<State>& out)
 {

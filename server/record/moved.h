@@ -1,4 +1,4 @@
-/// Leaves out of frames what stands still: a heap that has come to rest costs nothing but its place in a full frame.
+/// Omits resting objects from frames: a heap at rest costs nothing except its entries in a full frame.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 namespace plab::record
 {
 
-/// A frame names what is not, bit for bit, as it was named last; a full one comes with each run, each change of the
-/// structure, and after each `full_every`. Readers keep what was named last.
+/// A frame contains the objects whose values differ in any bit from those last written; a full frame comes with each run, each
+/// change of the structure, and after each `full_every`. Readers keep the last values of each object.
 class MovedFilter
 {
 public:
@@ -22,7 +22,7 @@ public:
 private:
     double full_every_;  ///< s, simulated
     double full_at_ = 0;
-    publish::Frame last_, out_;  ///< last_: as a reader knows it
+    publish::Frame last_, out_;  ///< last_: as a reader has it
 };
 
 }  // namespace plab::record

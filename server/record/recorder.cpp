@@ -15,7 +15,7 @@ namespace
 {
 
 constexpr std::size_t kQueue = 16384;
-/// Beyond the frames that are in flight, this many are kept for later ones.
+/// Besides the frames in flight, this many are kept for reuse.
 constexpr std::size_t kSpareFrames = 64;
 
 Result<recording::Compression> compression_of(const std::string& name)
@@ -23,7 +23,7 @@ Result<recording::Compression> compression_of(const std::string& name)
     if (name == "none") return recording::Compression::None;
     if (name == "lz4") return recording::Compression::Lz4;
     if (name == "zstd") return recording::Compression::Zstd;
-    return reason("'" + name + "' is no compression: none, lz4 or zstd");
+    return reason("'" + name + "' is not a compression: use none, lz4 or zstd");
 }
 
 std::string number(double value)
@@ -40,7 +40,7 @@ std::string joined(const std::vector<std::string>& words)
     return out;
 }
 
-/// What the file says of itself before anything else.
+/// The metadata that the file starts with.
 Result<void> introduce(recording::Writer& writer, const RecordOptions& o, const wire::Identity& self)
 {
     recording::Metadata about{recording::kAbout, {}};
@@ -67,7 +67,7 @@ Result<void> check_topics(const std::vector<std::string>& topics)
 {
     for (const std::string& topic : topics)
         if (std::none_of(wire::topics().begin(), wire::topics().end(), [&](const wire::Topic& t) { return topic == t.name; }))
-            return reason("'" + topic + "' is no topic of pLab");
+            return reason("'" + topic + "' is not a pLab topic");
     return {};
 }
 
@@ -86,7 +86,7 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecordOptions& options)
     if (!compression) return compression.errors();
     recording::WriterOptions file;
     file.compression = *compression;
-    // Of the 20 ms that a kill may cost a chunk takes 12; 3 go to hashes that are gathered, 2 to the writer's nap.
+    // Of the 20 ms that a kill may cost, a chunk takes 12, the gathering of hashes 3, and the sleep of the writer 2.
     file.chunk_time = std::chrono::milliseconds(12);
     auto writer = recording::Writer::create(options.file, file, options.overwrite ? recording::Overwrite::Yes : recording::Overwrite::No);
     if (!writer) return writer.errors();
@@ -108,7 +108,7 @@ Recorder::Recorder(const RecordOptions& options, recording::Writer writer)
     thread_ = std::thread([this] { run(); });
     (void)pthread_sigmask(SIG_SETMASK, &before, nullptr);
     (void)pthread_setname_np(thread_.native_handle(), "plab-record");
-    // Batch: it does not push the step thread aside when it is woken on the same core.
+    // Batch: waking this thread does not preempt the step thread on the same core.
     const sched_param priority{};
     (void)pthread_setschedparam(thread_.native_handle(), SCHED_BATCH, &priority);
 }
@@ -180,7 +180,7 @@ bool Recorder::push(Entry::Body&& body, std::size_t bytes, Weight weight)
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     entry.stamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
     entry.body = std::move(body);
-    // A single entry larger than the room goes in when nothing else waits: a snapshot of a huge scene.
+    // A single entry larger than the room is accepted when nothing else waits: a snapshot of a huge scene.
     const bool fits = has_room(bytes, weight) || (weight == Weight::Essential && queue_.size() == 0);
     waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed);
     if (fits && queue_.push(entry))
@@ -209,7 +209,7 @@ void Recorder::end_frame()
                               filling_->shafts.size() * sizeof(publish::ShaftState);
     if (!has_room(bytes, Weight::Detail))
     {
-        // The frame stays here and is filled again.
+        // The frame stays here and is refilled.
         ++lost_.messages, lost_.bytes += bytes;
         dropped_here_.fetch_add(1, std::memory_order_relaxed);
         return;

@@ -1,4 +1,4 @@
-/// A recording that is being written: a queue that the step thread fills, and one thread that empties it into the file.
+/// A recording in progress: a queue that the step thread fills, and one thread that empties it into the file.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@ class Recorder final : public Recording
 {
 public:
     static Result<std::unique_ptr<Recorder>> open(const RecordOptions& options);
-    /// Closes the file, if nobody did.
+    /// Closes the file, if that has not been done.
     ~Recorder() override;
 
     // Step thread ------------------------------------------------------------------------------------------------------
@@ -41,12 +41,12 @@ public:
     Result<void> close() override;
 
 private:
-    /// What is given up first when the writer does not keep up.
+    /// What is dropped first when the writer does not keep up.
     enum class Weight
     {
-        Detail,     ///< up to half of the room
-        Essential,  ///< all of it
-        Vital,      ///< without which nothing can be made again, and small: whatever waits, as long as the queue has a place
+        Detail,     ///< may use up to half of the room
+        Essential,  ///< may use all of it
+        Vital,      ///< small entries without which no replay is possible: accepted as long as the queue has a slot
     };
     Recorder(const RecordOptions& options, recording::Writer writer);
     bool push(Entry::Body&& body, std::size_t bytes, Weight weight);
@@ -73,20 +73,20 @@ private:
     publish::WakeUp wake_up_;
     std::atomic<bool> stop_{false};
 
-    // Step thread's.
+    // Used by the step thread only.
     std::uint64_t run_ = 0;
     double time_ = 0;
     std::unique_ptr<publish::Frame> filling_;
     publish::HashBatch hash_batch_;
     recording::Losses lost_;
 
-    // Writer's.
+    // Used by the writer's thread only.
     recording::Clock::time_point tried_{}, warned_at_{};
     bool in_trouble_ = false;
     bool closed_ = false;
     std::optional<Error> close_error_;
 
-    mutable std::mutex mutex_;  ///< of progress_ alone, held for a copy
+    mutable std::mutex mutex_;  ///< protects only progress_, held for a copy
     publish::RecordingStatus progress_;
     std::atomic<std::uint64_t> dropped_here_{0};
     std::thread thread_;

@@ -1,4 +1,4 @@
-/// What the writer's thread of a recording does.
+/// The work of a recording's writer thread.
 #include <cstdio>
 
 #include "record/recorder.h"
@@ -10,7 +10,7 @@ namespace
 
 constexpr std::chrono::seconds kSecond(1), kIdle(1);
 constexpr std::chrono::milliseconds kTell(100);
-/// While entries come at each step, the thread wakes this often, not for each of them.
+/// While entries come at each step, the thread wakes at this interval, not for each entry.
 constexpr std::chrono::milliseconds kGather(2);
 constexpr std::size_t kBurst = 256;
 
@@ -55,13 +55,14 @@ bool Recorder::pass()
 
 void Recorder::write(Entry& entry)
 {
-    // Snapshots are written down beside the run and come late: they stand where they were taken, a run's first one before it.
+    // Snapshots are serialized in parallel with the run and arrive late: they are placed at the time when they were taken, a
+    // run's first one before the run.
     const auto* snapshot = std::get_if<publish::SnapshotRecord>(&entry.body);
     const std::uint64_t log_time = snapshot ? timeline_.at(snapshot->run, snapshot->time) : timeline_.at(entry.run, entry.time);
     if (entry.lost.messages > 0)
     {
         entry.lost.first_log_time = entry.lost.last_log_time = log_time;
-        // The disk's own trouble is told by look_after_disk.
+        // look_after_disk reports trouble with the disk itself.
         (void)writer_.add_gap(entry.lost, "the writer did not keep up with the simulation");
     }
     topics_.put(entry, {log_time, static_cast<std::uint64_t>(entry.stamp_ns), recording::Clock::now()});
@@ -77,15 +78,15 @@ void Recorder::look_after_disk(recording::Clock::time_point now)
     if (auto error = topics_.take_error()) say("recording " + options_.file + ": " + error->reason);
     if (writer_.trouble())
     {
-        if (!in_trouble_) say("recording stands still, the simulation goes on: " + writer_.trouble()->reason);
+        if (!in_trouble_) say("recording is stalled, the simulation continues: " + writer_.trouble()->reason);
         in_trouble_ = true;
         if (now - tried_ >= kSecond) tried_ = now, (void)writer_.retry();
     }
     else if (in_trouble_ && now - tried_ >= 2 * kSecond)
     {
-        // A disk that took a few bytes is not well yet.
+        // A disk that accepted a few bytes is not yet considered healthy.
         in_trouble_ = false;
-        say("recording " + options_.file + " goes on: the disk takes writes again");
+        say("recording " + options_.file + " continues: the disk accepts writes again");
     }
     if (now - warned_at_ < kTell) return;
     warned_at_ = now;

@@ -49,7 +49,7 @@ void TopicWriter::write(const T& sample, const Stamp& stamp)
 {
     if (!has(wire::topic_of<T>().name)) return;
     const recording::ChannelId id = channel<T>();
-    if (id == 0) return;  // was told when the channel could not be made
+    if (id == 0) return;  // the error was reported when the channel could not be made
     const auto bytes = encoder_.encode(sample);
     if (!bytes)
     {

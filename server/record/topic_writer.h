@@ -1,4 +1,4 @@
-/// Records into the file: as samples of the wire, encoded as the bus would send them.
+/// Writes records into the file: as samples of the wire, encoded as the bus would send them.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 namespace plab::record
 {
 
-/// When a message belongs where on the recording's time line.
+/// Position of a message on the recording's time line.
 struct Stamp
 {
     std::uint64_t log_time = 0;
@@ -34,7 +34,7 @@ public:
     /// Whether the file is to have this topic.
     bool has(const char* topic) const;
     void put(Entry& entry, const Stamp& stamp);
-    /// Trouble with encoding, since the last call; not with the disk.
+    /// Encoding errors since the last call; disk errors are not included.
     std::optional<Error> take_error() { return std::exchange(error_, std::nullopt); }
 
 private:

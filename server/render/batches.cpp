@@ -7,7 +7,8 @@ namespace plab::render
 namespace
 {
 
-/// Outlines of spheres of that level keep within a third of a pixel of the circle up to 130, 500 pixels of radius.
+/// The outlines of spheres at these levels deviate from the circle by at most a third of a pixel, up to 130 and 500 pixels of
+/// radius.
 constexpr int kCoarseSphere = 3, kFineSphere = 4;
 constexpr double kCoarsePixels = 130;
 constexpr int kCylinderSides = 64, kRoundSides = 40, kCoarseSides = 8;
@@ -27,8 +28,6 @@ void fill(GLenum target, const Buffer& buffer, const std::vector<T>& data, GLenu
     glBindBuffer(target, buffer.name());
     glBufferData(target, static_cast<GLsizeiptr>(data.size() * sizeof(T)), data.data(), usage);
 }
-
-std::array<float, 3> floats(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
 Vec3 scale_of(const Item& item)
 {
@@ -130,7 +129,7 @@ std::vector<Batch*> Batches::all()
     return out;
 }
 
-/// A barrel and two balls: no form of its own, since its ends keep their shape where it is long.
+/// A barrel and two balls: not a form of its own, since its ends keep their shape when it is stretched.
 void Batches::add_capsule(const Item& item, const Frame& frame)
 {
     Item part = item;

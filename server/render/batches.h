@@ -1,4 +1,4 @@
-/// Items sorted into draws: one per surface, with all its instances.
+/// Sorts items into draw calls: one per surface, with all its instances.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace plab::render
 {
 
-/// What the vertex shader gets for each item, as it lies in memory.
+/// The vertex shader's input for each item, with its memory layout.
 struct Instance
 {
     std::array<float, 3> place;  ///< relative to the eye
@@ -20,7 +20,7 @@ struct Instance
     std::array<float, 3> color;
 };
 
-/// A surface on OpenGL's side, and the items that look like it in this picture.
+/// A surface in OpenGL's memory, and the items of this picture that use it.
 class Batch
 {
 public:
@@ -43,16 +43,16 @@ class Batches
 {
 public:
     static Batches make();
-    /// Takes over the drawing's meshes if their revision is another than before.
+    /// Uploads the drawing's meshes if their revision has changed.
     Result<void> keep_meshes(const Drawing& drawing);
     const std::vector<double>& mesh_radii() const { return mesh_radii_; }
-    /// Everything but planes; refuses an item whose mesh is not there.
+    /// All items except planes; refuses an item whose mesh does not exist.
     Result<void> sort(const Drawing& drawing, const Frame& frame);
-    /// All that is made of triangles. As shadows, spheres are not.
+    /// Draws everything made of triangles. In the shadow pass, spheres are not.
     void draw_solids(bool shadows) const;
-    /// Spheres that are small in the picture, as squares.
+    /// Draws spheres that are small in the picture, as squares.
     void draw_balls() const { balls_[0].draw(); }
-    /// All spheres, as discs.
+    /// Draws all spheres, as discs.
     void draw_ball_shadows() const { balls_[1].draw(), balls_[2].draw(); }
 
 private:

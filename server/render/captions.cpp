@@ -18,7 +18,7 @@ void blend(std::uint8_t* pixel, const Color& color, int share)
     for (std::size_t k = 0; k < 3; ++k) pixel[k] = static_cast<std::uint8_t>((pixel[k] * (255 - share) + color[k] * share + 127) / 255);
 }
 
-/// One of a glyph's two layers, where it lies inside the picture.
+/// Draws one of a glyph's two layers, as far as it is inside the picture.
 void paint_layer(const Glyph& glyph, bool ink, int left, int baseline, Picture& picture)
 {
     const std::vector<std::uint8_t>& layer = ink ? glyph.ink : glyph.seam;
@@ -79,7 +79,7 @@ void CaptionPainter::paint_line(const std::string& text, int left, int baseline,
         while (!line.empty() && pen + dots > end) pen = line.back().left, line.pop_back();
         for (int i = 0; i < 3; ++i, pen += dots / 3) line.push_back({&font_.glyph('.'), pen});
     }
-    // All seams lie below all letters.
+    // All outlines are below all letters.
     for (const bool ink : {false, true})
         for (const Placed& placed : line) paint_layer(*placed.glyph, ink, placed.left, baseline, picture);
 }

@@ -1,4 +1,4 @@
-/// Lines of text over a picture, painted into its bytes.
+/// Lines of text over a picture, drawn into its pixels.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 namespace plab::render
 {
 
-/// Dark letters with a light seam, readable on any ground; their size follows the picture's height.
+/// Dark letters with a light outline, readable on any background; their size follows the picture's height.
 class CaptionPainter
 {
 public:
     explicit CaptionPainter(std::uint32_t picture_height);
-    /// Lines stand in their order, in a block at the top left and one at the bottom left. What is too long for the
-    /// picture ends in dots; what is too much for its height is cut off.
+    /// Lines are in their order, in a block at the top left and one at the bottom left. A line that is too long for the picture
+    /// ends in dots; lines that exceed its height are left out.
     void paint(const std::vector<Caption>& captions, Picture& picture) const;
 
 private:

@@ -7,7 +7,7 @@ namespace plab::render
 namespace
 {
 
-/// OSMesa wants an image of its own; we draw into framebuffer objects and never look at it.
+/// OSMesa requires an image of its own; drawing goes to framebuffer objects, and this image is never read.
 constexpr GLsizei kDummySize = 16;
 
 }  // namespace
@@ -24,7 +24,7 @@ Result<Context> Context::make()
                               3,
                               0};
     const OSMesaContext made = OSMesaCreateContextAttribs(wanted, nullptr);
-    if (!made) return reason("OSMesa makes no context of OpenGL 3.3; Mesa 17 or newer with llvmpipe or softpipe is needed");
+    if (!made) return reason("OSMesa cannot create an OpenGL 3.3 context; Mesa 17 or newer with llvmpipe or softpipe is needed");
     return Context(made);
 }
 
@@ -35,7 +35,7 @@ Context::~Context()
 
 Result<void> Context::acquire()
 {
-    // Shared by all contexts of a thread: nobody reads it.
+    // Shared by all contexts of a thread; it is never read.
     thread_local std::array<std::uint8_t, 4 * kDummySize * kDummySize> dummy;
     if (!OSMesaMakeCurrent(context_, dummy.data(), GL_UNSIGNED_BYTE, kDummySize, kDummySize))
         return reason("OSMesa cannot make its context current");

@@ -21,7 +21,7 @@ public:
     Context& operator=(const Context&) = delete;
     ~Context();
 
-    /// For the calling thread, until `release`. Whoever had it must have released it.
+    /// Makes it current for the calling thread, until `release`. Another thread that used it must have released it.
     Result<void> acquire();
     static void release();
 

@@ -13,9 +13,9 @@ namespace plab::render
 namespace
 {
 
-constexpr double kCapital = 14, kGap = 4.1;  ///< of the strokes' own measure
-constexpr double kPen = 2.05;                ///< width of a stroke there
-constexpr double kSeam = 0.16;               ///< width of the seam, of the capitals' height
+constexpr double kCapital = 14, kGap = 4.1;  ///< in the units of the strokes
+constexpr double kPen = 2.05;                ///< width of a stroke in these units
+constexpr double kSeam = 0.16;               ///< width of the outline, relative to the height of capitals
 
 struct Point
 {
@@ -80,7 +80,7 @@ double distance_to(const Point& p, const std::vector<Polyline>& lines)
     return least;
 }
 
-/// How much of a pixel at distance `away` from the pen's path a pen of that half width covers.
+/// Coverage of a pixel at distance `away` from the path of a pen with this half width.
 std::uint8_t coverage(double half_width, double away)
 {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(half_width - away + 0.5, 0.0, 1.0)));

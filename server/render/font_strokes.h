@@ -14,7 +14,7 @@ struct Strokes
     std::string_view path;
 };
 
-/// ASCII 32 to 126, then the box for all others. Digits have equal width, so that running numbers stand still.
+/// ASCII 32 to 126, then the box for all others. Digits have equal width, so that changing numbers do not shift.
 inline constexpr Strokes kStrokes[] = {
     {4, ""},
     {0, "0,14 0,4 / 0,0 0,0.4"},

@@ -10,8 +10,6 @@ namespace plab::render
 namespace
 {
 
-std::array<float, 3> floats(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 std::uint32_t count_of(const Surface& surface) { return static_cast<std::uint32_t>(surface.corners.size()); }
 
 void add_quad(Surface& out, const std::array<Vec3, 4>& corners, const std::array<Vec3, 4>& normals)
@@ -95,7 +93,7 @@ std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& vertices)
     return first;
 }
 
-/// Twice the area, along the normal; nothing where it is no triangle.
+/// Twice the area, along the normal; zero for a degenerate triangle.
 std::vector<Vec3> area_normals(const Mesh& mesh)
 {
     std::vector<Vec3> out;

@@ -1,4 +1,4 @@
-/// What is drawn, as triangles with normals: primitives of unit size, and meshes as they were given.
+/// Triangles with normals for everything that is drawn: primitives of unit size, and the given meshes.
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@ struct Corner
     std::array<float, 3> position, normal;
     friend bool operator==(const Corner&, const Corner&) = default;
 };
+inline std::array<float, 3> floats(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
 struct Surface
 {
@@ -33,8 +34,8 @@ Surface unit_cylinder(int sides);
 /// In the plane z = 0, about the unit disc; four sides make a square that is parallel to x and y.
 Surface unit_disc(int sides);
 
-/// The mesh with normals: faces that meet at less than a crease's angle are shaded as one smooth surface, sharper edges
-/// stay sharp. Refuses triangles that name vertices which are not there.
+/// The mesh with normals: faces that meet at less than the crease angle are shaded as one smooth surface, sharper edges stay
+/// sharp. Refuses triangles that refer to nonexistent vertices.
 Result<Surface> surface_of(const Mesh& mesh);
 
 }  // namespace plab::render

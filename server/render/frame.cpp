@@ -9,7 +9,7 @@ namespace plab::render
 namespace
 {
 
-/// Where the light comes from: over the left shoulder of who looks from the default view.
+/// Direction to the light: over the left shoulder of a viewer at the default view.
 const Vec3 kToLight = normalized(Vec3{-0.42, -0.55, 1.05});
 /// Planes and shadows end this many times the distance from the eye to the focus.
 constexpr double kReach = 14;
@@ -35,7 +35,7 @@ Result<void> check(const View& view)
     return {};
 }
 
-/// Of all that throws a shadow within reach, along the light's axes, relative to the eye.
+/// Bounds of everything that casts a shadow within the visible range, along the light's axes, relative to the eye.
 Box3 casters(const Drawing& drawing, const Frame& frame, const Basis& light, const std::vector<double>& radii)
 {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -62,7 +62,7 @@ void aim_light(Frame& frame, const Drawing& drawing, const std::vector<double>& 
     Box3 box = casters(drawing, frame, frame.light, radii);
     frame.shadows = box.low.x <= box.high.x;
     if (!frame.shadows) return;
-    // A square with a margin, so that nothing lies on the rim, and a depth that is not too flat.
+    // A square with a margin, so that nothing lies on the edge, and with a minimum depth.
     const double most = std::max({box.high.x - box.low.x, box.high.y - box.low.y, 1e-6 * frame.reach});
     const Vec3 middle = (box.low + box.high) * 0.5;
     const double half = 0.53 * most;
@@ -129,7 +129,8 @@ Result<Frame> make_frame(const Drawing& drawing, const std::vector<double>& mesh
         nearest = std::min(nearest, depth - radii[i]);
         farthest = std::max(farthest, depth + radii[i]);
     }
-    // The ground begins at the eye's feet, so not too far away; a depth of 24 bits is fine enough at this ratio.
+    // The near plane: the ground begins below the eye, so it must not be too far away; a depth buffer of 24 bits is precise
+    // enough for this ratio.
     const double near = std::clamp(0.5 * nearest, 2e-3 * distance, 0.02 * distance);
     out.clip_from_E = perspective(out.basis, view.field_of_view, static_cast<double>(width) / height, near, farthest);
     aim_light(out, drawing, radii);

@@ -1,4 +1,4 @@
-/// OpenGL as this folder sees it: OSMesa links its functions, so that no loader is needed.
+/// OpenGL for this folder: OSMesa links its functions, so that no loader is needed.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES 1
@@ -9,7 +9,7 @@
 namespace plab::render
 {
 
-/// Owns one name of OpenGL. The context must be current when it is made and when it goes.
+/// Owns one OpenGL object name. The context must be current when it is created and destroyed.
 template <class Kind>
 class Handle
 {

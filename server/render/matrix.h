@@ -1,4 +1,4 @@
-/// 4x4 matrices in single precision, column by column, as OpenGL takes them.
+/// 4x4 matrices in single precision, in column-major order, as OpenGL requires.
 #pragma once
 
 #include "plab/vector.h"
@@ -11,13 +11,13 @@ struct Mat4
     float m[16] = {};
 };
 
-/// Three axes that are square to one another: of an eye or of a light. `back` points out of the picture.
+/// Three orthogonal axes, of an eye or of a light. `back` points out of the picture.
 struct Basis
 {
     Vec3 right, up, back;
 };
 
-/// The basis that looks along -back, with `up` as upright as it can be; upright is chosen where they are parallel.
+/// The basis that looks along -back, with `up` as upright as possible; if they are parallel, another up direction is chosen.
 Basis basis_of(const Vec3& back, const Vec3& up);
 
 /// Clip space from points relative to the eye, in world axes. Angles in rad, distances in m.

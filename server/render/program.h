@@ -15,11 +15,11 @@ class Program
 {
 public:
     Program() = default;
-    /// An error has the compiler's log in it.
+    /// The error contains the compiler's log.
     static Result<Program> make(const ShaderText& text);
 
     void use() const { glUseProgram(program_.name()); }
-    // Each sets a uniform of the program in use; one that the compiler removed is none of our business.
+    // Each sets a uniform of the program in use; a uniform that the compiler removed is ignored.
     void set(const char* name, const Mat4& m) const { glUniformMatrix4fv(at(name), 1, GL_FALSE, m.m); }
     void set(const char* name, const Vec3& v) const;
     void set(const char* name, double a, double b) const { glUniform2f(at(name), static_cast<float>(a), static_cast<float>(b)); }

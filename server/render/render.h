@@ -1,5 +1,5 @@
-/// Pictures of plain geometry, off-screen, with OSMesa. Knows neither world nor wire: the viewer and the camera component
-/// both hand it a Drawing.
+/// Pictures of plain geometry, off-screen, with OSMesa. Independent of world and wire: both the viewer and the camera component
+/// pass it a Drawing.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ enum class Form : std::uint8_t
     Box,       ///< size: half extents
     Cylinder,  ///< size.x: radius, size.z: half length along z
     Capsule,   ///< size.x: radius, size.z: half length of its straight part along z
-    Plane,     ///< z = 0 of its pose, as far as one can see
+    Plane,     ///< z = 0 of its pose, as far as visible
     Mesh,
 };
 
@@ -47,7 +47,7 @@ struct View
     double field_of_view = 0.7;  ///< rad, vertical
 };
 
-/// A line of text over the picture; from the top left, or from the bottom left where `bottom`.
+/// A line of text over the picture; from the top left, or from the bottom left if `bottom` is set.
 struct Caption
 {
     std::string text;
@@ -59,12 +59,12 @@ struct Drawing
     View view;
     std::vector<Item> items;
     std::vector<Mesh> meshes;
-    std::uint64_t meshes_revision = 0;  ///< to be changed when `meshes` does: they are kept on the GL side
+    std::uint64_t meshes_revision = 0;  ///< must change when `meshes` does, since OpenGL keeps them
     bool ground = true;                 ///< grid in the plane z = 0
     std::vector<Caption> captions;
 };
 
-/// 8 bits a channel, red green blue alpha, rows from the top.
+/// 8 bits per channel, red green blue alpha, rows from the top.
 struct Picture
 {
     std::uint32_t width = 0, height = 0;
@@ -75,20 +75,20 @@ class Renderer
 {
 public:
     virtual ~Renderer() = default;
-    /// Draws into `out`, whose memory is used again. To be called on one thread at a time.
+    /// Draws into `out`, whose memory is reused. Call it on one thread at a time.
     virtual Result<void> draw(const Drawing& drawing, Picture& out) = 0;
 };
 
 /// Sizes from 16 to 8192 pixels.
 Result<std::unique_ptr<Renderer>> make_renderer(std::uint32_t width, std::uint32_t height);
 
-/// Writes beside the file and renames, so that whoever looks sees a whole picture.
+/// Writes to a temporary file and renames it, so that readers always see a complete picture.
 Result<void> write_png(const std::string& path, const Picture& picture);
 
-/// A view that shows all items from a pleasant angle (azimuth and elevation in rad about their middle), in a
-/// picture at least as wide as high. Planes and what is not finite do not count.
+/// A view that shows all items from a pleasant angle (azimuth and elevation in rad about their centre), in a picture at least
+/// as wide as high. Planes and items that are not finite do not count.
 View view_of_everything(const Drawing& drawing, double azimuth = -1.1, double elevation = 0.35);
-/// The same for items that are no meshes, which have no size by themselves.
+/// The same for items that are not meshes, since a mesh item alone does not give its size.
 View view_of_everything(const std::vector<Item>& items, double azimuth = -1.1, double elevation = 0.35);
 
 }  // namespace plab::render

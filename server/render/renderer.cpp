@@ -18,10 +18,10 @@ namespace
 constexpr std::uint32_t kLeastSize = 16, kMostSize = 8192;
 /// Texels of the shadow map for each pixel of the picture's longer side, rounded up to a power of two.
 constexpr std::uint32_t kLeastShadow = 512, kMostShadow = 4096;
-/// Radius of the half shadow, in texels.
+/// Radius of the penumbra, in texels.
 constexpr double kSoftness = 2.5;
 const Vec3 kGroundColor{0.885, 0.895, 0.905};
-/// The ground is thin: what lies below it can be seen.
+/// The ground is translucent: objects below it are visible.
 constexpr double kGroundOpacity = 0.6;
 
 struct Programs
@@ -50,7 +50,7 @@ Result<Programs> make_programs()
     return out;
 }
 
-/// The context of this thread while it lives.
+/// Makes the context current on this thread during its lifetime.
 class Current
 {
 public:
@@ -60,7 +60,7 @@ public:
     ~Current() { Context::release(); }
 };
 
-/// All that lives in the context; gone before it.
+/// Everything that lives in the context; destroyed before it.
 struct Parts
 {
     Programs programs;
@@ -79,7 +79,7 @@ public:
     }
     ~OsmesaRenderer() override
     {
-        // Names can only be given back to a context; without one they go with it.
+        // OpenGL objects can only be deleted while a context is current; without one they are released with it.
         const bool current = context_.acquire().ok();
         parts_.reset();
         if (current) Context::release();
@@ -189,7 +189,7 @@ void OsmesaRenderer::draw_planes(const Drawing& drawing, const Frame& frame) con
     {
         if (item.form != Form::Plane || !can_be_drawn(item)) continue;
         const Vec3 normal = rotate(item.pose.q, {0, 0, 1});
-        // A plane where the ground would be takes its place: the two would flicker through one another.
+        // A plane in the place of the ground replaces it: both together would flicker (z-fighting).
         if (std::fabs(dot(normal, item.pose.p)) < 1e-4 * frame.grid && std::fabs(normal.z) > 1 - 1e-9) ground = false;
         draw_plane(frame, item.pose, item.color, 1);
     }
@@ -221,7 +221,7 @@ void OsmesaRenderer::draw_plane_shadow(const Frame& frame, const Vec3& origin, c
 {
     const double cosine = dot(normal, frame.to_light);
     if (!frame.shadows || cosine < 0.05) return;
-    // The beam through all that throws a shadow, cut by the plane: a parallelogram.
+    // The volume behind everything that casts a shadow, intersected with the plane: a parallelogram.
     const Vec3 middle = (frame.casters.low + frame.casters.high) * 0.5, half = (frame.casters.high - frame.casters.low) * 0.5;
     const auto along_light = [&](const Vec3& p) { return p - frame.to_light * (dot(p, normal) / cosine); };
     const Vec3 from_origin = frame.light.right * middle.x + frame.light.up * middle.y - frame.from_eye(origin);
@@ -235,7 +235,7 @@ void OsmesaRenderer::draw_plane_shadow(const Frame& frame, const Vec3& origin, c
     program.set("normal", normal);
     program.set("focus", frame.from_eye(frame.focus));
     program.set("reach", frame.reach);
-    // On the plane itself: drawn a little nearer than it.
+    // Drawn slightly in front of the plane itself.
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-1, -4);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
@@ -247,7 +247,8 @@ void OsmesaRenderer::draw_plane_shadow(const Frame& frame, const Vec3& origin, c
 Result<std::unique_ptr<Renderer>> make_renderer(std::uint32_t width, std::uint32_t height)
 {
     if (width < kLeastSize || width > kMostSize || height < kLeastSize || height > kMostSize)
-        return reason("a picture must have from 16 to 8192 pixels each way, not " + std::to_string(width) + " x " + std::to_string(height));
+        return reason("a picture must have from 16 to 8192 pixels in each direction, not " + std::to_string(width) + " x " +
+                      std::to_string(height));
     auto context = Context::make();
     if (!context) return context.error();
     if (auto done = context->acquire(); !done) return done.error();

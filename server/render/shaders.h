@@ -1,4 +1,4 @@
-/// The programs of the renderer, as texts of GLSL 3.30.
+/// The shader programs of the renderer, as GLSL 3.30 source.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ ShaderText solid_shadow_shader();
 ShaderText ball_shadow_shader();
 /// The ground's grid and Form::Plane.
 ShaderText plane_shader();
-/// What the items throw on a plane.
+/// The shadows of items on a plane.
 ShaderText plane_shadow_shader();
 ShaderText background_shader();
 

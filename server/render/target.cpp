@@ -22,7 +22,7 @@ Renderbuffer make_storage(GLenum format, int samples, std::uint32_t width, std::
 Result<void> check_frame(const std::string& what)
 {
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE && glGetError() == GL_NO_ERROR) return {};
-    return reason("OpenGL cannot make the memory for " + what + "; a smaller size may do");
+    return reason("OpenGL cannot allocate memory for " + what + "; try a smaller size");
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ Result<ShadowMap> ShadowMap::make(int size)
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    // What lies outside of the map is lit.
+    // Everything outside of the map is lit.
     constexpr float far[] = {1, 1, 1, 1};
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);

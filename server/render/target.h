@@ -1,4 +1,4 @@
-/// Where is drawn to: the picture with several samples a pixel, and the shadow map.
+/// The render targets: the picture with several samples per pixel, and the shadow map.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace plab::render
 {
 
-/// Edges are smooth: each pixel has four samples of coverage and depth, shaded once per pixel and surface.
+/// Smooth edges: each pixel has four samples of coverage and depth, shaded once per pixel and surface.
 class Target
 {
 public:

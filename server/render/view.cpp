@@ -11,12 +11,12 @@ namespace plab::render
 namespace
 {
 
-/// A little air around everything.
+/// A small margin around everything.
 constexpr double kMargin = 1.08;
 
 bool counts(const Item& item) { return item.form != Form::Plane && can_be_drawn(item); }
 
-/// The middle of the box around all balls; empty where there are none.
+/// The centre of the box around all balls; empty if there are none.
 std::optional<Vec3> middle_of(const std::vector<Item>& items, const std::vector<double>& mesh_radii)
 {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -40,8 +40,8 @@ View view_of(const std::vector<Item>& items, const std::vector<double>& mesh_rad
     View out;
     const Vec3 back{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
     out.look_at = middle_of(items, mesh_radii).value_or(Vec3{});
-    // As far away as the ball needs that sticks out most of the pyramid of the view, whose sides lean by half its angle:
-    // a ball at (x, y) across and z towards the eye is inside if  max(|x|, |y|) cos h + r <= (distance - z) sin h.
+    // Far enough for the ball that protrudes most from the view's pyramid, whose sides are inclined by half its angle: a ball
+    // at (x, y) across and z towards the eye is inside if  max(|x|, |y|) cos h + r <= (distance - z) sin h.
     const Basis basis = basis_of(back, out.up);
     const double half = 0.5 * out.field_of_view;
     double distance = 0;

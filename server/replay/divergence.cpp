@@ -15,7 +15,7 @@ namespace plab::replay
 namespace
 {
 
-/// Differences that are shown, of each kind.
+/// Largest number of differences shown, of each kind.
 constexpr std::size_t kMost = 5;
 
 template <class T>
@@ -38,13 +38,13 @@ void compare_body(const std::string& id, const publish::BodyState& was, const pu
     compare("angular_velocity", was.angular_velocity, is.angular_velocity);
 }
 
-/// Steps on to `step` with what was asked on the way.
+/// Steps up to `step`, carrying out the recorded requests on the way.
 Result<void> go_to(Tick step, simulation::Simulation& s, const std::function<Result<void>()>& ask)
 {
     while (s.tick() < step)
     {
         if (auto asked = ask(); !asked) return asked;
-        if (!s.step_once()) return reason("given up at step " + std::to_string(s.tick()) + ": the replay is to end");
+        if (!s.step_once()) return reason("abandoned at step " + std::to_string(s.tick()) + ": the replay is to end");
     }
     return {};
 }
@@ -135,23 +135,24 @@ std::string Mismatch::text() const
     std::string out = head.data();
     if (recorded_revision > replayed_revision)
         out += "until then " + std::to_string(recorded_revision - replayed_revision) +
-               " more changes of the scene took effect than the journal tells of: requests are missing in it\n";
+               " more changes of the scene took effect than the journal contains: it lacks requests\n";
     const std::string where =
         frame_step == step ? "the recorded frame of that step" : "the recorded frame of step " + std::to_string(frame_step);
     if (frame_step >= 0 && in_frame.empty())
         out += where +
-               " is the same: what differs is not in frames (contacts, a script's or a coupling's state), or the hash in the file "
+               " is identical: the difference is in data that frames do not contain (contacts, the state of a script or coupling), or the "
+               "hash in the file "
                "is wrong\n";
     else if (frame_step >= 0)
         out += "in " + where + ":\n";
     for (const simulation::Difference& d : in_frame) add(out, d);
     if (snapshot_step >= 0)
-        out += in_snapshot.empty() ? "the snapshot of step " + std::to_string(snapshot_step) + " is the same again\n"
+        out += in_snapshot.empty() ? "the snapshot of step " + std::to_string(snapshot_step) + " is identical again\n"
                                    : "in the snapshot of step " + std::to_string(snapshot_step) + ":\n";
     for (const simulation::Difference& d : in_snapshot) add(out, d);
     if (frame_step < 0 && snapshot_step < 0)
         out +=
-            "the recording has neither a frame nor a snapshot of that step or later: it cannot be told what differs; record each step "
+            "the recording has neither a frame nor a snapshot of that step or later: it is not known what differs; record every step "
             "(without --record-states) and snapshots more often (--record-snapshots), or compare the columns of --trace\n";
     return out;
 }

@@ -1,4 +1,4 @@
-/// Where a replay differs from its recording, when a hash has shown that it does.
+/// Finds where a replay differs from its recording, after a hash has shown that it does.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 namespace plab::replay
 {
 
-/// Fills in what differs: against the recorded frame of this step (or the next one that there is), and against the next
-/// recorded snapshot of the run, to which the simulation is stepped on. `ask` carries out what is due before a step.
+/// Fills in the differences: from the recorded frame of this step (or the next one that exists), and from the next recorded
+/// snapshot of the run, up to which the simulation is stepped. `ask` carries out the requests that are due before a step.
 Result<void> find_differences(record::RunLog& log, simulation::Simulation& simulation, model::TypeSource& types, Mismatch& mismatch,
                               const std::function<Result<void>()>& ask);
 

@@ -24,7 +24,7 @@ public:
         record_ = {}, over_ = false;
         return log_->begin_hashes(run);
     }
-    /// Of the state after `step` steps; nothing if it was not recorded. Steps ascend.
+    /// The hash of the state after `step` steps; empty if it was not recorded. Steps ascend.
     Result<std::optional<std::uint64_t>> at(Tick step)
     {
         while (!over_ && step >= end())
@@ -52,7 +52,7 @@ private:
     bool over_ = false;
 };
 
-/// Where an entry of the journal stands.
+/// Describes an entry of the journal.
 struct JournalPlace
 {
     std::uint64_t number = 0, run = 0;
@@ -60,7 +60,7 @@ struct JournalPlace
     std::string text() const { return "step " + std::to_string(step) + " of run " + std::to_string(run); }
 };
 
-/// "" if all between the two is there. Numbers count the requests of a server that took effect.
+/// "" if no entry is missing between the two. The numbers count the requests of a server that took effect.
 std::string gap_between(const JournalPlace& before, const JournalPlace& after)
 {
     if (after.number <= before.number + 1) return {};
@@ -71,7 +71,7 @@ std::string gap_between(const JournalPlace& before, const JournalPlace& after)
            " missing, " + (before.number == 0 ? "before " : "after " + before.text() + ", not after ") + after.text();
 }
 
-/// Whether the recording says that it was made without this topic.
+/// Whether the metadata state that the recording was made without this topic.
 bool is_without(const record::RunLog& log, std::string_view topic)
 {
     const std::string topics = " " + log.origin("topics") + " ";
@@ -109,9 +109,9 @@ private:
     Hashes hashes_;
     std::vector<publish::JournalRecord> journal_;
     std::size_t next_ = 0;
-    /// The journal's last entry of the runs before; none: it is not known which number comes first.
+    /// The last journal entry of the previous runs; empty: the first number is not known.
     std::optional<JournalPlace> before_;
-    std::uint64_t revisions_ahead_ = 0;  ///< of the recorded run over this one, when it began
+    std::uint64_t revisions_ahead_ = 0;  ///< by how much the revision of the recorded run exceeded this one's when it began
     ReplayReport report_;
 };
 
@@ -140,7 +140,7 @@ Result<void> Replay::read_journal(std::uint64_t run)
     if (!journal) return journal.errors();
     journal_ = journal.take(), next_ = 0;
     look_for_gaps(run);
-    // A request that begins a run is what the run's first snapshot shows already.
+    // The run's first snapshot already includes a request that begins a run.
     std::erase_if(journal_, [](const publish::JournalRecord& j) { return control::begins_a_run(j.operations); });
     return {};
 }
@@ -156,7 +156,7 @@ void Replay::look_for_gaps(std::uint64_t run)
     }
 }
 
-/// Requests that took effect before the step that comes next.
+/// Carries out requests that took effect before the next step.
 Result<void> Replay::ask_what_is_due()
 {
     for (; next_ < journal_.size() && journal_[next_].step <= s_->tick(); ++next_)
@@ -168,13 +168,13 @@ Result<void> Replay::ask_what_is_due()
         auto wanted = control::wanted_of(text, *types_, s_->limits());
         if (!wanted) return wanted.errors();
         if (wanted->shutdown || !simulation::affects_the_run(wanted->request)) continue;
-        // It took effect, whatever its trial came to, which the clock may have decided.
+        // It took effect when it was recorded, whatever its trial would now give, since a trial may depend on the clock.
         wanted->request.trial.budget = simulation::TrialChoice::Budget::None;
         const simulation::Reply reply = s_->carry_out_now(wanted->request);
         ++report_.requests;
         if (!reply.done)
             return reason("the request of step " + std::to_string(entry.step) +
-                          " cannot be carried out again: " + (reply.errors.empty() ? std::string() : reply.errors.front().text()));
+                          " cannot be replayed: " + (reply.errors.empty() ? std::string() : reply.errors.front().text()));
     }
     return {};
 }
@@ -202,7 +202,7 @@ Result<void> Replay::verify(std::uint64_t run)
 Result<void> Replay::run(std::uint64_t run)
 {
     const record::RecordedSnapshot* const from = beginning_of(run);
-    if (!from) return reason("the recording has no snapshot of run " + std::to_string(run) + ": nothing to begin from");
+    if (!from) return reason("the recording has no snapshot of run " + std::to_string(run) + ": there is no state to start from");
     if (auto begun = begin(*from); !begun) return begun;
     if (auto read = read_journal(run); !read) return read;
     if (auto begun = hashes_.begin(run); !begun) return begun;
@@ -214,11 +214,11 @@ Result<void> Replay::run(std::uint64_t run)
         if (options_->until && s_->time() >= *options_->until - 0.5 * s_->dt()) break;
         auto more = hashes_.more_after(s_->tick());
         if (!more) return more.errors();
-        if (!*more || over()) break;  // at its end a run is not interrupted any more
+        if (!*more || over()) break;  // at its end, a run is no longer interrupted
         if (auto asked = ask_what_is_due(); !asked) return asked;
         if (!s_->step_once())
         {
-            report_.interrupted = true;  // given up in work: it is not made, whatever was verified until then
+            report_.interrupted = true;  // interrupted during the step: it does not count, whatever was verified before
             break;
         }
         ++report_.steps, report_.made.back().last = s_->tick();
@@ -236,11 +236,11 @@ Result<ReplayReport> Replay::go()
         if (std::find(runs.begin(), runs.end(), s.run) == runs.end()) runs.push_back(s.run);
     if (options_->run) runs = {*options_->run};
     if (runs.empty())
-        return reason(std::string("the recording has no snapshot to begin from") +
+        return reason(std::string("the recording has no snapshot to start from") +
                       (is_without(*log_, "plab/snapshots") ? ": it was made without plab/snapshots" : ""));
     if (is_without(*log_, "plab/journal"))
-        report_.doubts.emplace_back("the recording was made without plab/journal: what was asked of the run is not known");
-    // plabd's own recordings have all of a server's life, and its journal from its first entry on.
+        report_.doubts.emplace_back("the recording was made without plab/journal: the requests of the run are not known");
+    // plabd's own recordings cover a server's whole life, so the journal starts at its first entry.
     else if (!options_->run && log_->origin("recorder") == "plabd")
         before_ = JournalPlace{};
     for (const std::uint64_t r : runs)

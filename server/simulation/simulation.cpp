@@ -4,78 +4,98 @@
 #include <cassert>
 #include <cmath>
 
-#include "model/alike.h"
 #include "simulation/costs/clock.h"
-#include "simulation/requests/field_change.h"
-#include "simulation/requests/transaction.h"
-#include "simulation/snapshot/history.h"
-#include "simulation/watch/divergence_watch.h"
+#include "simulation/run/field_change.h"
 
 namespace plab::simulation
 {
 
-Simulation::Simulation(model::TypeSource& types, int threads)
-    : types_(&types), threads_(threads), watch_(std::make_unique<DivergenceWatch>()), history_(std::make_unique<History>())
-{
-}
+Simulation::Simulation(model::TypeSource& types, int threads) { context_.types = &types, context_.threads = threads; }
 Simulation::~Simulation() = default;
 
-Result<Simulation::Live> Simulation::build(const model::SceneSpec& scene)
+void Simulation::begin_run(LiveScene live, std::shared_ptr<const model::SceneSpec> scene)
 {
-    Live live;
-    live.world = std::make_unique<world::World>(*types_);
-    live.world->describe(scene.settings, scene.file);
-    if (auto added = live.world->add(scene); !added) return added.errors();
-    live.stepper = std::make_unique<Stepper>(*live.world, threads_);
-    if (auto built = live.stepper->rebuild(); !built)
-    {
-        Errors errors = built.errors();
-        for (Error& e : errors)
-            if (e.where.file.empty()) e.where.file = scene.file;
-        return model::first_of_alike(std::move(errors));
-    }
-    return live;
-}
-
-void Simulation::begin_run(Live live, std::shared_ptr<const model::SceneSpec> scene)
-{
-    stepper_ = std::move(live.stepper);
-    world_ = std::move(live.world);
-    stepper_->on_changes(&Simulation::apply_script_changes, this);
-    stepper_->obey(interruption_, &progress_);
-    loaded_ = std::move(scene);
-    dt_ = loaded_->settings.dt;
-    tick_ = base_tick_ = 0;
-    base_time_ = 0;
-    events_.clear();
-    changed_by_scripts_.clear();
-    ++run_;
-    changes_ = {};
-    changes_.everything = true;
-    *watch_ = {};
-    kinetic_at_start_ = totals().kinetic;
+    // The stepper refers to its world, so it goes first.
+    run_.live.stepper = std::move(live.stepper);
+    run_.live.world = std::move(live.world);
+    run_.stepper().on_changes(&Simulation::apply_script_changes, this);
+    run_.stepper().obey(context_.interruption, &context_.progress);
+    run_.loaded = std::move(scene);
+    run_.clock.dt = run_.loaded->settings.dt;
+    run_.clock.tick = run_.clock.base_tick = 0;
+    run_.clock.base_time = 0;
+    run_.events.clear();
+    run_.changed_by_scripts.clear();
+    ++run_.number;
+    run_.changes = {};
+    run_.changes.everything = true;
+    *run_.watch = {};
+    run_.kinetic_at_start = totals().kinetic;
 }
 
 Result<void> Simulation::load(const model::SceneSpec& scene)
 {
-    auto live = build(scene);
+    auto live = build_scene(context_, scene);
     if (!live) return live.errors();
     begin_run(live.take(), std::make_shared<const model::SceneSpec>(scene));
-    history_->begin(*this);
+    history_.begin(run_);
     return {};
 }
 
-double Simulation::time_at(Tick tick) const
+Result<void> Simulation::restore(const Snapshot& snapshot)
 {
-    // t = n dt in one rounding; after a change of dt, from the time at which it changed.
-    return base_tick_ == 0 ? dt_.at(tick) : base_time_ + dt_.at(tick - base_tick_);
+    if (!snapshot) return reason("there is no snapshot to restore");
+    auto live = revive(context_, *snapshot);
+    if (!live) return live.errors();
+    begin_run(live.take(), snapshot->loaded);
+    continue_from(run_, *snapshot);
+    history_.begin(run_);
+    return {};
 }
 
-void Simulation::post(Request request) { requests_.push_back({std::make_shared<const Request>(std::move(request)), run_}); }
+Result<void> Simulation::restore(const std::string& name)
+{
+    auto found = history_.find(name);
+    return found ? restore(*found) : found.errors();
+}
+
+Result<void> Simulation::rewind(double time)
+{
+    auto back = history_.way_back(run_, time);
+    if (!back) return back.errors();
+    // A snapshot could not bring the present back on error: restoring it begins a new run with a new number, and the requests that wait in
+    // the present run would be refused.
+    Run present = run_.set_aside();
+    history_.suspend(true);
+    auto done = restore(back->from);
+    if (done) done = go_forward(back->requests, time);
+    if (!done) run_ = std::move(present);
+    history_.suspend(false);
+    if (done) history_.cut_after(tick());
+    return done;
+}
+
+Result<void> Simulation::go_forward(const std::vector<History::Asked>& requests, double time)
+{
+    std::size_t next = 0;
+    while (this->time() < time - 0.5 * dt())
+    {
+        for (; next < requests.size() && requests[next].step == tick(); ++next)
+            if (const Reply reply = carry_out_now(requests[next].request); !reply.done)
+                return reason("a request of step " + std::to_string(requests[next].step) +
+                              " cannot be carried out again: " + (reply.errors.empty() ? std::string() : reply.errors.front().text()));
+        if (!step_once()) return reason("the server is shutting down: the rewind was interrupted at step " + std::to_string(tick()));
+    }
+    // Requests that waited for a step that was made again were replayed with the others.
+    run_.forget_late_requests();
+    return {};
+}
+
+void Simulation::post(Request request) { run_.waiting.push_back({std::make_shared<const Request>(std::move(request)), run_.number}); }
 
 bool Simulation::withdraw(std::uint64_t request)
 {
-    return std::erase_if(requests_, [&](const Waiting& w) { return w.request->id == request; }) > 0;
+    return std::erase_if(run_.waiting, [&](const WaitingRequest& w) { return w.request->id == request; }) > 0;
 }
 
 std::vector<Reply> Simulation::take_replies()
@@ -88,47 +108,47 @@ std::vector<Reply> Simulation::take_replies()
 Reply Simulation::carry_out(const Request& request)
 {
     Reply reply;
-    reply.request = request.id, reply.step = tick_, reply.revision = revision_;
-    if (request.at && *request.at < tick_)
+    reply.request = request.id, reply.step = run_.clock.tick, reply.revision = run_.revision;
+    if (request.at && *request.at < run_.clock.tick)
     {
         reply.late = true;
-        reply.errors = {reason("step " + std::to_string(*request.at) + " has passed, the next one is " + std::to_string(tick_))};
+        reply.errors = {reason("step " + std::to_string(*request.at) + " has passed, the next one is " + std::to_string(run_.clock.tick))};
         return reply;
     }
-    if (request.revision && *request.revision != revision_)
+    if (request.revision && *request.revision != run_.revision)
     {
-        reply.errors = {reason("the scene is at revision " + std::to_string(revision_) + ", not " + std::to_string(*request.revision))};
+        reply.errors = {reason("the scene is at revision " + std::to_string(run_.revision) + ", not " + std::to_string(*request.revision))};
         return reply;
     }
-    Reply done = Transaction(*this, request).run();
-    if (done.done && affects_the_run(request)) watch_->begin_anew();
-    if (done.done) history_->note(*this, request);
+    Reply done = Transaction(run_, context_, *this, request).run();
+    if (done.done && affects_the_run(request)) run_.watch->begin_anew();
+    if (done.done) history_.note(run_, request);
     return done;
 }
 
 Changes Simulation::take_changes()
 {
     Changes out;
-    std::swap(out, changes_);
+    std::swap(out, run_.changes);
     return out;
 }
 
 bool Simulation::apply_due()
 {
     bool any = false;
-    for (std::size_t k = 0; k < requests_.size();)
+    for (std::size_t k = 0; k < run_.waiting.size();)
     {
-        const Waiting& w = requests_[k];
-        if (w.request->at && w.run == run_ && *w.request->at > tick_)
+        const WaitingRequest& w = run_.waiting[k];
+        if (w.request->at && w.run == run_.number && *w.request->at > run_.clock.tick)
         {
             ++k;
             continue;
         }
-        const Waiting due = std::move(requests_[k]);
-        requests_.erase(requests_.begin() + static_cast<std::ptrdiff_t>(k));
-        replies_.push_back(due.request->at && due.run != run_ ? outlived(*due.request) : carry_out(*due.request));
+        const WaitingRequest due = std::move(run_.waiting[k]);
+        run_.waiting.erase(run_.waiting.begin() + static_cast<std::ptrdiff_t>(k));
+        replies_.push_back(due.request->at && due.run != run_.number ? outlived(*due.request) : carry_out(*due.request));
         any = true;
-        // A new run concerns those that wait: from the front again.
+        // The request may have begun a new run, which changes which of the waiting requests are due: search again from the front.
         k = 0;
     }
     return any;
@@ -137,7 +157,7 @@ bool Simulation::apply_due()
 Reply Simulation::outlived(const Request& request) const
 {
     Reply reply;
-    reply.request = request.id, reply.step = tick_, reply.revision = revision_;
+    reply.request = request.id, reply.step = run_.clock.tick, reply.revision = run_.revision;
     reply.errors = {reason("a new run began before step " + std::to_string(*request.at))};
     return reply;
 }
@@ -147,117 +167,105 @@ bool Simulation::step()
     (void)apply_due();
     if (paused()) return false;
     if (!run_step()) return false;
-    ++tick_;
-    if (steps_left_ > 0) --steps_left_;
-    history_->follow(*this);
+    ++run_.clock.tick;
+    if (run_.clock.steps_left > 0) --run_.clock.steps_left;
+    history_.follow(run_);
     return true;
 }
 
 bool Simulation::step_once()
 {
     if (!run_step()) return false;
-    ++tick_;
+    ++run_.clock.tick;
     return true;
 }
 
 void Simulation::obey(const Interruption* interruption)
 {
-    interruption_ = interruption;
-    if (stepper_) stepper_->obey(interruption_, &progress_);
-}
-
-void Simulation::forget_late_requests()
-{
-    std::erase_if(requests_, [&](const Waiting& w) { return w.run == run_ && w.request->at && *w.request->at < tick_; });
+    context_.interruption = interruption;
+    if (run_.live.stepper) run_.stepper().obey(context_.interruption, &context_.progress);
 }
 
 bool Simulation::run_step()
 {
-    changed_by_scripts_.clear(), script_changes_.clear();
+    run_.changed_by_scripts.clear(), script_changes_.clear();
     gave_up_ = false;
-    const bool may_be_given_up = interruption_ != nullptr;
-    if (may_be_given_up) step_start_.save(*world_, *stepper_);
-    const double start = time_at(tick_);
-    stepper_->draw_for(images_);
-    watch_->before_step(view());
+    const bool may_be_given_up = context_.interruption != nullptr;
+    if (may_be_given_up) step_start_.save(run_.world(), run_.stepper());
+    const double start = run_.clock.time_at(run_.clock.tick);
+    run_.stepper().draw_for(images_);
+    run_.watch->before_step(run_.view());
     const std::uint64_t begin = now_ns();
-    progress_.begin(Activity::Step, tick_, begin);
-    stepper_->step(tick_, start, time_at(tick_ + 1) - start);
-    if (may_be_given_up && stepper_->gave_up()) take_back_step();
-    progress_.end();
+    context_.progress.begin(Activity::Step, run_.clock.tick, begin);
+    run_.stepper().step(run_.clock.tick, start, run_.clock.time_at(run_.clock.tick + 1) - start);
+    if (may_be_given_up && run_.stepper().gave_up()) take_back_step();
+    context_.progress.end();
     if (gave_up_) return false;
-    note_cost(static_cast<double>(now_ns() - begin));
-    events_ = stepper_->events();
-    watch_->after_step(view(), events_);
+    context_.note_cost(static_cast<double>(now_ns() - begin));
+    run_.events = run_.stepper().events();
+    run_.watch->after_step(run_.view(), run_.events);
     freeze_lost_objects();
     quarantine_failed();
     return true;
-}
-
-void Simulation::note_cost(double ns)
-{
-    // Of all steps while they are few, then of about the last hundred.
-    constexpr std::uint64_t kMost = 100;
-    steps_timed_ = std::min(steps_timed_ + 1, kMost);
-    mean_step_ns_ += (ns - mean_step_ns_) / static_cast<double>(steps_timed_);
 }
 
 void Simulation::take_back_step()
 {
     gave_up_ = true;
     for (auto change = script_changes_.rbegin(); change != script_changes_.rend(); ++change)
-        (void)set_field(*world_, change->component, change->name, change->before, changed_by_scripts_);
-    step_start_.restore(*world_, *stepper_);
-    events_.clear();
+        (void)set_field(run_.world(), change->component, change->name, change->before, run_.changed_by_scripts);
+    step_start_.restore(run_.world(), run_.stepper());
+    run_.events.clear();
 }
 
 void Simulation::freeze_lost_objects()
 {
-    if (stepper_->report().frozen.empty()) return;
-    for (const Ref ref : stepper_->report().frozen)
+    if (run_.stepper().report().frozen.empty()) return;
+    for (const Ref ref : run_.stepper().report().frozen)
     {
-        world::HostTables& host = world_->host();
+        world::HostTables& host = run_.world().host();
         if (ref.facet == Facet::Body) host.bodies.motion[ref.index] = Motion::Static;
         if (ref.facet == Facet::Shaft) host.shafts.motion[ref.index] = Motion::Static;
-        world_->quarantine(host.component_of(ref), true);
-        changes_.touched.push_back(world_->id_of(ref));
+        run_.world().quarantine(host.component_of(ref), true);
+        run_.changes.touched.push_back(run_.world().id_of(ref));
     }
-    if (!stepper_->rebuild()) release_lost_objects();
+    if (!run_.stepper().rebuild()) release_lost_objects();
 }
 
-/// What stands still now may not be coupled to what is prescribed, or to another that stands: such couplings are taken out, too.
+/// Frozen objects are static from now on, and a static object cannot be coupled to a prescribed or to another static one. Therefore the
+/// couplings of frozen objects are quarantined as well.
 void Simulation::release_lost_objects()
 {
-    for (const Ref ref : stepper_->report().frozen)
-        for (const std::uint32_t i : world_->referrers(world_->host().component_of(ref)))
+    for (const Ref ref : run_.stepper().report().frozen)
+        for (const std::uint32_t i : run_.world().referrers(run_.world().host().component_of(ref)))
         {
-            const model::ComponentType* type = world_->type_of(i);
-            if (world_->component(i).quarantined || !type || !type->takes_part(Phase::Connect)) continue;
-            world_->quarantine(i, true);
-            changes_.touched.push_back(world_->id_of(i));
+            const model::ComponentType* type = run_.world().type_of(i);
+            if (run_.world().component(i).quarantined || !type || !type->takes_part(Phase::Connect)) continue;
+            run_.world().quarantine(i, true);
+            run_.changes.touched.push_back(run_.world().id_of(i));
             Event e;
-            e.time = time_at(tick_ + 1), e.kind = "state.not_finite", e.severity = Severity::Warning, e.component = i;
-            e.message = "takes no part any more: it couples " + world_->id_of(ref) + ", which left the numbers";
-            events_.push_back(std::move(e));
+            e.time = run_.clock.time_at(run_.clock.tick + 1), e.kind = "state.not_finite", e.severity = Severity::Warning, e.component = i;
+            e.message = "is taken out of the step: it couples " + run_.world().id_of(ref) + ", whose state is no longer finite";
+            run_.events.push_back(std::move(e));
         }
-    const auto rebuilt = stepper_->rebuild();
-    assert(rebuilt.ok());  // nobody that stands is coupled to anybody
+    const auto rebuilt = run_.stepper().rebuild();
+    assert(rebuilt.ok());  // frozen objects have no couplings left that could be refused
     (void)rebuilt;
 }
 
 void Simulation::quarantine_failed()
 {
     bool any = false;
-    for (const Event& e : events_)
+    for (const Event& e : run_.events)
     {
         if (e.severity != Severity::Failure || e.component == kNoIndex) continue;
-        const world::Component c = world_->component(e.component);
+        const world::Component c = run_.world().component(e.component);
         const bool object = c.facet != Facet::Component;
         any = any || (!c.quarantined && !object);
-        if (!c.quarantined) changes_.touched.push_back(c.id);
-        world_->quarantine(e.component, true);
+        if (!c.quarantined) run_.changes.touched.push_back(c.id);
+        run_.world().quarantine(e.component, true);
     }
-    if (any) (void)stepper_->rebuild();
+    if (any) (void)run_.stepper().rebuild();
 }
 
 void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& changes)
@@ -266,29 +274,26 @@ void Simulation::apply_script_changes(void* self, std::vector<ParameterChange>& 
     bool structure = false;
     for (const ParameterChange& change : changes)
     {
-        const std::uint32_t i = s.world_->find(change.component);
-        const Value before = i == kNoIndex ? Value() : s.world_->get(i, change.name);
+        const std::uint32_t i = s.run_.world().find(change.component);
+        const Value before = i == kNoIndex ? Value() : s.run_.world().get(i, change.name);
         auto done = i == kNoIndex ? Result<void>(reason("no component has the id '" + change.component + "'"))
-                                  : set_field(*s.world_, i, change.name, change.value, s.changed_by_scripts_);
+                                  : set_field(s.run_.world(), i, change.name, change.value, s.run_.changed_by_scripts);
         if (done)
         {
             s.script_changes_.push_back({i, change.name, before});
-            s.changes_.by_scripts.insert(i);
-            s.watch_->begin_anew();
-            structure = structure || s.world_->type_of(i)->takes_part(Phase::Connect) || s.world_->component(i).facet != Facet::Component;
+            s.run_.changes.by_scripts.insert(i);
+            s.run_.watch->begin_anew();
+            structure =
+                structure || s.run_.world().type_of(i)->takes_part(Phase::Connect) || s.run_.world().component(i).facet != Facet::Component;
             continue;
         }
-        if (type_of(before) != FieldType::None) (void)set_field(*s.world_, i, change.name, before, s.changed_by_scripts_);
+        if (type_of(before) != FieldType::None) (void)set_field(s.run_.world(), i, change.name, before, s.run_.changed_by_scripts);
         Event e;
         e.time = s.time(), e.kind = "script.refused", e.severity = Severity::Warning, e.component = i;
         e.message = "set " + change.component + "." + change.name + ": " + done.error().reason;
-        s.stepper_->emit(std::move(e));
+        s.run_.stepper().emit(std::move(e));
     }
-    if (structure) (void)s.stepper_->rebuild();
+    if (structure) (void)s.run_.stepper().rebuild();
 }
-
-Totals Simulation::totals() const { return totals_of(*world_, *stepper_, time(), tick_); }
-
-double Simulation::error_of(std::uint32_t component) const { return world_->largest_error(component); }
 
 }  // namespace plab::simulation

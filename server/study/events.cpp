@@ -1,4 +1,4 @@
-// Contacts of a run against those of the reference.
+// Compares the contacts of a run with those of the reference.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,7 +15,7 @@ constexpr std::size_t kMostAligned = 2000;
 
 using Times = std::vector<double>;
 
-/// What leaving one out costs, s: half of the usual distance of neighbours, so that no impact is taken for the next one.
+/// Cost of leaving one out, s: half of the usual distance of neighbours, so that an impact is not matched with the next one.
 double skip_cost(const Times& reference)
 {
     Times gaps;

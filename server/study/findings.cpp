@@ -1,4 +1,4 @@
-// What the numbers say, in sentences.
+// Describes the results in sentences.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -31,7 +31,7 @@ std::string digits_of(const Point& p)
 
 bool usable(const Point& p) { return p.record.ok() && std::isfinite(p.error()) && p.cpu_per_second() > 0; }
 
-/// Who is best, and what each wanted accuracy costs.
+/// The best algorithms, and the cost of each accuracy.
 void tell_front(const StudyResult& r, std::vector<std::string>& out)
 {
     const std::vector<std::size_t> front = plot::pareto_front(r);
@@ -39,7 +39,7 @@ void tell_front(const StudyResult& r, std::vector<std::string>& out)
     const Point& best = r.points[front.back()];
     const bool limit = best.error() <= plot::kRoundOff || !best.is_resolved();
     out.push_back(best.combination.label() +
-                  (limit ? " is the cheapest of those without an error that can be told: " : " is the most accurate: ") + digits_of(best) +
+                  (limit ? " is the cheapest of those without a resolvable error: " : " is the most accurate: ") + digits_of(best) +
                   " at " + cost_of(best) + " of CPU time per simulated second.");
     double compared = 0;
     for (const double wanted : {2.0, 4.0, 6.0, 9.0, 12.0})
@@ -67,7 +67,7 @@ void tell_front(const StudyResult& r, std::vector<std::string>& out)
     }
 }
 
-/// Algorithms that stand nowhere on the front.
+/// Algorithms that are never on the Pareto front.
 void tell_losers(const StudyResult& r, std::vector<std::string>& out)
 {
     const std::vector<std::size_t> front = plot::pareto_front(r);
@@ -85,7 +85,7 @@ void tell_losers(const StudyResult& r, std::vector<std::string>& out)
     for (std::size_t i = 0; i < losers.size(); ++i) names += (i == 0 ? "" : i + 1 == losers.size() ? " and " : ", ") + losers[i];
     const bool one = losers.size() == 1;
     out.push_back(names + (one ? " is" : " are") + " never the best choice here: at each of " + (one ? "its" : "their") +
-                  " costs another algorithm has an error no larger.");
+                  " costs another algorithm has an error that is no larger.");
 }
 
 /// Observed orders, from neighbouring step lengths well above round-off and the reference's uncertainty.
@@ -155,7 +155,7 @@ void tell_energy(const StudyResult& r, std::vector<std::string>& out)
     const auto figure = [](const Point* p) { return short_number(p->energy_drift) + " (" + p->combination.label() + ")"; };
     std::string range = count == 1 ? figure(best) : "from " + figure(best) + " to " + figure(worst);
     if (count > 1 && best->energy_drift == worst->energy_drift) range = short_number(best->energy_drift) + all;
-    out.push_back("Energy that nobody put in, beside the largest there was: " + range + ".");
+    out.push_back("Unexplained energy, relative to the largest energy of the run: " + range + ".");
 }
 
 void tell_limits(const StudyResult& r, std::vector<std::string>& out)
@@ -170,7 +170,7 @@ void tell_limits(const StudyResult& r, std::vector<std::string>& out)
     }
     if (hidden > 0)
         out.push_back(std::to_string(hidden) + (hidden == 1 ? " run is" : " runs are") +
-                      " as near to the reference as the reference is known: their errors are upper bounds.");
+                      " as close to the reference as the reference is known: their errors are upper bounds.");
     if (!noisy.empty()) out.push_back("Allocations of memory in warm steps: " + noisy + ".");
     if (r.reference.kind == "auto" && !r.reference.converges) out.push_back("The reference is uncertain: " + r.reference.words + ".");
 }

@@ -1,4 +1,4 @@
-// What the figures were measured on.
+// The machine on which the timings were measured.
 #include <sys/utsname.h>
 
 #include <fstream>

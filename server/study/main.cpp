@@ -1,4 +1,4 @@
-// plab-study: error against run time, offline. Put together here: command line, plugins, scene, study, files.
+// plab-study: error against run time, offline. Puts together command line, plugins, scene, study and files.
 #include <cstdio>
 #include <optional>
 
@@ -18,7 +18,7 @@ namespace
 
 using namespace plab;
 
-/// A signal gives up whatever run is in work, in the middle of a step.
+/// A signal abandons the current run, even in the middle of a step.
 Interruption work;
 
 int fail(const Errors& errors, int code = 1)
@@ -32,7 +32,7 @@ program::ProgressTo progress_to(const study::StudyOptions& options)
     return options.quiet ? program::ProgressTo::Nowhere : options.progress ? program::ProgressTo::Lines : program::ProgressTo::Terminal;
 }
 
-/// What a study tells while it runs.
+/// Progress messages of a study.
 std::function<void(const std::string&)> shown_by(program::Progress& line)
 {
     return [&line](const std::string& text)

@@ -11,10 +11,10 @@ namespace plab::study
 namespace
 {
 
-/// A chattering contact must not fill the memory.
+/// Limit, so that a chattering contact cannot exhaust the memory.
 constexpr std::size_t kMostContacts = 20'000;
 
-/// Whose algorithms a study is about.
+/// The components whose algorithms a study compares.
 bool is_of_interest(const std::string& type)
 {
     for (const char* kind : {"Solver/", "Manager/", "Response/", "Resolution/", "Constraint/", "CDetection/", "Script/"})
@@ -56,7 +56,7 @@ bool energy_goes_unseen(const simulation::Simulation& s)
     {
         const model::ComponentType* type = world.type_of(i);
         if (!type) continue;
-        // Impulses and rows take back within the step what forces gave: only the sum of their works means something.
+        // Within a step, impulses and rows take back what forces added: only the sum of their works is meaningful.
         const bool stores = type->takes_part(Phase::Potential);
         if (type->info.name.starts_with("Response/") && (stores || type->info.name != "Response/None")) return true;
         if (!stores) continue;
@@ -91,7 +91,7 @@ Observation::Observation(const simulation::Simulation& s, RunRecord& out)
 void Observation::note(const Event& e)
 {
     ++out_->events[e.kind];
-    // A manager that does not converge says so each time, and goes on: to a study that is a finding.
+    // A manager that does not converge reports this each time, and continues: for a study, that is a result.
     if (e.severity != Severity::Info || e.kind.ends_with("not_converged"))
     {
         if (out_->warnings.empty()) out_->first_warning = e.kind + (e.message.empty() ? "" : ": " + e.message);

@@ -19,13 +19,13 @@ constexpr const char* kExamples = R"(Examples:
   plab-study SCENE --algorithm "penalty: contact.response=Penalty contact.resolution=None" --algorithm "impulse: contact.response=Impulse"
              --vary dt=1/60,1/240 --until 5 -o out
   plab-study SCENE --swap 2s:contact.response=None --vary dt=1/60,1/120 --until 5 -o out
-  plab-study --suite -o out                                       the catalogue of this installation; --list says how much it is
+  plab-study --suite -o out                                       the catalogue of this installation; --list shows its size
   plab-study --suite my/suite.json --repeat 1 -o out
 
 DIR then holds report.html (open it in a browser), results.csv, results.json, reference.csv and the pictures.
-Exit codes: 0 done (a run that fails is a result), 1 nothing could be studied, 2 wrong use, 130 Ctrl-C, 143 SIGTERM.)";
+Exit codes: 0 done (a run that fails is a result), 1 nothing could be studied, 2 wrong usage, 130 Ctrl-C, 143 SIGTERM.)";
 
-/// Texts as they come, before they are understood.
+/// Option texts before they are parsed.
 struct Texts
 {
     std::vector<std::string> vary, algorithms, swaps, scales;
@@ -35,7 +35,7 @@ struct Texts
 Result<double> positive(const std::string& name, const std::string& text)
 {
     const auto v = model::parse_real(text);
-    if (!v || !(*v > 0) || *v > 1e12) return reason(name + " wants a positive number, not '" + text + "'");
+    if (!v || !(*v > 0) || *v > 1e12) return reason(name + " needs a positive number, not '" + text + "'");
     return v;
 }
 
@@ -64,13 +64,13 @@ Result<void> understand(const Texts& texts, StudyOptions& out)
     {
         const std::size_t equal = text.rfind('=');
         const auto v = positive("--scale", equal == std::string::npos ? "" : text.substr(equal + 1));
-        if (!v) return reason("--scale wants ID.field=LENGTH with a positive number, not '" + text + "'");
+        if (!v) return reason("--scale needs ID.field=LENGTH with a positive number, not '" + text + "'");
         out.scales[text.substr(0, equal)] = *v;
     }
     out.reference = parse_reference(texts.reference);
     if (!texts.reference_algorithm.empty())
     {
-        if (out.reference.kind != ReferencePlan::Kind::Auto) return reason("--reference-algorithm goes with --reference auto only");
+        if (out.reference.kind != ReferencePlan::Kind::Auto) return reason("--reference-algorithm requires --reference auto");
         auto algorithm = parse_algorithm(texts.reference_algorithm);
         if (!algorithm) return algorithm.errors();
         out.reference.algorithm = algorithm.take();
@@ -78,7 +78,7 @@ Result<void> understand(const Texts& texts, StudyOptions& out)
     if (!texts.floor.empty())
     {
         const auto z = model::parse_real(texts.floor);
-        if (!z) return reason("--floor wants a height in m, not '" + texts.floor + "'");
+        if (!z) return reason("--floor needs a height in m, not '" + texts.floor + "'");
         out.floor = *z;
     }
     for (const auto& [name, text, value] :
@@ -95,7 +95,7 @@ Result<void> understand(const Texts& texts, StudyOptions& out)
 
 constexpr const char* kUsualSuite = "scenes/studies/suite.json";
 
-/// The catalogue of the folder that one is in, or of the tree or installation that the program belongs to; "": there is none.
+/// The catalogue of the current folder, or of the tree or installation that the program belongs to; "": there is none.
 std::string usual_suite()
 {
     namespace fs = std::filesystem;
@@ -131,20 +131,21 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
     const auto many = [&](const char* name, std::vector<std::string>& into, const char* what)
     { app.add_option(name, into, what)->take_all()->allow_extra_args(false); };
     app.add_option("scene", options.scene, "blueprint (XML)");
-    many("--vary", texts.vary, "ID=TypeA,TypeB or ID.param=v1,v2 or dt=1/30,1/60: what is varied (may be repeated: all combinations)");
+    many("--vary", texts.vary, "ID=TypeA,TypeB or ID.param=v1,v2 or dt=1/30,1/60: values to vary (may be repeated: all combinations)");
     many("--algorithm", texts.algorithms,
-         "[NAME:] ID=Type ID.param=value ...: settings that go together (may be repeated); each with all of --vary");
+         "[NAME:] ID=Type ID.param=value ...: settings that belong together (may be repeated); each is combined with all of --vary");
     app.add_option("--reference", texts.reference,
                    "auto (finest algorithm, extrapolated), exact:NAME[:key=value,..], none, or a CSV file; default: auto");
     app.add_option("--reference-algorithm", texts.reference_algorithm,
                    "ID=Type dt=..: the algorithm that auto extrapolates; default: the highest of --vary");
-    many("--quantity", options.quantities,
-         "ID.field that is compared, such as ball.position (may be repeated); default: places and angles");
+    many("--quantity", options.quantities, "ID.field to compare, such as ball.position (may be repeated); default: positions and angles");
     many("--scale", texts.scales, "ID.field=A: the length a of the mixed error |y - r|/(a + |r|); default: how far the reference moves");
     app.add_option("--until", texts.until, "simulated seconds")->type_name("T");
     app.add_option("--repeat", options.repeat, "timed runs of each combination, interleaved")->check(CLI::Range(1, 1000));
-    app.add_option("--budget", texts.budget, "CPU seconds for one run; one that needs more is cut: a result, too slow")->type_name("S");
-    app.add_option("--floor", texts.floor, "height z in m; a body whose centre gets below it fell through")->type_name("Z");
+    app.add_option("--budget", texts.budget,
+                   "CPU-time limit of one run in seconds; a run that needs more is stopped, with the result 'too slow'")
+        ->type_name("S");
+    app.add_option("--floor", texts.floor, "height z in m; a body whose centre gets below it counts as fallen through")->type_name("Z");
     many("--swap", texts.swaps,
          "STEP:ID=TYPE or TIME:ID=TYPE, such as 0.5s:..: exchange a component in every run, before that step or at that time (may be "
          "repeated)");
@@ -155,10 +156,11 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
         ->expected(0, 1)
         ->type_name("[FILE]");
     app.add_option("--tolerance", texts.tolerance, "suite: an error up to here counts as solved; default: 1e-6");
-    app.add_flag("--list", options.list, "print the combinations, or the studies of a suite and about how long they take, and run nothing");
+    app.add_flag("--list", options.list,
+                 "print the combinations, or the studies of a suite and their approximate duration, and run nothing");
     app.add_flag("--list-exact", options.list_exact, "print the closed forms that exact:NAME knows");
-    auto* const quiet = app.add_flag("--quiet", options.quiet, "no progress on standard error");
-    app.add_flag("--progress", options.progress, "a line every five seconds on standard error, also where that is no terminal")
+    auto* const quiet = app.add_flag("--quiet", options.quiet, "print no progress on standard error");
+    app.add_flag("--progress", options.progress, "print the progress every five seconds on standard error, even if that is not a terminal")
         ->excludes(quiet);
     try
     {
@@ -171,11 +173,11 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, StudyOptions& optio
         return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
     }
     options.suite = app.count("--suite") > 0;
-    if (options.suite && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite names its scenes itself: leave SCENE out\n"};
+    if (options.suite && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite has its own scenes: leave SCENE out\n"};
     if (options.suite) options.scene = suite.empty() ? usual_suite() : suite;
     if (options.suite && options.scene.empty())
         return ParseEnd{
-            2, std::string("plab-study: --suite without FILE: neither here nor in this installation is there a ") + kUsualSuite + "\n"};
+            2, std::string("plab-study: --suite without FILE: neither this folder nor this installation has a ") + kUsualSuite + "\n"};
     if (options.list_exact) return {};
     if (options.scene.empty()) return ParseEnd{2, "plab-study: needs a scene; see plab-study --help\n"};
     if (auto understood = understand(texts, options); !understood) return ParseEnd{2, "plab-study: " + understood.error().text() + "\n"};

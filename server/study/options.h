@@ -17,7 +17,7 @@ struct StudyOptions
     bool suite = false;
     bool list = false;
     bool list_exact = false;
-    bool quiet = false, progress = false;  ///< nothing on standard error; lines also where that is no terminal
+    bool quiet = false, progress = false;  ///< nothing on standard error; progress lines even if that is not a terminal
     std::vector<Algorithm> algorithms;
     std::vector<std::vector<Setting>> varied;
     ReferencePlan reference;
@@ -27,13 +27,13 @@ struct StudyOptions
     std::optional<double> floor;
     double until = -1;
     double budget = std::numeric_limits<double>::infinity();
-    double tolerance = 1e-6;  ///< suite: what counts as solved
+    double tolerance = 1e-6;  ///< suite: largest error that counts as solved
     int repeat = 5;
     std::string out;
-    std::string command;  ///< as it was typed
+    std::string command;  ///< the command line as typed
 };
 
-/// What to print, and the exit code: 0 after --help and --version, 2 for a wrong use.
+/// What to print, and the exit code: 0 after --help and --version, 2 for wrong usage.
 struct ParseEnd
 {
     int exit_code = 0;

@@ -9,8 +9,6 @@ namespace plab::study
 namespace
 {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// The largest; NaN if one is.
 double worst(const std::vector<Distance>& errors, double Distance::*which)
 {

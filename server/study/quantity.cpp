@@ -14,8 +14,6 @@ namespace plab::study
 namespace
 {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// Numbers of a value; none for texts.
 std::size_t width_of(const Value& v)
 {
@@ -46,7 +44,7 @@ void append(const Value& v, std::vector<double>& out)
     if (const auto* list = std::get_if<Reals>(&v)) out.insert(out.end(), list->begin(), list->end());
 }
 
-/// What the numbers of a vector or an attitude are called; nothing for others.
+/// Suffixes of the numbers of a vector or an orientation; empty for others.
 std::string letters_of(FieldType type) { return type == FieldType::Vector ? "xyz" : type == FieldType::Rotation ? "wxyz" : ""; }
 
 /// "z" of "position.z", "2" of "values.2": its place among the numbers of a vector, an attitude or a list.
@@ -97,7 +95,7 @@ Error unknown_field(const world::World& world, std::uint32_t owner, const std::s
     std::string all;
     for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
     if (field.empty())
-        return reason(at + "names no field of " + id + ": write ID.field, such as " + id + "." + names.front() + "; it has " + all);
+        return reason(at + "does not name a field of " + id + ": write ID.field, such as " + id + "." + names.front() + "; it has " + all);
     std::string near = model::did_you_mean(field, names);
     // Perhaps the name of a part of it was meant: contact.respnse.sweeps.
     if (near.empty() && field.find('.') != std::string::npos) near = model::did_you_mean(text.substr(0, text.rfind('.')), ids_of(world));
@@ -108,12 +106,12 @@ Error unknown_owner(const world::World& world, const std::string& text)
 {
     if (const std::uint32_t whole = world.find(text); whole != kNoIndex) return unknown_field(world, whole, text, "");
     const std::vector<std::string> ids = ids_of(world);
-    // An id may have dots: the longest beginning that resembles one tells most.
+    // An id may have dots: the longest prefix that resembles an id is the most informative.
     std::string near;
     for (std::size_t dot = text.rfind('.'); near.empty() && dot != std::string::npos && dot > 0; dot = text.rfind('.', dot - 1))
         near = model::did_you_mean(text.substr(0, dot), ids);
     if (text.find('.') == std::string::npos) near = model::did_you_mean(text, ids);
-    return reason("quantity '" + text + "': no component has such an id" + near + "; write ID.field, such as ball.position");
+    return reason("quantity '" + text + "': no component has this id" + near + "; write ID.field, such as ball.position");
 }
 
 bool finite(std::span<const double> v)
@@ -226,7 +224,7 @@ Distance distance(const Quantity& quantity, const TimeSeries& series, const Time
     {
         const double mixed = distance_at(quantity, series.at(i), reference.at(i), scale);
         const double absolute = absolute_distance_at(quantity, series.at(i), reference.at(i));
-        // NaN stays: a run that was lost for one sample is lost.
+        // NaN is kept: a run that was invalid at one sample is invalid.
         out.series = mixed > out.series || std::isnan(mixed) ? mixed : out.series;
         out.series_absolute = absolute > out.series_absolute || std::isnan(absolute) ? absolute : out.series_absolute;
         if (i + 1 == n && n == reference.samples() && n == series.samples()) out.last = mixed, out.last_absolute = absolute;

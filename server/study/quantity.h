@@ -1,6 +1,7 @@
-/// Quantities of a scene that a study follows over time, and how far two courses of one are apart.
+/// Quantities of a scene that a study follows over time, and the distance between two time series of one.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,9 @@
 
 namespace plab::study
 {
+
+/// What cannot be stated.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 enum class Measure : std::uint8_t
 {
@@ -30,16 +34,16 @@ struct Quantity
     Measure measure = Measure::Mixed;
     std::string unit;  ///< "m"; of the numbers themselves
 
-    /// What the i-th number is called in tables: "ball.position.x"; the name where there is one only.
+    /// The name of the i-th number in tables: "ball.position.x"; the quantity's name if it has only one number.
     std::string column(std::size_t i) const;
 };
 
-/// Finds out what `text` means in a world. The error names what there is.
+/// Resolves `text` in a world. The error names what exists.
 Result<Quantity> resolve_quantity(const world::World& world, const std::string& text);
-/// Positions and attitudes of all moving bodies and angles of all moving shafts, at most `most`.
+/// Positions and orientations of all moving bodies and angles of all moving shafts, at most `most`.
 std::vector<std::string> default_quantities(const world::World& world, std::size_t most = 4);
 
-/// Appends the present numbers; NaN where the component has gone.
+/// Appends the current numbers; NaN if the component no longer exists.
 void read(const world::World& world, const Quantity& quantity, std::vector<double>& out);
 
 /// Samples of one quantity, one after the other, `width` numbers each.
@@ -52,14 +56,14 @@ struct TimeSeries
     std::span<const double> at(std::size_t i) const { return std::span(values).subspan(i * width, width); }
 };
 
-/// How far apart two courses are. Reference problems, metric 1: whole series and last sample; NaN where nothing can be said.
+/// The distance between two time series. Reference problems, metric 1: whole series and last sample; NaN if it is not defined.
 struct Distance
 {
     double series = 0, last = 0;                    ///< by the quantity's measure
     double series_absolute = 0, last_absolute = 0;  ///< largest |y_i - r_i|, in the quantity's unit (attitudes: rad)
 };
 
-/// The length a of the mixed error: how far the reference gets from where it starts (largest component, over all samples);
+/// The length a of the mixed error: the largest distance of the reference from its start (largest component, over all samples);
 /// its largest magnitude if it does not move, 1 if that is 0 too.
 double scale_of(const TimeSeries& reference);
 

@@ -12,13 +12,12 @@ namespace plab::study
 namespace
 {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// Differences of runs below this are round-off: no order can be read from them.
+/// Differences of runs below this are round-off: no order can be derived from them.
 constexpr double kRoundOff = 2e-14;
 
-/// Orders below are no method's: what is seen then is an event or a jump, and may be anything with the next halving.
+/// Lower orders do not belong to any method: they come from an event or a jump, and may change with the next halving.
 constexpr double kLeastOrder = 0.9;
-/// Slower than this, differences do not tell how far it still is.
+/// With slower convergence, differences do not show the remaining distance.
 constexpr double kSlowestTold = 0.2;
 
 /// y4 + share (y4 - y2); attitudes along the geodesic.
@@ -53,7 +52,7 @@ Distance larger(const Distance& a, const Distance& b)
             std::max(a.last_absolute, b.last_absolute)};
 }
 
-/// How far y4 may be from the truth where it is taken as it is.
+/// The possible distance of y4 from the exact value if it is used unchanged.
 Distance doubt(const Distance& far, const Distance& near, double seen)
 {
     const Distance most = larger(far, near);
@@ -78,7 +77,7 @@ void add_quantity(Reference& out, const Quantity& q, const TimeSeries& y1, const
     out.time_series.push_back(std::move(series));
 }
 
-/// "; not converged, taken from the finest run as it is: ball.position (observed order 0.62)"
+/// "; not converged, the finest run is used unchanged: ball.position (observed order 0.62)"
 std::string unsure(const Reference& r, const std::vector<Quantity>& quantities)
 {
     std::string out;
@@ -89,7 +88,7 @@ std::string unsure(const Reference& r, const std::vector<Quantity>& quantities)
             std::snprintf(order, sizeof order, " (observed order %.2f)", r.order[k]);
             out += (out.empty() ? "" : ", ") + quantities[k].name + (std::isfinite(r.order[k]) ? order : "");
         }
-    return "; not converged, taken from the finest run as it is: " + out;
+    return "; not converged, the finest run is used unchanged: " + out;
 }
 
 std::vector<std::string> split(const std::string& line)
@@ -171,7 +170,7 @@ Result<Reference> exact_reference(model::TypeSource& types, const model::SceneSp
         TimeSeries series{q->width, {}};
         for (const double t : out.times) read_exact(solution, s.world(), *q, t, series.values);
         if (std::isnan(series.values.front()))
-            return reason("the closed form '" + text + "' says nothing about " + name + ": give it other quantities, such as a position");
+            return reason("the closed form '" + text + "' does not predict " + name + ": compare other quantities, such as a position");
         out.scale.push_back(scale_of(series));
         out.time_series.push_back(std::move(series));
         const double known = solution.precision(until), absolute = q->measure == Measure::Geodesic ? known : known * out.scale.back();
@@ -188,9 +187,10 @@ Result<Reference> file_reference(const std::vector<Quantity>& quantities, const 
     const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "r"));
     if (!file) return reason("cannot read the reference " + path);
     std::string line;
-    if (!read_line(file.get(), line)) return reason(path + " is empty: a reference is a CSV file that plabd --trace or plab-study wrote");
+    if (!read_line(file.get(), line))
+        return reason(path + " is empty: a reference must be a CSV file written by plabd --trace or plab-study");
     const std::vector<std::string> header = split(line);
-    if (header.front() != "time") return reason(path + " is no such CSV: its first column is '" + header.front() + "', not 'time'");
+    if (header.front() != "time") return reason(path + " is not such a CSV file: its first column is '" + header.front() + "', not 'time'");
     std::vector<std::vector<std::size_t>> columns;
     for (const Quantity& q : quantities)
     {
@@ -212,7 +212,7 @@ Result<Reference> file_reference(const std::vector<Quantity>& quantities, const 
         }
         if (std::fabs(number_or_nan(cells[0]) - t) > slack)
             return reason(path + " has no row at t = " + model::format_real(t) +
-                          " s: write it with --every that divides the step lengths studied");
+                          " s: write it with an --every that divides the step lengths studied");
         for (std::size_t k = 0; k < quantities.size(); ++k)
             for (const std::size_t c : columns[k]) out.time_series[k].values.push_back(c < cells.size() ? number_or_nan(cells[c]) : kNaN);
     }

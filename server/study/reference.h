@@ -1,4 +1,4 @@
-/// What a run is compared with: a closed form, a file, or the finest algorithm extrapolated.
+/// The reference of a study: a closed form, a file, or the finest algorithm, extrapolated.
 #pragma once
 
 #include "study/run.h"
@@ -6,18 +6,18 @@
 namespace plab::study
 {
 
-/// The truth at the sample times, as well as it is known.
+/// The best known solution at the sample times.
 struct Reference
 {
     std::string kind;                     ///< "exact", "file", "auto", "none"
-    std::string words;                    ///< what it is, for people
+    std::string words;                    ///< description for people
     std::vector<double> times;            ///< s
-    std::vector<TimeSeries> time_series;  ///< by quantity; NaN where nothing is known
+    std::vector<TimeSeries> time_series;  ///< by quantity; NaN where unknown
     std::vector<double> scale;            ///< a of the mixed error, by quantity
-    std::vector<Distance> uncertainty;    ///< by quantity; NaN: not known
-    std::vector<double> order;            ///< observed order of convergence by quantity; NaN: none to be seen
-    std::vector<bool> converged;          ///< auto, by quantity: extrapolated, or the same to round-off
-    bool converges = true;                ///< all of them
+    std::vector<Distance> uncertainty;    ///< by quantity; NaN: unknown
+    std::vector<double> order;            ///< observed order of convergence by quantity; NaN: none could be observed
+    std::vector<bool> converged;          ///< auto, by quantity: extrapolated, or equal to round-off
+    bool converges = true;                ///< whether all of them did
     bool knows_contacts = false;
     std::vector<RecordedContact> contacts;
     std::string trouble;  ///< why there is none
@@ -34,13 +34,12 @@ Result<Reference> file_reference(const std::vector<Quantity>& quantities, const 
 
 /// Three runs of one algorithm with dt, dt/2 and dt/4, extrapolated by Richardson:
 ///   p = log2(|y1 - y2| / |y2 - y4|),   y = y4 + (y4 - y2)/(2^p - 1)
-/// with p the nearest whole number where it is near to one. The uncertainty is the size of that correction. Where the three
-/// agree to round-off nothing is extrapolated, and it is their largest difference.
-///
-/// An order below 0.9 is that of no method: something is located a step late, or jumps, or is chaos. That counts as not
-/// converged: y4 is taken as it is, and the uncertainty is what the series would have left if it went on at that order,
-/// |y2 - y4|/(2^p - 1), or the largest difference if that is more. Below p = 0.2 nothing says that it goes on: then it is as
-/// large as for 0.2, of the largest difference.
+/// with p rounded to a whole number if it is close to one. The uncertainty is the size of that correction. If the three agree
+/// to round-off, nothing is extrapolated, and the uncertainty is their largest difference.
+/// An order below 0.9 does not belong to any method: an event is located a step late, or the solution jumps, or is chaotic.
+/// That counts as not converged: y4 is used unchanged, and the uncertainty is the rest of the series if it continued at that
+/// order, |y2 - y4|/(2^p - 1), or the largest difference if that is larger. Below p = 0.2, nothing indicates that the series
+/// continues like that: then the uncertainty is as large as for 0.2, of the largest difference.
 Reference auto_reference(const std::vector<RunRecord>& coarse_to_fine, const std::string& algorithm, const std::string& dt);
 
 }  // namespace plab::study

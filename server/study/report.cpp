@@ -1,4 +1,4 @@
-// report.html: what was studied, what came out, every number behind it.
+// report.html: what was studied, the results, and all numbers behind them.
 #include <cmath>
 #include <set>
 
@@ -50,7 +50,7 @@ std::string lead_of(const StudyResult& r)
 void add_table(Page& page, const StudyResult& r)
 {
     page.heading("Every run");
-    page.paragraph("A click on a column's head sorts by it. Errors are the largest of the whole series over all quantities.");
+    page.paragraph("Click a column header to sort by it. Errors are the largest of the whole series over all quantities.");
     std::vector<PageCell> head{{"run", "", ""},
                                {"digits", "", "-log10 of the error"},
                                {"error", "", "mixed relative error |y-r|/(a+|r|), attitudes in rad"},
@@ -60,10 +60,10 @@ void add_table(Page& page, const StudyResult& r)
              {"ms/s", "CPU milliseconds per simulated second, least of the timed runs"},
              {"median", "the same, median"},
              {"µs/step", "CPU microseconds per step, least"},
-             {"energy", "drift of energy beside the largest there was"},
+             {"energy", "drift of energy relative to the largest energy of the run"},
              {"violation", "largest declared error of a constraint"},
-             {"overlap", "largest overlap left at the end of a step, m"},
-             {"missed", "impacts of the reference that were missed, and impacts that it does not have"},
+             {"overlap", "largest penetration left at the end of a step, m"},
+             {"missed", "impacts of the reference that were missed, and impacts that the reference does not have"},
              {"impact t", "largest error of an impact's time, s"},
              {"evaluations", "of forces"},
              {"trials", "trial advances made to locate events"},
@@ -98,7 +98,7 @@ void add_table(Page& page, const StudyResult& r)
     page.table(head, rows);
 }
 
-/// What a component said it did, where that is more than its type.
+/// The method that a component reported, if it is more than its type.
 void add_resolved(Page& page, const StudyResult& r)
 {
     std::vector<std::vector<PageCell>> rows;
@@ -116,7 +116,7 @@ void add_resolved(Page& page, const StudyResult& r)
     if (rows.empty()) return;
     page.heading("What did the work");
     page.paragraph(
-        "Requested and resolved algorithm of each solver, coupling, detection and response, where there is more to say than its name.");
+        "Requested and resolved algorithm of each solver, coupling, detection and response, where it is more than the type's name.");
     page.table({{"run", "", ""}, {"component", "", ""}, {"requested", "", ""}, {"resolved", "", ""}, {"largest outputs", "", ""}}, rows);
 }
 

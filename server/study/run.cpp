@@ -15,7 +15,7 @@ namespace
 {
 
 constexpr int kSamples = 200;
-/// The budget is looked at this often: a look costs less than a thousandth of the cheapest step.
+/// The budget is checked at this interval: a check costs less than a thousandth of the cheapest step.
 constexpr Tick kStepsPerLook = 16;
 
 /// Steps are warm after a tenth of the run and at least this many, from the start and from each swap: buffers have grown then.
@@ -77,7 +77,7 @@ public:
             if (!out_.ok()) break;
             observe_.sample();
             if (!std::isfinite(out_.energy.energy.back()))
-                fail(Outcome::NotFinite, "the energy of the scene was no number any more at t = " + model::format_real(s_.time()) + " s");
+                fail(Outcome::NotFinite, "the energy of the scene was no longer a number at t = " + model::format_real(s_.time()) + " s");
         }
         if (out_.ok() && out_.swaps.size() < options_.swaps.size())
             fail(Outcome::SwapRefused, "the run ended after " + std::to_string(s_.tick()) + " steps, before the step of a swap");
@@ -99,7 +99,7 @@ private:
         check();
         if (options_.is_stopped()) return fail(Outcome::Interrupted, "interrupted");
         if (s_.tick() % kStepsPerLook == 0 && thread_cpu_seconds() - begin > options_.budget)
-            fail(Outcome::TooSlow, "cut after " + number_text(options_.budget) + " s of CPU time");
+            fail(Outcome::TooSlow, "stopped after " + number_text(options_.budget) + " s of CPU time");
     }
     /// How many swaps were answered before this step.
     std::size_t take_replies()
@@ -122,7 +122,7 @@ private:
     {
         if (lost(s_))
             return fail(Outcome::NotFinite, "the state of " + s_.world().id_of(s_.stepper().report().frozen.front()) +
-                                                " was not finite any more at t = " + model::format_real(s_.time()) + " s");
+                                                " was no longer finite at t = " + model::format_real(s_.time()) + " s");
         for (const Event& e : s_.events())
         {
             if (e.kind == "motion.diverged") return fail(Outcome::BlewUp, e.message + "; t = " + model::format_real(s_.time()) + " s");

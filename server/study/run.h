@@ -15,8 +15,8 @@ namespace plab::study
 RunRecord record_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options);
 Timing time_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options);
 
-/// What a whole run will cost, s of CPU time, from its first steps: 5 ms of them, at least two. What happens later in the scene,
-/// and what observing it costs, is not seen. A scene that does not load costs nothing.
+/// Estimated cost of a whole run, s of CPU time, from its first steps: 5 ms of them, at least two. Later changes in the scene
+/// and the cost of observing it are not included. A scene that does not load costs nothing.
 double seconds_of_a_run(model::TypeSource& types, const model::SceneSpec& scene, const RunOptions& options);
 
 /// CPU time of the calling thread, s (CLOCK_THREAD_CPUTIME_ID).

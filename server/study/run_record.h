@@ -1,4 +1,4 @@
-/// What is asked of a run, and what it showed.
+/// The options of a run, and its results.
 #pragma once
 
 #include <limits>
@@ -27,10 +27,10 @@ struct RunOptions
     std::vector<double> sample_times;     ///< s, increasing, at step boundaries; empty: about 200, evenly
     std::vector<std::string> quantities;  ///< "ball.position"
     std::vector<SwapAt> swaps;
-    std::optional<double> floor;                              ///< m: a dynamic body whose centre of mass gets below this z fell through
+    std::optional<double> floor;  ///< m: a dynamic body whose centre of mass gets below this z has fallen through
     double budget = std::numeric_limits<double>::infinity();  ///< s of CPU time for the steps of one run
-    std::uint64_t (*allocations)() = nullptr;                 ///< calls of operator new so far, where the program counts them
-    const Interruption* stop = nullptr;                       ///< asked: nobody wants the rest, nor the step in work
+    std::uint64_t (*allocations)() = nullptr;                 ///< number of calls of operator new so far, if the program counts them
+    const Interruption* stop = nullptr;                       ///< asked whether to stop, also during a step
 
     bool is_stopped() const { return stop != nullptr && stop->asked(); }
 };
@@ -39,12 +39,12 @@ enum class Outcome : std::uint8_t
 {
     Completed,
     Refused,      ///< the scene did not load, or a quantity does not exist
-    NotFinite,    ///< an object's state, or the energy, was not a number any more
-    BlewUp,       ///< the event motion.diverged, or more than a thousand times the reference's way from it
+    NotFinite,    ///< an object's state, or the energy, was no longer a number
+    BlewUp,       ///< the event motion.diverged, or an error of more than a thousand times the reference's motion
     Quarantined,  ///< a component failed
     FellThrough,  ///< a body got below the floor
-    TooSlow,      ///< cut when the budget was used up
-    Frozen,       ///< steps did nothing: the run was paused
+    TooSlow,      ///< stopped when the budget was used up
+    Frozen,       ///< steps had no effect: the run was paused
     SwapRefused,  ///< a swap was refused, or its step never came
     Interrupted,  ///< RunOptions::stop: no result
 };
@@ -55,11 +55,11 @@ struct EnergySeries
 {
     std::vector<double> time;    ///< s
     std::vector<double> energy;  ///< kinetic and stored, J
-    std::vector<double> drift;   ///< energy that nobody put in: unexplained_energy() since the start, J
+    std::vector<double> drift;   ///< unexplained energy: unexplained_energy() since the start, J
     double scale = 0;            ///< largest kinetic or change of stored energy, J
 };
 
-/// Something that began to touch, in order of time.
+/// A contact that began, in order of time.
 struct RecordedContact
 {
     std::string kind;  ///< "contact.begin" or "contact.impact"
@@ -67,11 +67,11 @@ struct RecordedContact
     double time = 0;  ///< s
 };
 
-/// What does the work of one component, and what it said about itself.
+/// The algorithm that does the work of one component, and what it reported.
 struct PartFigures
 {
     std::string id, requested;
-    std::string resolved;                   ///< its output `resolved` where it has one, else the host's words
+    std::string resolved;                   ///< its output `resolved` if it has one, otherwise the host's description
     double error = 0;                       ///< largest output that is declared as an error, over the samples
     std::map<std::string, double> outputs;  ///< numeric outputs at the end
     std::map<std::string, double> largest;  ///< whole-number outputs (iterations, sub-steps): largest over the samples
@@ -97,7 +97,7 @@ struct RunRecord
     double momentum_scale = 0, angular_momentum_scale = 0;  ///< largest magnitudes
 
     double violation = 0;    ///< largest declared error of a constraint, in its own unit
-    double penetration = 0;  ///< m, largest overlap left at the end of a step
+    double penetration = 0;  ///< m, largest penetration left at the end of a step
     double residual = 0;     ///< m/s, left over by contact responses
     std::vector<RecordedContact> contacts;
     bool contacts_cut = false;            ///< there were more than are kept
@@ -106,7 +106,7 @@ struct RunRecord
     std::string first_warning;            ///< in words
     std::uint64_t trials = 0, rewinds = 0;
     std::uint64_t evaluations = 0;             ///< of forces, trials included
-    std::optional<std::uint64_t> allocations;  ///< in warm steps; none: there was no such step
+    std::optional<std::uint64_t> allocations;  ///< in warm steps; empty: there was no such step
     std::vector<PartFigures> parts;            ///< solvers, managers, responses, resolutions, constraints
     std::vector<simulation::Reply> swaps;
 

@@ -63,7 +63,7 @@ void fill_roles(model::SceneSpec& scene, model::ComponentSpec& c, const Schema& 
     for (model::ComponentSpec& part : parts) scene.components.push_back(std::move(part));
 }
 
-/// The type, or why there is none; what is suggested is of the kind that is there.
+/// The type, or why there is none; suggestions are of the same kind.
 Result<const model::ComponentType*> require_like(model::TypeSource& types, const std::string& present, const std::string& written)
 {
     const std::string name = full_type_name(present, written);
@@ -77,7 +77,7 @@ Result<const model::ComponentType*> require_like(model::TypeSource& types, const
     return reason("unknown type '" + name + "'" + (near.empty() ? "; it can be " + model::quoted_list(like, "or") : near));
 }
 
-/// What the old type had and the new one knows as well stays; the rest takes the new type's defaults.
+/// Fields that both types have keep their values; the others get the new type's defaults.
 Result<void> exchange(model::SceneSpec& scene, model::ComponentSpec& c, model::TypeSource& types, const Setting& s)
 {
     auto old = types.require(c.type);
@@ -186,7 +186,7 @@ Result<std::vector<Setting>> parse_vary(const std::string& text)
 {
     const std::size_t equal = text.find('=');
     if (equal == std::string::npos || equal == 0 || equal + 1 == text.size())
-        return reason("--vary wants ID=TypeA,TypeB, ID.param=v1,v2 or dt=1/30,1/60, not '" + text + "'");
+        return reason("--vary needs ID=TypeA,TypeB, ID.param=v1,v2 or dt=1/30,1/60, not '" + text + "'");
     std::vector<Setting> out;
     for (std::string& value : split(std::string_view(text).substr(equal + 1), ','))
     {
@@ -207,10 +207,10 @@ Result<Algorithm> parse_algorithm(const std::string& text)
     {
         const std::size_t equal = word.find('=');
         if (equal == std::string_view::npos || equal == 0 || equal + 1 == word.size())
-            return reason("--algorithm wants [NAME:] ID=Type ID.param=value ..., not '" + std::string(word) + "'");
+            return reason("--algorithm needs [NAME:] ID=Type ID.param=value ..., not '" + std::string(word) + "'");
         out.settings.push_back({std::string(word.substr(0, equal)), std::string(word.substr(equal + 1))});
     }
-    if (out.settings.empty() && out.name.empty()) return reason("--algorithm is empty: it wants [NAME:] ID=Type ID.param=value ...");
+    if (out.settings.empty() && out.name.empty()) return reason("--algorithm is empty: it needs [NAME:] ID=Type ID.param=value ...");
     return out;
 }
 
@@ -224,7 +224,8 @@ Result<void> check_settings(const std::vector<Algorithm>& algorithms, const std:
         for (std::size_t i = 0; i < v.size(); ++i)
             for (std::size_t k = 0; k < i; ++k)
                 if (same_value(v[i], v[k]))
-                    return reason("--vary " + v[i].target + ": '" + v[k].value + "' and '" + v[i].value + "' are one value given twice");
+                    return reason("--vary " + v[i].target + ": '" + v[k].value + "' and '" + v[i].value +
+                                  "' are the same value, given twice");
     }
     for (const Algorithm& algorithm : algorithms)
     {
@@ -232,8 +233,7 @@ Result<void> check_settings(const std::vector<Algorithm>& algorithms, const std:
         for (const Setting& s : algorithm.settings)
         {
             if (!own.insert(s.target).second) return reason("--algorithm sets " + s.target + " twice, to '" + s.value + "' as well");
-            if (targets.contains(s.target))
-                return reason(s.target + " is set by a --algorithm and varied by --vary: leave it to one of them");
+            if (targets.contains(s.target)) return reason(s.target + " is set by --algorithm and varied by --vary: use only one of them");
         }
     }
     std::set<std::string> names;
@@ -294,7 +294,7 @@ Result<model::StepLength> common_instants(const std::vector<model::StepLength>& 
     for (const model::StepLength& l : lengths)
     {
         if (l.denominator == 0 || out.denominator == 0)
-            return reason("a step length is no fraction of whole numbers: write it as 1/240 or 0.001");
+            return reason("a step length is not a fraction of whole numbers: write it as 1/240 or 0.001");
         // lcm of a/b and c/d in lowest terms: lcm(a, c) / gcd(b, d).
         const std::int64_t share = out.numerator / std::gcd(out.numerator, l.numerator);
         if (__builtin_mul_overflow(share, l.numerator, &out.numerator)) return reason("the step lengths have no common instants");

@@ -13,12 +13,11 @@ namespace plab::study
 namespace
 {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMostSamples = 1000;
-/// Mixed errors beyond this are no errors: the run blew up.
+/// Larger mixed errors are not meaningful: the run blew up.
 constexpr double kBlownUp = 1e3;
 
-/// How far up its ladder a type stands: order first, then what it promises.
+/// Rank of a type in its ladder: by order first, then by what it certifies and locates.
 int height_of(model::TypeSource& types, const std::string& name)
 {
     const auto type = types.require(name);
@@ -79,11 +78,11 @@ void Run::tell(const std::string& what, double share)
     plan_.progress(what + text);
 }
 
-/// An error once nobody wants the rest: half a study is none.
+/// An error if the study was interrupted: a partial study has no result.
 Result<void> Run::go_on(const std::string& what) const
 {
     if (!plan_.run.is_stopped()) return {};
-    return reason("interrupted while " + what + "; nothing of this study is written");
+    return reason("interrupted while " + what + "; no result of this study is written");
 }
 
 void Run::apply_settings()
@@ -102,7 +101,8 @@ Result<void> Run::prepare()
     return choose_quantities();
 }
 
-/// Swaps that hold in no run are an error; one in which they do not is refused, as with a setting.
+/// Swaps that are not possible in any run are an error; a single run in which they are not possible is refused, as with a
+/// setting.
 Result<void> Run::choose_swaps()
 {
     if (planned_.empty()) return {};
@@ -125,7 +125,7 @@ Result<void> Run::choose_swaps()
     return any ? Result<void>() : why;
 }
 
-/// What is wrong with the rest of the plan is for go() to say.
+/// go() reports errors in the rest of the plan.
 Result<void> Run::check_swaps()
 {
     if (planned_.empty() || plan_.combinations.empty() || !(plan_.run.until > 0)) return {};
@@ -177,7 +177,7 @@ Result<void> Run::choose_quantities()
         }
         return check_scales();
     }
-    // No scene loads: each combination says why.
+    // No scene loads: each combination has its own reason.
     return {};
 }
 
@@ -276,7 +276,7 @@ Result<void> Run::make_reference()
     return {};
 }
 
-/// The first run of each is the warm-up of the machine, and the one that is recorded.
+/// The first run of each combination warms up the machine, and is the one that is recorded.
 Result<void> Run::record_all()
 {
     const double runs = static_cast<double>(scenes_.size() * (static_cast<std::size_t>(plan_.repeat) + 1));
@@ -303,7 +303,7 @@ RunOptions Run::options_of(std::size_t run) const
     return out;
 }
 
-/// What went wrong is timed up to there.
+/// A failed run is timed up to its failure.
 RunOptions Run::timed_part(std::size_t run) const
 {
     RunOptions out = options_of(run);
@@ -319,7 +319,7 @@ Result<void> Run::time_all()
     for (int r = 0; r < plan_.repeat; ++r)
         for (std::size_t k = 0; k < n; ++k)
         {
-            // Rotated, so that nobody always runs after the same neighbour.
+            // Rotated, so that no run always follows the same neighbour.
             const std::size_t i = (k + static_cast<std::size_t>(r)) % n;
             Point& point = out_.points[i];
             if (point.record.outcome == Outcome::Refused || point.record.outcome == Outcome::TooSlow) continue;
@@ -358,11 +358,11 @@ void Run::judge(Point& point)
     if (record.ok() && point.error() > kBlownUp)
     {
         point.record.outcome = Outcome::BlewUp;
-        point.record.why = "it got " + model::format_real(std::round(point.error())) + " times as far from the reference as that goes";
+        point.record.why = "it moved " + model::format_real(std::round(point.error())) + " times as far from the reference as that goes";
     }
     double drift = 0;
     for (const double d : record.energy.drift) drift = std::fabs(d) > drift || std::isnan(d) ? std::fabs(d) : drift;
-    // Where nothing moves, a millionth of what there is stands for what moves.
+    // If nothing moves, a millionth of the magnitude is used as the scale.
     double scale = record.energy.scale;
     for (const double e : record.energy.energy) scale = std::max(scale, 1e-6 * std::fabs(e));
     point.energy_drift = scale > 0 ? drift / scale : drift;

@@ -21,7 +21,7 @@ struct ReferencePlan
     };
     Kind kind = Kind::Auto;
     std::string text;                    ///< name of the closed form, or path
-    std::optional<Algorithm> algorithm;  ///< auto: this one; else the finest algorithm of the plan
+    std::optional<Algorithm> algorithm;  ///< auto: this one; otherwise the finest algorithm of the plan
 };
 /// "auto", "none", "exact:NAME", or a path.
 ReferencePlan parse_reference(const std::string& text);
@@ -30,22 +30,22 @@ struct Plan
 {
     model::SceneSpec scene;
     std::string title;
-    std::string command;  ///< how to do it again
+    std::string command;  ///< command line to repeat the study
     std::vector<Combination> combinations;
     ReferencePlan reference;
-    RunOptions run;                        ///< without sample times and swaps: those follow from the step lengths
+    RunOptions run;                        ///< without sample times and swaps, which follow from the step lengths
     std::vector<PlannedSwap> swaps;        ///< in every run, and in those of the reference `auto`
     int repeat = 3;                        ///< timed runs of each combination
-    std::map<std::string, double> scales;  ///< a of the mixed error, by quantity, where it is given
+    std::map<std::string, double> scales;  ///< a of the mixed error, by quantity, if given
     std::function<void(const std::string&)> progress;
 };
 
-/// Contacts of a run beside those of the reference.
+/// Contacts of a run compared with those of the reference.
 struct ContactFigures
 {
     bool known = false;
     int expected = 0, missed = 0, extra = 0;
-    double worst_time_error = 0;  ///< s, of those that are matched
+    double worst_time_error = 0;  ///< s, of the matched ones
 };
 
 /// A data point.
@@ -84,26 +84,26 @@ struct StudyResult
     Reference reference;
     std::vector<Quantity> quantities;
     std::vector<Point> points;
-    std::vector<std::string> notes;  ///< what a reader should know about how it was done
+    std::vector<std::string> notes;  ///< notes for the reader on how the study was made
     bool swaps = false;
 };
 
-/// What a plan comes to before it is run.
+/// The size of a plan, before it is run.
 struct Workload
 {
-    std::size_t cells = 0, refused = 0;  ///< combinations, and those whose scene or setting does not hold
-    double seconds = 0;                  ///< CPU time, from the first steps of each: right within a factor of a few
+    std::size_t cells = 0, refused = 0;  ///< combinations, and those whose scene or setting is not possible
+    double seconds = 0;                  ///< CPU time, from the first steps of each: correct within a factor of a few
 };
 Workload workload_of(model::TypeSource& types, const Plan& plan);
 
-/// Whether the swaps hold: their steps or times in all runs; id and type in at least one. Nothing is run.
+/// Checks the swaps: their steps or times in all runs; id and type in at least one. Runs nothing.
 Result<void> check_swaps(model::TypeSource& types, const Plan& plan);
 
-/// Runs it all. Fails only where nothing could be studied: no combination, no common instants, unknown quantity or closed form,
-/// swaps that do not hold.
+/// Runs the whole plan. Fails only if nothing could be studied: no combination, no common instants, unknown quantity or closed
+/// form, swaps that are not possible.
 Result<StudyResult> run_study(model::TypeSource& types, const Plan& plan);
 
-/// Matches contacts of the same pair by the alignment in time that costs least.
+/// Matches contacts of the same pair by the alignment in time with the lowest cost.
 ContactFigures compare_contacts(const std::vector<RecordedContact>& run, const std::vector<RecordedContact>& reference);
 
 /// -log10 of an error, from 0 to 16; NaN stays.

@@ -34,7 +34,7 @@ std::vector<std::string> texts(const Json& entry, const char* key)
     return out;
 }
 
-/// Throws what nlohmann throws; read_suite() catches it.
+/// Throws the exceptions of nlohmann-json; read_suite() catches them.
 Result<SuiteEntry> read_entry(const Json& entry, const std::string& path)
 {
     SuiteEntry out;
@@ -124,7 +124,7 @@ Done run_entry(model::TypeSource& types, const SuiteEntry& entry, const SuiteOpt
     return out;
 }
 
-/// The studies of one ladder: the best that each algorithm reaches in each, and what the cheapest run within the tolerance costs.
+/// The studies of one ladder: the best result of each algorithm in each, and the cost of the cheapest run within the tolerance.
 struct Tally
 {
     std::string ladder;
@@ -209,7 +209,7 @@ std::vector<std::string> findings_of(const std::vector<Done>& all, const std::ve
                           (any ? t.algorithms[static_cast<std::size_t>(best - t.cost[i].begin())] + " is the cheapest within " +
                                      figures::short_number(tolerance) + ", " + figures::short_number(1e3 * *best) +
                                      " ms per simulated second."
-                               : "nobody comes within " + figures::short_number(tolerance) + "."));
+                               : "no algorithm comes within " + figures::short_number(tolerance) + "."));
         }
     for (const Done& d : all)
         if (!d.trouble.empty()) out.push_back(d.entry->name + ": could not be studied: " + d.trouble);
@@ -258,12 +258,12 @@ Result<void> add_tally(Page& page, const Tally& t, const SuiteOptions& options, 
     for (std::size_t r = 0; r < t.algorithms.size(); ++r)
         for (const std::vector<plot::Cell>& study : t.best) cells[r].push_back(study[r]);
     const figures::Drawing map = plot::heat_map("Best digits", t.algorithms, t.names(), cells);
-    page.figure(map, "Correct digits of each algorithm's best run. A pale cell: no part in that problem, or no result.");
+    page.figure(map, "Correct digits of each algorithm's best run. A pale cell: not part of that problem, or no result.");
     if (auto written = write_picture(folder + "/digits" + number, map); !written) return written;
     if (t.studies.size() > 1)
     {
         const figures::Drawing profile = plot::performance_profile("Performance profile", t.algorithms, t.cost);
-        page.figure(profile, "After Dolan and Moré (2002): the share of these problems that a algorithm solves to " +
+        page.figure(profile, "After Dolan and Moré (2002): the share of these problems that an algorithm solves to " +
                                  figures::short_number(options.tolerance) +
                                  " within that multiple of the cheapest algorithm's cost. Runs without a result solve nothing.");
         if (auto written = write_picture(folder + "/profile" + number, profile); !written) return written;
@@ -275,8 +275,8 @@ Result<void> add_tally(Page& page, const Tally& t, const SuiteOptions& options, 
 Result<void> write_suite(const Suite& suite, const std::vector<Done>& all, const SuiteOptions& options,
                          const std::vector<std::string>& sentences, const std::vector<Tally>& tallies, const std::string& folder)
 {
-    Page page(suite.title, std::to_string(suite.entries.size()) +
-                               " problems, by the ladder that they climb; each algorithm at all of its step lengths.");
+    Page page(suite.title,
+              std::to_string(suite.entries.size()) + " problems, grouped by ladder; each algorithm at all of its step lengths.");
     page.list(sentences);
     for (std::size_t i = 0; i < tallies.size(); ++i)
         if (auto added = add_tally(page, tallies[i], options, folder, "-" + std::to_string(i + 1)); !added) return added;

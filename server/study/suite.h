@@ -1,7 +1,7 @@
-/// A catalogue of studies, and what they say together: digits by problem and algorithm, and the performance profile.
-///
-/// JSON: {"studies": [{"name", "scene", "title", "vary": [..], "algorithms": [..], "reference", "reference_algorithm", "quantities": [..],
-/// "until", "floor", "ladder", "scales": {quantity: length}}]}, with the words of the command line; scenes are found beside the file.
+/// A catalogue of studies, and its overall results: digits by problem and algorithm, and the performance profile.
+/// JSON: {"studies": [{"name", "scene", "title", "vary": [..], "algorithms": [..], "reference", "reference_algorithm",
+/// "quantities": [..], "until", "floor", "ladder", "scales": {quantity: length}}]}, with the texts of the command line; paths
+/// of scenes are relative to the file.
 #pragma once
 
 #include "study/study.h"
@@ -12,14 +12,14 @@ namespace plab::study
 struct SuiteEntry
 {
     std::string name, title, scene;  ///< scene: path
-    std::string ladder;              ///< studies of one ladder are looked at together; empty: those with the same algorithms
+    std::string ladder;              ///< studies of one ladder are evaluated together; empty: those with the same algorithms
     std::vector<Algorithm> algorithms;
     std::vector<std::vector<Setting>> varied;
     ReferencePlan reference;
     std::vector<std::string> quantities;
     double until = 1;
     std::optional<double> floor;
-    std::map<std::string, double> scales;  ///< a of the mixed error, by quantity, where it is given
+    std::map<std::string, double> scales;  ///< a of the mixed error, by quantity, if given
 };
 struct Suite
 {
@@ -35,11 +35,11 @@ struct SuiteOptions
     double tolerance = 1e-6;
     std::string command;
     std::uint64_t (*allocations)() = nullptr;
-    const Interruption* stop = nullptr;  ///< asked: nobody wants the rest
+    const Interruption* stop = nullptr;  ///< asked whether to stop
     std::function<void(const std::string&)> progress;
 };
 
-/// What each study of the suite comes to, without running it.
+/// The size of each study of the suite, without running it.
 struct SuiteLine
 {
     const SuiteEntry* entry = nullptr;
@@ -48,9 +48,9 @@ struct SuiteLine
 };
 std::vector<SuiteLine> workload_of(model::TypeSource& types, const Suite& suite, const SuiteOptions& options);
 
-/// Each study in a folder of its own below `folder`, and report.html, suite.json, digits and profile in `folder`. The
-/// findings, in sentences. A study that cannot be made is listed as such. One that is interrupted is an error, which says what of
-/// the suite is there.
+/// Writes each study to a folder of its own below `folder`, and report.html, suite.json, digits and profile to `folder`.
+/// Returns the findings, in sentences. A study that fails is listed as such. An interruption is an error, which states how much
+/// of the suite was written.
 Result<std::vector<std::string>> run_suite(model::TypeSource& types, const Suite& suite, const SuiteOptions& options,
                                            const std::string& folder);
 

@@ -68,7 +68,7 @@ Error too_late(const PlannedSwap& swap, double until)
 {
     const std::string end = "the runs end at " + seconds(until);
     return wrong(swap, swap.step ? end + ", before step " + std::to_string(*swap.step) + " (" + seconds(swap.time) + ")"
-                                 : end + ": a swap comes before that");
+                                 : end + ": a swap must come before that");
 }
 
 const model::ComponentSpec* component_of(const model::SceneSpec& scene, const std::string& id)
@@ -113,7 +113,7 @@ Result<PlannedSwap> parse_swap(const std::string& text)
     const bool parts = colon != std::string::npos && equal != std::string::npos && equal > colon + 1 && equal + 1 < text.size();
     if (!parts || !read_when(model::trimmed(std::string_view(text).substr(0, colon)), out))
         return reason(
-            "--swap wants STEP:ID=TYPE or TIME:ID=TYPE, the time with its unit, such as 120:contact.response=Response/None or "
+            "--swap needs STEP:ID=TYPE or TIME:ID=TYPE, the time with its unit, such as 120:contact.response=Response/None or "
             "0.5s:contact.response=None, not '" +
             text + "'");
     out.id = text.substr(colon + 1, equal - colon - 1), out.type = text.substr(equal + 1);

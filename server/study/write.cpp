@@ -12,7 +12,7 @@ namespace plab::study
 namespace
 {
 
-std::string number(double v) { return model::exact_text(v, ""); }
+std::string exact_number(double v) { return model::exact_text(v, ""); }
 
 /// A cell of CSV: in quotes where it has to be.
 std::string cell(const std::string& text)
@@ -35,20 +35,20 @@ std::string row_of(const StudyResult& r, const Point& p)
     std::string settings, resolved;
     for (const Setting& s : p.combination.settings) settings += (settings.empty() ? "" : " ") + s.text();
     for (const PartFigures& part : x.parts) resolved += (resolved.empty() ? "" : "; ") + part.id + "=" + part.resolved;
-    std::string out = cell(p.combination.algorithm) + "," + cell(settings) + "," + number(x.dt) + "," + std::string(name_of(x.outcome)) +
-                      "," + cell(x.why) + "," + number(x.reached) + "," + std::to_string(x.steps) + "," + number(p.error()) + "," +
-                      number(p.final_error()) + "," + number(digits(p.error())) + "," + (p.is_resolved() ? "1" : "0");
+    std::string out = cell(p.combination.algorithm) + "," + cell(settings) + "," + exact_number(x.dt) + "," + std::string(name_of(x.outcome)) +
+                      "," + cell(x.why) + "," + exact_number(x.reached) + "," + std::to_string(x.steps) + "," + exact_number(p.error()) + "," +
+                      exact_number(p.final_error()) + "," + exact_number(digits(p.error())) + "," + (p.is_resolved() ? "1" : "0");
     for (std::size_t k = 0; k < r.quantities.size(); ++k)
     {
         const Distance e = k < p.errors.size() ? p.errors[k] : Distance{NAN, NAN, NAN, NAN};
-        out += "," + number(e.series) + "," + number(e.last) + "," + number(e.series_absolute) + "," + number(e.last_absolute);
+        out += "," + exact_number(e.series) + "," + exact_number(e.last) + "," + exact_number(e.series_absolute) + "," + exact_number(e.last_absolute);
     }
-    out += "," + number(p.energy_drift) + "," + number(x.momentum_change) + "," + number(x.angular_momentum_change) + "," +
-           number(x.shaft_momentum_change) + "," + number(x.violation) + "," + number(x.penetration) + "," + number(x.residual);
+    out += "," + exact_number(p.energy_drift) + "," + exact_number(x.momentum_change) + "," + exact_number(x.angular_momentum_change) + "," +
+           exact_number(x.shaft_momentum_change) + "," + exact_number(x.violation) + "," + exact_number(x.penetration) + "," + exact_number(x.residual);
     out += "," + (p.contacts.known ? std::to_string(p.contacts.expected) + "," + std::to_string(p.contacts.missed) + "," +
-                                         std::to_string(p.contacts.extra) + "," + number(p.contacts.worst_time_error)
+                                         std::to_string(p.contacts.extra) + "," + exact_number(p.contacts.worst_time_error)
                                    : std::string(",,,"));
-    out += "," + number(p.cpu_min) + "," + number(p.cpu_median) + "," + number(p.cpu_per_second()) + "," + number(p.cpu_per_step());
+    out += "," + exact_number(p.cpu_min) + "," + exact_number(p.cpu_median) + "," + exact_number(p.cpu_per_second()) + "," + exact_number(p.cpu_per_step());
     out += "," + std::to_string(x.evaluations) + "," + std::to_string(x.trials) + "," + std::to_string(x.rewinds) + "," +
            count(x.allocations) + "," + model::hash_text(x.hash) + "," + cell(x.first_warning) + "," + cell(resolved);
     return out + "\n";
@@ -75,9 +75,9 @@ std::string time_series_csv(const StudyResult& r, const std::vector<double>& tim
         for (std::size_t i = 0; i < q.width; ++i) out += "," + q.column(i);
     for (std::size_t n = 0; n < times.size(); ++n)
     {
-        out += "\n" + number(times[n]);
+        out += "\n" + exact_number(times[n]);
         for (const TimeSeries& c : time_series)
-            for (std::size_t i = 0; i < c.width; ++i) out += "," + (n < c.samples() ? number(c.at(n)[i]) : std::string());
+            for (std::size_t i = 0; i < c.width; ++i) out += "," + (n < c.samples() ? exact_number(c.at(n)[i]) : std::string());
     }
     return out + "\n";
 }

@@ -63,7 +63,7 @@ const char* word(Severity severity)
     return "";
 }
 
-/// Fills `out` with one element of the wire for each record; `out` keeps its memory from sample to sample.
+/// Fills `out` with one wire element per record; `out` keeps its memory from sample to sample.
 template <class Wire, class Record, class Convert>
 void convert_each(std::vector<Wire>& out, const std::vector<Record>& records, Convert&& convert)
 {

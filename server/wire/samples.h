@@ -1,7 +1,6 @@
-/// Records as samples of the wire.
-///
-/// A sample points into the record that it was made of, and into scratch of its own: it is good until the record goes
-/// or the next one is made. Text and arrays of plain data are not copied.
+/// Converts records to samples of the wire.
+/// A sample points into the record that it was made of, and into scratch of its own: it is valid until the record is destroyed
+/// or the next sample is made. Text and arrays of plain data are not copied.
 #pragma once
 
 #include <span>
@@ -14,7 +13,7 @@
 namespace plab::wire
 {
 
-/// Samples of a topic that a ring gave up.
+/// Samples of a topic that a ring dropped.
 struct Dropped
 {
     const char* topic = "";

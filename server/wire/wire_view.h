@@ -1,4 +1,4 @@
-/// The host's values seen as the wire's: same layout, no copy.
+/// Views of host values as wire values: same layout, no copy.
 #pragma once
 
 #include <cstddef>
@@ -6,13 +6,13 @@
 #include <type_traits>
 #include <vector>
 
-#include "idl/plab.h"
+#include "idl/topics.h"
 #include "publish/records.h"
 
 namespace plab::wire
 {
 
-// A frame's arrays go out as they are. Whoever changes one side meets these lines.
+// A frame's arrays are sent without conversion. These assertions fail if either layout changes.
 static_assert(sizeof(Vec3) == sizeof(plab_v2_Vector) && alignof(Vec3) == alignof(plab_v2_Vector));
 static_assert(offsetof(Vec3, x) == offsetof(plab_v2_Vector, x) && offsetof(Vec3, y) == offsetof(plab_v2_Vector, y) &&
               offsetof(Vec3, z) == offsetof(plab_v2_Vector, z));
@@ -39,14 +39,10 @@ inline constexpr bool kSameLayout<publish::BodyState, plab_v2_BodyState> = true;
 template <>
 inline constexpr bool kSameLayout<publish::ShaftState, plab_v2_ShaftState> = true;
 
-/// DDS only reads what it is given to write, though its types have no const.
-inline char* text(const std::string& s) { return const_cast<char*>(s.c_str()); }
-inline char* text(const char* s) { return const_cast<char*>(s); }
-
 inline plab_v2_Vector vector(const Vec3& v) { return {v.x, v.y, v.z}; }
 inline plab_v2_Rotation rotation(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
 
-/// Makes a sequence of the wire point to a vector's elements, which stay the vector's.
+/// Makes a wire sequence point to a vector's elements, which the vector still owns.
 template <class Sequence, class T>
 void view(Sequence& sequence, const std::vector<T>& elements)
 {

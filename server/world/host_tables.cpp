@@ -54,7 +54,7 @@ void clear_row(Shafts& s, std::uint32_t i)
     s.axle[i] = {}, s.shapes[i].clear(), s.root[i] = i, s.ratio[i] = 1, s.anchor[i] = 0, s.root_anchor[i] = 0;
 }
 
-/// A body as its author sees it: the frame B, its origin's velocity, and the spin.
+/// The motion of a body as the author of the scene sees it: the frame B, the velocity of its origin, and the spin.
 struct BodyMotion
 {
     Vec3 position;
@@ -101,7 +101,7 @@ bool set_body(Bodies& b, std::uint32_t i, std::string_view name, const Value& va
         m.spin = std::get<Vec3>(value);
     else
         return false;
-    // Only a turn changes the momentum of a body: moving it must not touch the last bit of its spin.
+    // Only a rotation changes the angular momentum of a body; a translation must not change the last bit of its spin.
     const Vec3 momentum = b.angular_momentum[i];
     set_authored_motion(b, i, m);
     if (name == "position" || name == "linear_velocity") b.angular_momentum[i] = momentum;

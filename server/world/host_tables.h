@@ -1,4 +1,4 @@
-/// The host's own tables of a world, as one value: copying it is a full backup.
+/// The host tables of a world, as one value: a copy is a complete backup.
 #pragma once
 
 #include <string_view>
@@ -21,24 +21,24 @@ struct HostTables
     std::vector<std::uint32_t> free_bodies, free_shafts, free_shapes, free_quantities;
     std::vector<std::uint32_t> component_of_body, component_of_shaft, component_of_shape, component_of_quantities;  ///< directory indices
 
-    /// A new row for a component with this facet; kNoIndex where the facet has no table.
+    /// Adds a row for a component with this facet; kNoIndex if the facet has no table.
     std::uint32_t add(Facet facet, std::uint32_t component);
     void remove(Facet facet, std::uint32_t index);
-    /// The row belongs to nobody from now on, though it is freed only by remove(): a rollback may want it back.
+    /// The row belongs to no component from now on, but only remove() frees it, because a rollback may need it again.
     void disown(Facet facet, std::uint32_t index);
     std::uint32_t component_of(Ref ref) const;
 };
 
-/// Fields that live in the host tables, by the names that the State types declare (notation.md).
-/// `index` is the host row. An unknown name or facet yields no value.
+/// Fields whose live values are in the host tables, by the names that the State types declare (server/docs/notation.md). `index` is the
+/// host row. An unknown name or facet gives no value.
 Value get_hosted(const HostTables& tables, Facet facet, std::uint32_t index, std::string_view name);
 /// False if there is no such field. Angular momentum follows a changed velocity.
 bool set_hosted(HostTables& tables, Facet facet, std::uint32_t index, std::string_view name, const Value& value);
 
-/// Raw state of one host row: what a memento keeps and a hash reads.
+/// Raw state of one host row, for mementos and hashes.
 void save_state(const HostTables& tables, Ref ref, ByteWriter& out);
 
-/// The moving state of all bodies and shafts at one time; keeps its memory, so that saving is a copy of arrays.
+/// The moving state of all bodies and shafts at one time. It keeps its memory, so saving is a copy of arrays.
 class MotionMemento
 {
 public:

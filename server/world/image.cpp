@@ -42,7 +42,7 @@ void load_shaft(const Shafts& from, std::uint32_t i, Shafts& to, std::uint32_t k
     to.root_anchor[k] = from.root_anchor[i];
 }
 
-/// The columns of a live table that a layout's fields go to, or why one does not fit.
+/// The columns of a live table for the fields of a layout, or the reason why one does not fit.
 Result<std::vector<ColumnBase*>> columns_for(const Layout& layout, const Table& table)
 {
     std::vector<ColumnBase*> out;
@@ -80,7 +80,7 @@ Result<void> World::revive(const Image& image)
     Errors errors;
     (void)create_all(*image.scene, errors);
     if (!errors.empty()) return errors;
-    // Values come before Prepare, which makes things of them, and again after it, as it may write some.
+    // Values are loaded before Prepare, which uses them, and again afterwards, because Prepare may overwrite some.
     load_cells(image, errors);
     if (!errors.empty()) return errors;
     for (const std::uint32_t i : in_id_order_)
@@ -173,6 +173,14 @@ void write_value(ByteWriter& out, const Value& value)
             if constexpr (!std::is_same_v<std::decay_t<decltype(v)>, std::monostate>) write(out, v);
         },
         value);
+}
+
+bool same_bits(const Value& a, const Value& b)
+{
+    if (a.index() != b.index()) return false;
+    ByteWriter x, y;
+    write_value(x, a), write_value(y, b);
+    return x.bytes() == y.bytes();
 }
 
 Value read_value(ByteReader& in, FieldType type)

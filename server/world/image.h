@@ -1,8 +1,8 @@
-/// A world as a value: everything that it holds at one time, by component and field. Making one is a copy of bytes and
-/// of pointers; what it shares never changes, so that other threads may read it.
+/// A world as a value: everything that it contains at one time, by component and field. Making an image copies bytes and pointers; shared
+/// parts never change, so other threads may read them.
 ///
-/// Left out is what Prepare makes from parameters: geometry, materials, opaque cells. Mass properties are in it, though they
-/// follow too: a build that computes another last digit goes on with those that the run had.
+/// What Prepare derives from parameters is left out: geometry, materials, opaque cells. Mass properties are included although they are
+/// derived, too: a build that computes different last digits then continues with the values that the run had.
 #pragma once
 
 #include <memory>
@@ -18,15 +18,15 @@ namespace plab::world
 struct Image
 {
     std::shared_ptr<const Directory> directory;
-    std::shared_ptr<const model::SceneSpec> scene;       ///< the component set as it is, with swaps
+    std::shared_ptr<const model::SceneSpec> scene;       ///< the components as they are now, after swaps
     std::vector<std::shared_ptr<const Layout>> layouts;  ///< by table
-    std::vector<std::uint8_t> cells;                     ///< of living components, in directory order, by layout
+    std::vector<std::uint8_t> cells;                     ///< of existing components, in directory order, by layout
     Bodies bodies;                                       ///< by host row; without material and shapes
     Shafts shafts;                                       ///< without axle and shapes
     Quantities quantities;
 
     const Component& component(std::uint32_t i) const { return directory->components[i]; }
-    /// Calls visit(directory index, component, its layout) for each living component that is no group, in the order of `cells`.
+    /// Calls visit(directory index, component, its layout) for each existing component that is not a group, in the order of `cells`.
     template <class Visit>
     void for_each(Visit visit) const
     {
@@ -35,12 +35,12 @@ struct Image
     }
 };
 
-/// Where the components of an image are in a world that was made from it.
+/// Maps the indices of an image to those of a world that was made from it.
 class Renumbering
 {
 public:
     Renumbering(const Image& image, const World& world);
-    /// kNoIndex for who is not there.
+    /// kNoIndex if it does not exist there.
     std::uint32_t component(std::uint32_t old) const { return old < component_.size() ? component_[old] : kNoIndex; }
     std::uint32_t body(std::uint32_t old) const { return old < body_.size() ? body_[old] : kNoIndex; }
     std::uint32_t shaft(std::uint32_t old) const { return old < shaft_.size() ? shaft_[old] : kNoIndex; }

@@ -1,4 +1,4 @@
-/// What the raw bytes of a row hold, field by field: enough to read them without the type.
+/// What the raw bytes of a row contain, field by field, so that they can be read without the type.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct FieldLayout
     friend bool operator==(const FieldLayout&, const FieldLayout&) = default;
 };
 
-/// Params, state and outputs of one type in the order of their declaration; fields that the host keeps are left out.
+/// Params, state and outputs of one type in the order of their declaration; hosted fields are left out.
 struct Layout
 {
     std::string type;
@@ -26,8 +26,10 @@ struct Layout
     std::vector<FieldLayout> fields;
 };
 
-/// One value as a column of its type saves it (plab/bytes.h), and back.
+/// Writes a value as a column of its type saves it (plab/bytes.h), and reads it back.
 void write_value(ByteWriter& out, const Value& value);
+/// Whether both have the same type and bits: a NaN equals itself, 0 differs from -0.
+bool same_bits(const Value& a, const Value& b);
 Value read_value(ByteReader& in, FieldType type);
 
 }  // namespace plab::world

@@ -1,4 +1,4 @@
-/// A value that copies share until one of them is changed.
+/// A copy-on-write value: copies share it until one of them is changed.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 namespace plab::world
 {
 
-/// Backups of a world hold its structure this way: a copy costs a pointer, and only a change of structure costs more.
-/// Not for use by several threads; what is lent may be.
+/// Backups of a world hold its structure in this way: a copy costs one pointer, and only a change of structure costs more. Not for use by
+/// several threads, except for values that were lent.
 template <class T>
 class Shared
 {
@@ -17,14 +17,14 @@ public:
 
     const T& operator*() const { return holder_->value; }
     const T* operator->() const { return &holder_->value; }
-    /// For changes; whoever shares the old value keeps it.
+    /// Access for changes; other holders keep the old value.
     T& edit()
     {
-        // Who else holds a lent value is not looked at: another thread may let go of it at this moment.
+        // A lent value is always copied: its use count cannot be trusted, because another thread may release it at this moment.
         if (holder_->lent || holder_.use_count() > 1) holder_ = std::make_shared<Holder>(Holder{holder_->value, false});
         return holder_->value;
     }
-    /// The present value, for any thread: it never changes again.
+    /// The present value, for any thread: it will never change again.
     std::shared_ptr<const T> lend() const
     {
         holder_->lent = true;

@@ -1,5 +1,5 @@
-/// Parts of the 64-bit hash over raw bits of state (server/docs/determinism.md): words as in FNV-1a, in short chains that do not
-/// wait for each other.
+/// Building blocks of the 64-bit hash over the raw bits of the state (server/docs/determinism.md): word-wise FNV-1a, in short independent
+/// chains.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kHashPrime = 0x100000001b3ull;
 constexpr std::uint64_t mix(std::uint64_t h, std::uint64_t word)
 {
     h = (h ^ word) * kHashPrime;
-    return h ^ (h >> 29);  // carries high bits down: a plain word-wise FNV would ignore many sign flips
+    return h ^ (h >> 29);  // mixes high bits down: a plain word-wise FNV would ignore many changes of sign
 }
 
 constexpr std::uint64_t mix(std::uint64_t h, double value) { return mix(h, std::bit_cast<std::uint64_t>(value)); }
@@ -25,7 +25,7 @@ constexpr std::uint64_t hash_of(const Vec3& v) { return mix(mix(mix(0, v.x), v.y
 
 constexpr std::uint64_t hash_of(const Quat& q) { return mix(mix(mix(mix(0, q.w), q.x), q.y), q.z); }
 
-/// Adds bytes: words of eight of them, then the rest one by one.
+/// Adds bytes in words of eight, then the remaining ones singly.
 std::uint64_t hash_bytes(std::uint64_t h, std::span<const std::uint8_t> bytes);
 
 }  // namespace plab::world

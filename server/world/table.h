@@ -1,4 +1,4 @@
-/// The rows of one component type in a world: storage by columns, rows that stay where they are while they live.
+/// The rows of one component type in a world: stored by columns; a row keeps its place as long as it exists.
 #pragma once
 
 #include <memory>
@@ -17,23 +17,23 @@ public:
 
     const model::ComponentType& type() const { return *type_; }
     const Schema& schema() const { return schema_; }
-    /// What save() writes for kLiveKinds; shared with whoever keeps such bytes.
+    /// The layout of what save() writes for kLiveKinds; shared with holders of such bytes.
     const std::shared_ptr<const Layout>& layout() const { return layout_; }
     void* rows() const { return storage_->rows(); }
 
-    /// A row with the declared defaults, for the component with this directory index and host row.
+    /// Adds a row with the declared defaults, for the component with this directory index and host row.
     Row add(std::uint32_t component, std::uint32_t host_index);
     /// Frees the row and what its opaque cells hold.
     void remove(Row row);
-    /// A row that exists but belongs to nobody at present (a swap under trial keeps the old row parked).
+    /// Assigns an existing row that belongs to no component at present (a swap under trial keeps the old row parked).
     void assign(Row row, std::uint32_t component, std::uint32_t host_index);
 
     std::span<const std::uint32_t> component_of_row() const { return component_of_row_; }
     std::span<const std::uint32_t> host_of_row() const { return host_of_row_; }
     std::size_t capacity() const { return component_of_row_.size(); }
 
-    /// Raw bytes of the fields of one row, of the kinds in `kinds` (bit per FieldKind); hosted fields and roles left out.
-    /// Whether it has any such field.
+    /// Raw bytes of the fields of one row, of the kinds in `kinds` (one bit per FieldKind), without hosted fields and roles. holds():
+    /// whether there is such a field.
     bool holds(unsigned kinds) const;
     void save(Row row, unsigned kinds, ByteWriter& out) const;
     void load(Row row, unsigned kinds, ByteReader& in);

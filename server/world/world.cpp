@@ -48,7 +48,7 @@ void World::sort_by_id()
 {
     in_id_order_.clear();
     rank_.assign(components().size(), kNoIndex);
-    // std::map iterates in byte-wise order of ids: the order that every phase, hash and listing uses.
+    // std::map iterates in byte-wise order of ids, which is the order that every phase, hash and listing uses.
     for (const auto& [id, i] : directory_->index_of_id)
     {
         rank_[i] = static_cast<std::uint32_t>(in_id_order_.size());
@@ -75,7 +75,7 @@ std::uint64_t World::enabled_commands(const model::ComponentType& type, const mo
         const CommandInfo& command = type.info.commands[i];
         const bool intrinsic = command.phase == Phase::Measure || command.phase == Phase::Prepare;
         const bool listed = std::find(spec.commands.begin(), spec.commands.end(), command.name) != spec.commands.end();
-        // Connect contributes a coupling: it goes with whatever of the component was selected.
+        // Connect contributes a coupling, so it is active whenever any command of the component was selected.
         const bool connects = command.phase == Phase::Connect && !spec.commands.empty();
         if (!spec.explicit_commands || intrinsic || listed || connects) mask |= 1ull << i;
     }
@@ -159,7 +159,7 @@ void World::initialize_motion(std::uint32_t component)
 namespace
 {
 
-/// With the component's name and place, where they are missing.
+/// Adds the component's name and place to errors that have none.
 void add_placed(Errors& out, const Errors& errors, const model::ComponentSpec& spec)
 {
     for (Error e : errors)
@@ -172,7 +172,7 @@ void add_placed(Errors& out, const Errors& errors, const model::ComponentSpec& s
 
 }  // namespace
 
-/// Rows for all components of `scene`, their values and roles; nothing is prepared yet.
+/// Creates rows for all components of `scene`, with their values and roles; nothing is prepared yet.
 std::vector<World::Created> World::create_all(const model::SceneSpec& scene, Errors& errors)
 {
     std::vector<Created> created;
@@ -207,8 +207,8 @@ Result<void> World::add(const model::SceneSpec& scene)
                   });
         for (const Created& c : created)
         {
-            // prepare() looks for the place of an error among all components: after the first one that would take time with the square of
-            // their number. What it does besides is of no use any more, but for shapes, which bodies are measured by.
+            // prepare() searches all components for the place of an error, so after a first error the cost would be quadratic in their
+            // number. Its other results are not needed then, except for shapes, by which bodies are measured.
             const bool in_full = errors.empty() || component(c.component).facet == Facet::Shape;
             auto done = in_full || component(c.component).table == kNoIndex ? prepare(c.component) : run(c.component, Phase::Prepare);
             if (!done) add_placed(errors, done.errors(), *c.spec);
@@ -333,7 +333,7 @@ void World::restore(const Backup& b)
 
 void World::restore_structure(const Backup& b)
 {
-    // Rows that came since the backup go; rows that were parked since come back.
+    // Rows that were added since the backup are removed; rows that were parked since are restored.
     for (const Component& c : components())
         if (c.alive && c.table != kNoIndex) tables_[c.table]->assign(c.row, kNoIndex, kNoIndex);
     const Shared<Directory> newer = directory_;
@@ -342,8 +342,8 @@ void World::restore_structure(const Backup& b)
         if (const Component& c = component(i); c.alive && c.table != kNoIndex) tables_[c.table]->assign(c.row, i, c.host_index);
     for (const Component& c : newer->components)
         if (c.alive && c.table != kNoIndex && tables_[c.table]->component_of_row()[c.row] == kNoIndex) tables_[c.table]->remove(c.row);
-    // Whoever came and went since the backup is parked and belongs to nobody: its row goes. Its host row went with the
-    // host tables; to free it later would free the row of whoever has that index by then.
+    // Components that were added and removed since the backup are parked without an owner: their rows are freed. Their host rows have
+    // disappeared with the restored host tables; freeing them later would free the row of whichever component has that index by then.
     for (const Parked& p : parked_)
         if (tables_[p.table]->component_of_row()[p.row] == kNoIndex && std::find(b.parked.begin(), b.parked.end(), p) == b.parked.end())
             tables_[p.table]->remove(p.row);

@@ -1,7 +1,7 @@
-/// A scene's components as they stand at one time: tables, host tables, the directory of who is who.
+/// The components of a scene at one time: tables, host tables, and the directory of ids.
 ///
-/// The world knows no time and no phases; server/simulation steps it. Rows are born and die only through create,
-/// exchange and remove, which simulation calls at step boundaries.
+/// The world knows no time and no phases; server/simulation steps it. Rows are created and removed only by add, exchange and remove,
+/// which the simulation calls at step boundaries.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 namespace plab::world
 {
 
-/// A directory entry. The index stays with the id for as long as a component of that id lives, also across swaps.
+/// A directory entry. The index belongs to the id as long as a component of that id exists, also across swaps.
 struct Component
 {
     std::string id;
@@ -28,18 +28,18 @@ struct Component
     Row row = kNoIndex;
     Facet facet = Facet::Component;
     std::uint32_t host_index = kNoIndex;
-    std::uint64_t commands = 0;  ///< bit per command of its type: takes part
+    std::uint64_t commands = 0;  ///< bit per command of its type: takes part in the step
     bool alive = false;
     bool quarantined = false;
 
-    /// How roles refer to it.
+    /// How roles refer to this component.
     Ref ref(std::uint32_t directory_index) const
     {
         return facet == Facet::Component ? Ref{facet, directory_index} : Ref{facet, host_index};
     }
 };
 
-/// Who is who. Changed only by requests.
+/// The directory of components. Changed only by requests.
 struct Directory
 {
     std::vector<Component> components;
@@ -47,7 +47,7 @@ struct Directory
     std::vector<std::uint32_t> free;
 };
 
-/// A row that belongs to nobody, and is kept because a rollback may want it back.
+/// A row without a component, kept because a rollback may need it again.
 struct Parked
 {
     std::uint32_t table;
@@ -57,7 +57,7 @@ struct Parked
     friend bool operator==(const Parked&, const Parked&) = default;
 };
 
-/// What a swap or rollback needs to bring everything back, except opaque objects, whose rows stay parked.
+/// What a rollback needs to restore everything except opaque objects, whose rows stay parked.
 struct Backup
 {
     Shared<Directory> directory;
@@ -77,33 +77,33 @@ public:
     // Structure ------------------------------------------------------------------------------------------------------
     /// Adds all components of `scene` or none; ids must be new. Binds roles and prepares rows.
     Result<void> add(const model::SceneSpec& scene);
-    /// Takes a component away. The caller has checked that nobody refers to it. Its row is parked until release().
+    /// Removes a component. The caller has checked that no component refers to it. Its row stays parked until release_parked().
     void remove(std::uint32_t component);
-    /// Puts a row of `spec.type` in the place of the component's row, with values already resolved; the old row is
-    /// parked. On error nothing has changed.
+    /// Replaces the component's row by a row of `spec.type`, with values that are already resolved; the old row is parked. On error
+    /// nothing has changed.
     Result<void> exchange(std::uint32_t component, const model::ComponentSpec& spec);
-    /// Frees parked rows: nothing can be rolled back past this.
+    /// Frees the parked rows; changes up to here can no longer be rolled back.
     void release_parked();
-    /// Fills again roles that mean everybody ("*"), after components came or went.
+    /// Refills roles that refer to all components that fit ("*"), after components were added or removed.
     void refresh_open_roles();
-    /// Re-runs Measure and Prepare of a component after its parameters changed.
+    /// Runs Measure and Prepare of a component again, after its parameters changed.
     Result<void> prepare(std::uint32_t component);
-    /// Prepare of everything, in order of dependence: shapes, bodies and shafts, the rest.
+    /// Runs Prepare for everything, in order of dependence: shapes, bodies and shafts, the rest.
     Result<void> prepare_all();
 
     Backup backup() const;
     void restore(const Backup& backup);
 
-    /// The fields of these kinds (bits) of all living components, in an order that stands as long as the structure does.
+    /// The fields of these kinds (bits) of all existing components, in an order that is constant while the structure is.
     void save_fields(unsigned kinds, ByteWriter& out) const;
     void load_fields(unsigned kinds, ByteReader& in);
 
     /// Everything as a value (image.h), for this or another world.
     Image image() const;
-    /// Makes a world without components into that of the image, under new directory indices and rows. Opaque parts are made
-    /// by Prepare. On error the world is of no use any more.
+    /// Fills a world without components from the image, with new directory indices and rows. Prepare makes the opaque parts. After an
+    /// error the world is unusable.
     Result<void> revive(const Image& image);
-    /// Host rows as they are in the image, again: what a stepper derives from structure may touch them.
+    /// Loads the host rows from the image again, after a stepper has derived values from the structure and written them there.
     void load_host(const Image& image);
 
     // Looking things up ----------------------------------------------------------------------------------------------
@@ -115,23 +115,23 @@ public:
     const std::string& id_of(std::uint32_t component) const;
     const std::string& id_of(Ref ref) const { return id_of(host_.component_of(ref)); }
     const model::ComponentType* type_of(std::uint32_t component) const;
-    /// Living components in the order of their ids.
+    /// Existing components in the order of their ids.
     const std::vector<std::uint32_t>& in_id_order() const { return in_id_order_; }
     /// Position of a component in id order.
     std::uint32_t rank(std::uint32_t component) const { return rank_[component]; }
     std::uint32_t rank(Ref ref) const { return rank_[host_.component_of(ref)]; }
     /// Participants of a role in id order; empty if the type has no such role.
     std::vector<Ref> participants(std::uint32_t component, const Role& role) const;
-    /// Directory indices of those that refer to `component` through a role.
+    /// Directory indices of the components that refer to `component` through a role.
     std::vector<std::uint32_t> referrers(std::uint32_t component) const;
 
     // Fields ---------------------------------------------------------------------------------------------------------
-    /// The live value of a field, hosted ones included; "state.count" reads an entry. No value if there is none.
+    /// The live value of a field, also of a hosted one; "state.count" reads an entry. Empty if it does not exist.
     Value get(std::uint32_t component, const std::string& field) const;
     /// Sets a param or state field without running Prepare. The value must have the field's type.
     Result<void> set(std::uint32_t component, const std::string& field, const Value& value);
 
-    /// The largest output of a component that is declared as its error; 0 if it has none.
+    /// The largest value among the outputs that the component's type declares as its error; 0 if it declares none.
     double largest_error(std::uint32_t component) const;
 
     std::vector<std::unique_ptr<Table>>& tables() { return tables_; }
@@ -141,11 +141,11 @@ public:
     HostTables& host() { return host_; }
     const HostTables& host() const { return host_; }
     const model::SceneSpec& scene() const { return *scene_; }
-    /// Settings and file; before components are added.
+    /// Sets the settings and the file name; to be called before components are added.
     void describe(const model::SceneSettings& settings, const std::string& file);
     model::TypeSource& types() const { return *types_; }
 
-    /// Over the raw bits of all state, in id order (server/docs/determinism.md).
+    /// Hash over the raw bits of all state, in id order (server/docs/determinism.md).
     std::uint64_t state_hash(std::uint64_t start) const;
     /// Raw state of one component: its state columns and its host row.
     void save_state(std::uint32_t component, ByteWriter& out) const;

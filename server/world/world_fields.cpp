@@ -133,7 +133,7 @@ Result<void> World::prepare(std::uint32_t component)
         host_.bodies.needle[c.host_index] = host_.bodies.dynamic(c.host_index) && is_needle(host_.bodies.inertia_B[c.host_index]) ? 1 : 0;
     if (done && c.facet == Facet::Shape)
     {
-        // A shape without a volume is fine to draw; only a body that needs its mass will complain.
+        // A shape without a volume may still be drawn; only a body that needs its mass reports an error.
         const auto measured = run(component, Phase::Measure);
         host_.shapes.unmeasurable[c.host_index] = measured ? std::string() : measured.error().reason;
     }
@@ -170,7 +170,7 @@ void World::save_state(std::uint32_t component, ByteWriter& out) const
 namespace
 {
 
-/// Of what save_state() writes of a body, column by column.
+/// Hash of the values that save_state() writes for a body, column by column.
 std::uint64_t hash_of_body(const Bodies& b, std::uint32_t i)
 {
     const std::uint64_t place = mix(hash_of(b.position[i]), hash_of(b.orientation[i]));
@@ -180,8 +180,8 @@ std::uint64_t hash_of_body(const Bodies& b, std::uint32_t i)
 
 }  // namespace
 
-/// Short chains that do not wait for each other: a processor works on several at once, where one chain through all bytes waits
-/// for each product. Recordings ask for it at each step.
+/// Short independent chains: a processor works on several at once, whereas a single chain through all bytes would wait for each product.
+/// Recordings compute this hash at each step.
 std::uint64_t World::state_hash(std::uint64_t h) const
 {
     std::vector<std::uint8_t> has_state(tables_.size());

@@ -36,7 +36,7 @@ std::string state_of(Server& server)
     std::this_thread::sleep_for(Milliseconds(300));
     const std::string said = server.process().errors();
     return "nobody answers; hashes in 0.3 s: " + std::to_string(server.process().output().size() - before) + " bytes; plab-bus ended " +
-           std::to_string(count(said, "is started again")) +
+           std::to_string(count(said, "it will be restarted in")) +
            " times; last words: " + said.substr(said.size() - std::min<std::size_t>(said.size(), 3000));
 }
 
@@ -86,7 +86,7 @@ void attack(std::uint64_t packets, std::uint64_t seed, unsigned pause_us)
     if (!reply) FAIL(state_of(server));
     CHECK(reply->done());
     CHECK(server.end() == 0);
-    const std::size_t deaths = count(server.process().errors(), "is started again");
+    const std::size_t deaths = count(server.process().errors(), "it will be restarted in");
     MESSAGE(packets << " packets, plab-bus ended " << deaths << " times");
 
     const std::string until = std::to_string(reply->time);

@@ -53,7 +53,7 @@ TEST_CASE("while a step takes long, what it is at is told, what only reads is an
     CHECK_MESSAGE(end.code == 0, end.errors);
     CHECK(server.process().wait(Milliseconds(2000)) == 3);
     CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 2);
-    CHECK(has(server.process().errors(), "given up"));
+    CHECK(has(server.process().errors(), "abandoned"));
 }
 
 TEST_CASE("shutdown ends a server at once, a paused one too")
@@ -92,10 +92,10 @@ TEST_CASE("a request that waits is taken back by cancel, and whoever asked for i
                 why = reply.reasons.empty() ? "nothing" : reply.reasons.front();
             });
     }
-    CHECK(has(why, "taken back"));
+    CHECK(has(why, "cancelled"));
     const Outcome again = plabctl(server, {"cancel", waiting->last_request()});
     CHECK(again.code == 4);
-    CHECK(has(again.errors, "no such request waits"));
+    CHECK(has(again.errors, "no such request is waiting"));
 }
 
 TEST_CASE("one swap of plabctl exchanges all that a pattern and a list name, and says how it was proved")

@@ -192,7 +192,7 @@ TEST_CASE("a second player is refused; Ctrl-C ends a player and a recorder in or
     std::this_thread::sleep_for(Milliseconds(1500));
     Process second = play(recorded(), name, {});
     CHECK(second.wait(Milliseconds(5000)) == 1);
-    CHECK_MESSAGE(has(second.errors(), "a server '" + name + "' runs already on this host"), second.errors());
+    CHECK_MESSAGE(has(second.errors(), "a server '" + name + "' is already running on this host"), second.errors());
     record.signal(2);
     CHECK(record.wait(Milliseconds(5000)) == 130);
     CHECK(open_file(file).index().is_closed);

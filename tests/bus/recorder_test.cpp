@@ -205,12 +205,12 @@ TEST_CASE("a disk that is full: the recorder says so, ends when it is told to, a
     const std::uint64_t before = read_whole(file).messages;
     const auto limit = size_of(file) + 700;
     limit_files(recorder, limit);
-    CHECK_MESSAGE(recorder.wait_for("cannot write: File too large; trying on", kLong), recorder.errors());
+    CHECK_MESSAGE(recorder.wait_for("cannot write: File too large; retrying", kLong), recorder.errors());
     std::this_thread::sleep_for(Milliseconds(1300));  // it is tried again, in vain
     CHECK(recorder.running());
     recorder.signal(SIGINT);
     CHECK(recorder.wait(Milliseconds(2000)) == 1);
-    CHECK_MESSAGE(has(recorder.errors(), "the file was not ended"), recorder.errors());
+    CHECK_MESSAGE(has(recorder.errors(), "the file was not completed"), recorder.errors());
     const auto reported = nlohmann::json::parse(recorder.output());
     CHECK(reported["dropped"] > 0);
     CHECK(has(reported["trouble"], "File too large"));
@@ -233,9 +233,9 @@ TEST_CASE("a disk that takes data again: the file is whole but for its gap, and 
     Process recorder = record(server, file);
     REQUIRE_MESSAGE(comes_true([&] { return size_of(file) > 20'000; }), recorder.errors());
     limit_files(recorder, size_of(file) + 700);
-    REQUIRE_MESSAGE(recorder.wait_for("trying on", kLong), recorder.errors());
+    REQUIRE_MESSAGE(recorder.wait_for("retrying", kLong), recorder.errors());
     limit_files(recorder, RLIM_INFINITY);
-    REQUIRE_MESSAGE(recorder.wait_for("the disk takes data again", kLong), recorder.errors());
+    REQUIRE_MESSAGE(recorder.wait_for("the disk accepts data again", kLong), recorder.errors());
     const auto then = size_of(file);
     REQUIRE(comes_true([&] { return size_of(file) > then + 10'000; }));
     recorder.signal(SIGINT);

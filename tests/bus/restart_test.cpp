@@ -281,7 +281,7 @@ TEST_CASE("one that says nothing is ended and replaced, and plabd ends although 
     const int bus = bus_of(server.process().pid());
     REQUIRE(bus != 0);
     REQUIRE(kill(bus, SIGKILL) == 0);
-    REQUIRE(server.process().wait_for("said nothing for 4 s", Milliseconds(10000)));
+    REQUIRE(server.process().wait_for("sent nothing for 4 s", Milliseconds(10000)));
     const int next = another_bus(server, bus);
     REQUIRE(next != 0);
     CHECK(server.session().servers(Seconds(2), 1).size() == 1);

@@ -120,7 +120,7 @@ TEST_CASE("a request that waited waits again in the run that was rewound to befo
     const Outcome again = run({program("plabd"), "--replay", file, "--verify"});
     CHECK_MESSAGE(again.code == 0, again.output, again.errors);
     // 360 steps, then from 264 to 360, then from 72 to 360.
-    CHECK_MESSAGE(has(again.output, "verified: 744 state hashes are the same"), again.output);
+    CHECK_MESSAGE(has(again.output, "verified: 744 state hashes are identical"), again.output);
     CHECK_MESSAGE(has(again.output, "3 runs"), again.output);
     std::filesystem::remove(file);
 }
@@ -143,6 +143,6 @@ TEST_CASE("a client's request that cannot be carried out a second time is that r
     CHECK(journal_of(file) == "1 300 remove client\n2 250 rewind client\n2 250 remove client\n");
     const Outcome again = run({program("plabd"), "--replay", file, "--verify"});
     CHECK_MESSAGE(again.code == 0, again.output, again.errors);
-    CHECK_MESSAGE(has(again.output, "verified: 361 state hashes are the same"), again.output);
+    CHECK_MESSAGE(has(again.output, "verified: 361 state hashes are identical"), again.output);
     std::filesystem::remove(file);
 }

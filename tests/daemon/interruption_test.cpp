@@ -48,7 +48,7 @@ TEST_CASE("SIGTERM and SIGINT end a step that takes minutes within a second; wha
         plabd.signal(signal);
         CHECK(plabd.wait(Milliseconds(5000)) == 128 + signal);
         CHECK(std::chrono::duration<double>(Clock::now() - begin).count() < 1);
-        CHECK(has(plabd.errors(), "given up"));
+        CHECK(has(plabd.errors(), "abandoned"));
         CHECK(has(plabd.errors(), "step 0"));
         CHECK(has(read(out), "\"step\": 0"));
         // The recording is whole.

@@ -127,12 +127,12 @@ TEST_CASE("a recorded run with swaps is the same run again, for one and for two 
     {
         const Outcome again = plabd({"--replay", file, "--verify", "--threads", threads});
         CHECK_MESSAGE(again.code == 0, again.output, again.errors);
-        CHECK(has(again.output, "verified: 1440 state hashes are the same"));
+        CHECK(has(again.output, "verified: 1440 state hashes are identical"));
         CHECK(has(again.output, "3 requests"));
     }
     const Outcome late = plabd({"--replay", file, "--verify", "--from", "1000"});
     CHECK_MESSAGE(late.code == 0, late.output, late.errors);
-    CHECK(has(late.output, "verified: 480 state hashes are the same"));
+    CHECK(has(late.output, "verified: 480 state hashes are identical"));
 
     // The numbers in the file are the server's own, to the last digit.
     const auto json = nlohmann::json::parse(std::ifstream(end));
@@ -239,7 +239,7 @@ TEST_CASE("killed at any moment: what is older than 20 ms is in the file, and is
         CHECK(hashes.back() < 20 + kStep + kHeldUp);
         const Outcome again = plabd({"--replay", saved, "--verify"});
         CHECK_MESSAGE(again.code == 0, again.output, again.errors);
-        CHECK(has(again.output, "state hashes are the same"));
+        CHECK(has(again.output, "state hashes are identical"));
         std::filesystem::remove(file), std::filesystem::remove(saved);
     }
     std::sort(frames.begin(), frames.end()), std::sort(hashes.begin(), hashes.end());

@@ -75,7 +75,7 @@ TEST_CASE("a recording of format 2 is read, and is the same run again")
     {
         const Outcome again = verify(kGolden, {"--threads", threads});
         CHECK_MESSAGE(again.code == 0, again.output, again.errors);
-        CHECK_MESSAGE(has(again.output, "1 run, 180 steps made again, 2 requests\nverified: 180 state hashes are the same"), again.output);
+        CHECK_MESSAGE(has(again.output, "1 run, 180 steps replayed, 2 requests\nverified: 180 state hashes are identical"), again.output);
     }
     CHECK(has(verify(kGolden, {"--from", "130"}).output, "verified: 60 state hashes"));
     const Outcome info = run({program("plabctl"), "info", kGolden, "--json"});
@@ -104,8 +104,8 @@ TEST_CASE("a recording of a newer or of an unknown format is refused by every re
         CHECK_MESSAGE(has(refused.errors, why), command[0], " ", command[1], ": ", refused.errors);
     }
     for (const std::string unknown : {"0", "1.5", "one", "-1"})
-        CHECK(has(plabd({"--replay", with_format(unknown)}).errors, "is of the unknown format '" + unknown + "'"));
-    CHECK(has(plabd({"--replay", with_format("")}).errors, "does not say of which format it is"));
+        CHECK(has(plabd({"--replay", with_format(unknown)}).errors, "has the unknown format '" + unknown + "'"));
+    CHECK(has(plabd({"--replay", with_format("")}).errors, "does not state its format"));
     CHECK(plabd({"--replay", with_format("2")}).code == 0);
 }
 
@@ -163,9 +163,9 @@ TEST_CASE("one bit of a hash in the file, with and without a state beside it")
     };
     const Outcome again = verify(edited("bit.mcap", {flip, nullptr}));
     CHECK(again.code == 1);
-    CHECK_MESSAGE(has(again.output, "DIFFERENT after 99 steps that are the same\nrun 1, step 100: recorded hash "), again.output);
+    CHECK_MESSAGE(has(again.output, "DIFFERENT after 99 identical steps\nrun 1, step 100: recorded hash "), again.output);
     CHECK_MESSAGE(has(again.output, "in the recorded frame of that step:\n  high.position: recorded 0.13589839780291846 "), again.output);
-    CHECK_MESSAGE(has(again.output, "the snapshot of step 120 is the same again"), again.output);
+    CHECK_MESSAGE(has(again.output, "the snapshot of step 120 is identical again"), again.output);
     // A hash alone, behind the last snapshot.
     const auto alone = [](const std::string& topic, recording::Bytes& data)
     {
@@ -180,12 +180,13 @@ TEST_CASE("one bit of a hash in the file, with and without a state beside it")
     const Outcome nobody = verify(edited("bit.mcap", {alone, nullptr}));
     CHECK(nobody.code == 1);
     CHECK_MESSAGE(has(nobody.output, "run 1, step 141: recorded hash "), nobody.output);
-    CHECK_MESSAGE(has(nobody.output, "the recorded frame of step 144 is the same: what differs is not in frames"), nobody.output);
+    CHECK_MESSAGE(has(nobody.output, "the recorded frame of step 144 is identical: the difference is in data that frames do not contain"),
+                  nobody.output);
     // And where nothing is recorded behind it.
     const auto last = [&](const std::string& topic, recording::Bytes& data) { return topic != "plab/states" && alone(topic, data); };
     const Outcome blind = verify(edited("bit.mcap", {last, nullptr}));
     CHECK(blind.code == 1);
-    CHECK_MESSAGE(has(blind.output, "it cannot be told what differs; record each step (without --record-states)"), blind.output);
+    CHECK_MESSAGE(has(blind.output, "it is not known what differs; record every step (without --record-states)"), blind.output);
 }
 
 TEST_CASE("a journal that has a gap, or is not there, is named as the cause")
@@ -194,7 +195,7 @@ TEST_CASE("a journal that has a gap, or is not there, is named as the cause")
     const Outcome gap = verify(edited("gap.mcap", without("plab/journal", 1, count)));
     CHECK(gap.code == 1);
     CHECK_MESSAGE(has(gap.output, "the cause may be: the journal has a gap: entry 1 is missing, before step 90 of run 1"), gap.output);
-    CHECK_MESSAGE(has(gap.output, "until then 1 more changes of the scene took effect than the journal tells of"), gap.output);
+    CHECK_MESSAGE(has(gap.output, "until then 1 more changes of the scene took effect than the journal contains"), gap.output);
     Edits none = without("plab/journal", -1, count);
     none.about = [](recording::Pairs& about) { about["topics"] = "plab/states plab/hashes plab/snapshots plab/objects"; };
     const Outcome absent = verify(edited("none.mcap", none));
@@ -204,7 +205,7 @@ TEST_CASE("a journal that has a gap, or is not there, is named as the cause")
     none.about = [](recording::Pairs& about) { about["topics"] = "plab/states plab/hashes plab/journal"; };
     const Outcome nowhere = verify(edited("none.mcap", none));
     CHECK(nowhere.code == 1);
-    CHECK_MESSAGE(has(nowhere.errors, "no snapshot to begin from: it was made without plab/snapshots"), nowhere.errors);
+    CHECK_MESSAGE(has(nowhere.errors, "no snapshot to start from: it was made without plab/snapshots"), nowhere.errors);
 }
 
 TEST_CASE("who verifies nothing is told why, and does not read that something was verified")
@@ -231,19 +232,19 @@ TEST_CASE("who verifies nothing is told why, and does not read that something wa
     CHECK(has(verify(edited("none.mcap", none)).errors, "nothing was verified: the recording was made without plab/hashes"));
 }
 
-TEST_CASE("a recording of another build is replayed with a warning before, one of the same without")
+TEST_CASE("a recording of a different build is replayed with a warning before, one of the same without")
 {
     const std::string file = scratch_file("own.mcap"), scene = std::string(PLAB_SOURCE_DIR) + "/tests/daemon/golden/scene.xml";
     REQUIRE(plabd({scene, "--no-bus", "--until", "0.1", "--record", file, "--overwrite"}).code == 0);
     const Outcome same = verify(file);
     CHECK(same.code == 0);
-    CHECK(!has(same.errors, "another build"));
+    CHECK(!has(same.errors, "a different build"));
     const std::string other = scratch_file("other.mcap");
     REQUIRE(copy_recording(file, other, {nullptr, [](recording::Pairs& about) { about["build"] = "plab 0.1.9"; }}));
-    CHECK(has(verify(other).errors, "recorded by another build: digits may differ\n  recorded: plab 0.1.9\n"));
+    CHECK(has(verify(other).errors, "recorded by a different build: digits may differ\n  recorded: plab 0.1.9\n"));
     // Recorded from the bus: its snapshots tell.
     REQUIRE(copy_recording(file, other, {nullptr, [](recording::Pairs& about) { about.erase("build"); }}));
-    CHECK(!has(verify(other).errors, "another build"));
+    CHECK(!has(verify(other).errors, "a different build"));
     // What is told of the build names no place.
     auto reader = recording::Reader::open(file);
     REQUIRE(reader);
@@ -270,7 +271,7 @@ TEST_CASE("what a replay or a shadow has no use for is refused")
         CHECK_MESSAGE(refused.code == 2, more[0], refused.errors);
         CHECK_MESSAGE(has(refused.errors, more[0]), refused.errors);
     }
-    CHECK(has(plabd({"--replay", kGolden, "--swap", "5:a=b"}).errors, "what is asked stands in the recording"));
+    CHECK(has(plabd({"--replay", kGolden, "--swap", "5:a=b"}).errors, "the recording contains the requests"));
     CHECK(plabd({"scene.xml", "--record-compression", "lz4"}).code == 2);
 }
 
@@ -279,7 +280,8 @@ TEST_CASE("a recording that cannot be replayed is announced as one")
     const std::string file = scratch_file("few.mcap"), scene = std::string(PLAB_SOURCE_DIR) + "/tests/daemon/golden/scene.xml";
     const Outcome few = plabd({scene, "--no-bus", "--until", "0.1", "--record", file, "--overwrite", "--record-topics", "plab/states"});
     CHECK(few.code == 0);
-    CHECK_MESSAGE(has(few.errors, "cannot be replayed: --record-topics is without plab/snapshots, plab/journal, plab/hashes"), few.errors);
+    CHECK_MESSAGE(has(few.errors, "cannot be replayed: --record-topics does not include plab/snapshots, plab/journal, plab/hashes"),
+                  few.errors);
     const Outcome all = plabd({scene, "--no-bus", "--until", "0.1", "--record", file, "--overwrite", "--record-topics",
                                "plab/states,plab/snapshots,plab/journal,plab/hashes"});
     CHECK(!has(all.errors, "cannot be replayed"));
@@ -302,7 +304,7 @@ TEST_CASE("interrupted is not verified: it says how far it came, and ends with 1
         CHECK(!has(text, "verified: "));
         CHECK_MESSAGE(has(text, signal == SIGINT ? "interrupted by SIGINT after step " : "interrupted by SIGTERM after step "), text);
         CHECK(has(text, "of run 1: NOT VERIFIED; "));
-        CHECK(has(text, " state hashes were the same until then"));
+        CHECK(has(text, " state hashes were identical until then"));
         CHECK(!std::filesystem::exists(out));
     }
 }

@@ -1,8 +1,8 @@
-/// Tables of what the algorithms of the ladder of solvers reach on a problem, and how a row of them is checked.
+/// Tables of the accuracy that the solver algorithms achieve on a problem, and the check of one row.
 ///
-/// The bound is twice what is reached. Where the order says how the error comes about (order > 0), less than half of what the table
-/// says fails as well: a algorithm that has become better shall not go unnoticed. Where error control, an iteration's end or rounding
-/// decides (order 0) there is no least error.
+/// The bound is twice the achieved error. Where the order determines the error (order > 0), an error below half of the tabulated
+/// one fails as well, so that an improved algorithm does not go unnoticed. Where error control, the end of an iteration or
+/// rounding determines the error (order 0), there is no lower bound.
 #pragma once
 
 #include "reference/motion.h"
@@ -13,9 +13,9 @@ namespace plab::test
 struct AlgorithmRow
 {
     SolverAlgorithm algorithm;
-    int steps = 0;       ///< in a second or in a period, as the problem counts them
-    double reached = 0;  ///< the error at that step
-    double order = 0;    ///< observed between that step and half of it; 0: none
+    int steps = 0;       ///< steps per second or per period, as the problem defines
+    double reached = 0;  ///< the error with that many steps
+    double order = 0;    ///< observed between that step length and half of it; 0: not checked
 };
 
 inline std::string name_of(const SolverAlgorithm& algorithm)
@@ -40,7 +40,7 @@ void check_algorithm(const AlgorithmRow& row, const Error& error)
     CHECK(order == doctest::Approx(row.order).epsilon(0.1));
 }
 
-/// `algorithm` does what `other` does, to the last bit: what falls back to another method, or chooses it.
+/// `algorithm` gives the same result as `other` to the last bit: it falls back to it, or chooses it.
 template <class Error>
 void check_same(const SolverAlgorithm& algorithm, const SolverAlgorithm& other, int steps, const Error& error)
 {
@@ -50,7 +50,7 @@ void check_same(const SolverAlgorithm& algorithm, const SolverAlgorithm& other, 
     CHECK(error(algorithm, steps) == error(other, steps));
 }
 
-/// Every solver, for problems that ask the same of all of them.
+/// All solvers, for problems that set the same requirement for each.
 inline const SolverAlgorithm kEverySolver[] = {
     {"SemiImplicitEuler"}, {"StoermerVerlet"}, {"RungeKutta4"},      {"RotationSplitting", "order=\"2\""},
     {"RotationSplitting"}, {"Exact"},          {"ImplicitMidpoint"}, {"Exponential"},

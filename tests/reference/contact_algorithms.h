@@ -1,7 +1,7 @@
-/// Every way to answer a contact, and tables that say how far off each may be.
+/// All combinations of algorithms that can answer a contact, and tables of the error bounds for each.
 ///
-/// A line of a table is for a set of algorithms; the first line that fits a algorithm counts. Each algorithm needs a line and each line a
-/// algorithm, so that whoever adds a algorithm has to state its bound.
+/// A line of a table covers a set of algorithms; the first line that matches an algorithm applies. Each algorithm must match a
+/// line and each line an algorithm, so whoever adds an algorithm must state its bound.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -17,7 +17,7 @@
 namespace plab::test
 {
 
-/// Who finds the time, who answers, and for rows by which manager.
+/// The resolution, the response and, for responses by rows, the manager.
 struct Algorithm
 {
     const char* resolution;
@@ -34,8 +34,9 @@ struct Algorithm
     std::string name() const { return std::string(resolution) + " + " + law(); }
 };
 
-/// Resolution x response x manager: all that hosts take (unit test contact_rules says what they refuse). Springs look for themselves
-/// when they touch, so no resolution changes what they do. Response/None answers nothing: sensor().
+/// Resolution x response x manager: all combinations that the host accepts (the unit test contact_rules lists those it refuses).
+/// Spring responses query contacts themselves while bodies touch, so no resolution changes their results. Response/None answers
+/// nothing: sensor().
 inline std::vector<Algorithm> every_algorithm()
 {
     std::vector<Algorithm> out;
@@ -49,8 +50,8 @@ inline std::vector<Algorithm> every_algorithm()
     return out;
 }
 
-/// Those for things that stay in touch. Left out are resolutions that locate, with managers that sweep: a second of C16 (Bisection,
-/// SequentialImpulse) did not end within a minute.
+/// The combinations for persistent contacts. Left out are resolutions that locate events together with managers that sweep: one
+/// second of C16 (Bisection, SequentialImpulse) did not end within a minute.
 inline std::vector<Algorithm> standing_algorithms()
 {
     std::vector<Algorithm> out = every_algorithm();
@@ -66,24 +67,25 @@ inline std::string contact(const std::string& between, const Algorithm& algorith
            text(friction) + "\"" + (algorithm.rows() ? std::string(" response.manager=\"Manager/") + algorithm.manager + "\"" : "") + " " +
            more + "/>";
 }
-/// `more` of contact(): what springs need beside what all take.
+/// The argument `more` of contact(): additional parameters of spring responses.
 inline std::string stiffness(const Algorithm& algorithm, double linear, double hertz, const std::string& more = "")
 {
     if (!algorithm.springs()) return "";
     return "response.stiffness=\"" + text(std::string_view(algorithm.response) == "Penalty" ? linear : hertz) + "\" " + more;
 }
 
-/// Restitution where nothing is to bounce. HuntCrossley creeps back in thousands of pieces where little comes back: .5 is enough for what
-/// only has to settle.
+/// The restitution where nothing is to bounce. With little restitution, HuntCrossley separates so slowly that it takes thousands
+/// of pieces; .5 is sufficient where bodies only need to settle.
 inline double plastic(const Algorithm& algorithm) { return std::string_view(algorithm.response) == "HuntCrossley" ? 0.5 : 0; }
 
-/// Most, and least, of N figures. What a algorithm does badly has a least: less than that is news.
+/// Upper and lower bounds of N measured values. An error known to be large has a lower bound as well: a smaller one means that
+/// the algorithm has changed.
 template <std::size_t N>
 struct Bound
 {
     /// "located", "certified", "halved" (by bisections), "at ends" (None, Speculative), "*", or a resolution.
     const char* when;
-    /// "*", "springs", or how a law begins: "Impulse", "Rows", "Rows/SoftStep", "Penalty".
+    /// "*", "springs", or the beginning of a law's name: "Impulse", "Rows", "Rows/SoftStep", "Penalty".
     const char* who;
     std::array<double, N> most;
     std::array<double, N> least = {};
@@ -100,7 +102,7 @@ struct Bound
     }
 };
 
-/// `measure(algorithm)` gives the figures of each of `algorithms`.
+/// `measure(algorithm)` returns the measured values for each of `algorithms`.
 template <std::size_t N, std::size_t Lines, class Measure>
 void check_algorithms(const std::vector<Algorithm>& algorithms, const Bound<N> (&table)[Lines], const Measure& measure)
 {

@@ -1,4 +1,4 @@
-// Responses of different kinds exchanged under standing and flying bodies: H1 to H4 of the catalogue of reference problems.
+// Responses of different kinds exchanged under resting and flying bodies: H1 to H4 of the catalogue of reference problems.
 #include "support/scene.h"
 
 using namespace plab;
@@ -26,7 +26,7 @@ std::string box(const std::string& response, const std::string& more = "position
            response + " response.friction=\"0.5\"/>";
 }
 
-/// Four corners of 2500 N/m are 1e4 N/m.
+/// Four corners with 2500 N/m each have a total stiffness of 1e4 N/m.
 const char* const kSpring =
     "Penalty\" response.stiffness=\"2500\" response.damping_ratio=\"0.7\" response.tangential_damping_ratio=\"1\" "
     "response.restitution=\"1\"";
@@ -49,7 +49,7 @@ bool converted(const Reply& reply)
     return false;
 }
 
-/// The hard algorithms that this build has.
+/// The non-spring algorithms that this build contains.
 std::vector<std::string> hard_types()
 {
     std::vector<std::string> types{"Response/Impulse"};
@@ -172,7 +172,7 @@ TEST_CASE("H4: a hard box becomes one on springs at their equilibrium")
     for (const std::string& hard : hard_types())
     {
         CAPTURE(hard);
-        // Gravity leans, so that the stiction springs have something to hold.
+        // Inclined gravity, so that the stiction springs carry a load.
         std::string scene = box(hard.substr(9) + "\"");
         scene.replace(scene.find("between=\"a\"/>"), 13, "between=\"a\" acceleration=\"2 0 -9.81\"/>");
         Scene s(scene, "dt=\"1/60\"");

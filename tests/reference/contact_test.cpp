@@ -145,7 +145,7 @@ TEST_CASE("C5: a ball that loses speed in each bounce comes to rest at the sum o
 
 TEST_CASE("a ball that rolls when its bouncing ends comes to rest on the ground and rolls on")
 {
-    // The turning of its lowest point is no acceleration of its gap.
+    // The rotation of its lowest point does not accelerate its gap.
     Scene s(std::string(kGround) + ball("a", "mass=\"0.5\" position=\"0 0 0.6\" linear_velocity=\"1.5 0 0\"") +
                 "<component id=\"g\" type=\"Field/Gravity\" between=\"a\"/>" + contact("a ground", "LocalBisection", "0.6", "0.35"),
             "dt=\"1/240\"");
@@ -160,7 +160,8 @@ TEST_CASE("a ball that rolls when its bouncing ends comes to rest on the ground 
     CHECK(std::fabs(s.vec("a", "position").z - 0.1) < 1e-12);
 }
 
-// Along z, where the wall's normal is exact: spheres off one line would part exponentially, as they should.
+// Along z, where the wall's normal is exact: deviations of the spheres from a straight line would grow exponentially, as they
+// should.
 TEST_CASE("C6: Galperin's balls count the digits of pi")
 {
     int k = 0;

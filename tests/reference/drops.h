@@ -1,4 +1,4 @@
-/// Bodies that tumble onto a plane, with contacts answered at the ends of steps: what may happen to their energy.
+/// Bodies that tumble onto a plane, with contacts answered at the ends of steps: bounds on their energy.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace plab::test
 {
 
-/// A way of answering contacts: Resolution, and Manager/X or Response/Impulse.
+/// A combination of algorithms that answers contacts: a resolution, and Manager/X or Response/Impulse.
 struct Method
 {
     const char* resolution;
@@ -19,7 +19,7 @@ struct Method
 struct Drop
 {
     Vec3 half{0.5, 0.02, 0.02};  ///< m, of a box of 1 kg
-    Vec3 inertia;                ///< kg m^2; 0: the box's
+    Vec3 inertia;                ///< kg m^2; 0: that of the box
     Vec3 axis{0, 0, 1};
     double angle = 0;
     Vec3 velocity, spin;
@@ -43,7 +43,7 @@ inline std::string scene_of(const Drop& d, const Method& method)
                     : contact("f ground", method.manager, d.friction, 0, method.resolution));
 }
 
-/// J, with gravity's.
+/// J, including gravitational energy.
 inline double mechanical_energy(const Scene& s)
 {
     const Bodies& bodies = s.simulation().world().host().bodies;
@@ -56,8 +56,8 @@ inline double mechanical_energy(const Scene& s)
 struct Fall
 {
     double start = 0, highest = 0, last = 0;  ///< J
-    double lifted = 0;                        ///< J, largest rise in a step
-    double gained = 0;                        ///< J: most that it had above the start and what the contacts say that they lifted
+    double lifted = 0;                        ///< J, largest gain in one step
+    double gained = 0;                        ///< J: largest energy above the start plus what the contacts report as lifted
     double gain() const { return highest / start; }
 };
 
@@ -95,7 +95,7 @@ inline constexpr Method kMethods[] = {{"None", "Direct"},         {"None", "Sequ
                                       {"None", "Impulse"},        {"Speculative", "Direct"},     {"Speculative", "SequentialImpulse"},
                                       {"Speculative", "SoftStep"}};
 
-/// A body that falls and tumbles: inertia ratios up to 1e4, h from 1/30 to 1/1000, w h up to 2, every other one with friction.
+/// A falling, tumbling body: inertia ratios up to 1e4, h from 1/30 to 1/1000, w h up to 2, every other one with friction.
 inline Drop any_drop(std::uint64_t& random)
 {
     Drop d;
@@ -111,7 +111,7 @@ inline Drop any_drop(std::uint64_t& random)
     return d;
 }
 
-/// J: what may be gained in a fall where it is not exact: the work of gravity on the way of a step, a few times.
+/// J: allowed energy gain in a fall where it is not exact: some multiples of the work of gravity in one step.
 inline double allowance(const Drop& d) { return 10 * std::pow(9.81 * d.h, 2); }
 
 inline void check_drops(std::uint64_t random, int count)
@@ -127,7 +127,7 @@ inline void check_drops(std::uint64_t random, int count)
             CAPTURE(std::string(method.manager));
             CAPTURE(d.h);
             CAPTURE(f.start);
-            // SoftStep has the contacts of the step's begin in its sub-steps.
+            // SoftStep uses the contacts at the start of the step in its sub-steps.
             const bool exact = method.manager != std::string("SoftStep");
             CHECK(f.gained <= 1e-9 * f.start + (exact ? 0.0 : allowance(d)));
         }

@@ -1,4 +1,6 @@
-// A thousand bodies that tumble onto a plane, each answered in every way at the ends of steps: none gains energy.
+// A thousand bodies that tumble onto a plane, with every algorithm that answers contacts at the ends of steps: none gains
+// energy.
+// energy.
 #include "drops.h"
 
 using namespace plab::test;

@@ -1,4 +1,4 @@
-// Energy where contacts are answered at the ends of steps: bodies that tumble onto a plane, and spinning ones that lie on it.
+// Energy where contacts are answered at the ends of steps: bodies that tumble onto a plane, and spinning bodies that rest on it.
 #include "drops.h"
 
 using namespace plab;
@@ -9,7 +9,7 @@ namespace
 
 const char* const kSpin = "30 35 20";
 
-/// A ball of 0.1 m and 1 kg with three different moments, that lies on the ground and spins.
+/// A ball of 0.1 m and 1 kg with three different moments of inertia, which rests on the ground and spins.
 std::string spinning_ball(const Method& method, double friction)
 {
     const bool impulse = method.manager == std::string("Impulse");

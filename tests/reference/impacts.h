@@ -40,7 +40,7 @@ inline std::string contact(const std::string& between, const std::string& resolu
     return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + between + "\" resolution=\"Resolution/" + resolution +
            "\" response=\"Response/Impulse\" response.restitution=\"" + restitution + "\" " + more + "/>";
 }
-/// Every resolution with every response by impulses that takes it; all algorithms: contact_algorithms.h.
+/// Every resolution with every impulse response that accepts it; for all algorithms see contact_algorithms.h.
 inline constexpr Algorithm kAlgorithms[] = {
     {"None", "Impulse"},           {"Bisection", "Impulse"},
     {"LocalBisection", "Impulse"}, {"ConservativeAdvancement", "Impulse"},

@@ -1,5 +1,6 @@
-// Single impacts, on every algorithm (contact_algorithms.h). C1, C2, C3, C5 as in the catalogue. Solvers play no part: C1 to C3 are free of
-// forces, and C5 flies on the default one, which is exact for constant ones (C4 has the others, impacts_flight_test.cpp).
+// Single impacts, with every algorithm (contact_algorithms.h). C1, C2, C3, C5 as in the catalogue. The solver does not matter:
+// C1 to C3 are free of forces, and C5 uses the default one, which is exact for constant forces (for C4 with the others see
+// impacts_flight_test.cpp).
 #include <algorithm>
 #include <numbers>
 
@@ -10,7 +11,7 @@ using namespace plab::test;
 
 namespace
 {
-/// Speeds after a head-on impact of 1 kg with `heavy`, e: how far off, and of the second ball as a share.
+/// Errors of the velocities after a head-on impact of 1 kg with `heavy` and restitution e; that of the second ball is relative.
 std::array<double, 2> head_on(const Algorithm& algorithm, double heavy, double e)
 {
     Scene s(sphere("a", 0.1, at({-0.3, 0, 0}, {1, 0, 0})) + sphere("b", 0.1, at({0.3, 0, 0}, {}, heavy)) +
@@ -26,8 +27,8 @@ std::array<double, 2> head_on(const Algorithm& algorithm, double heavy, double e
 TEST_CASE("C1: head-on spheres, mass ratios to 1e9, to rounding")
 {
     // v1 and v2 for e = .5 and 1; v1 and v2 for e = 0.
-    // Springs: pieces of the contact. SoftStep halves the share of a rebound for which there is energy 24 times. e = 0 is .01 for
-    // HuntCrossley, whose loss would have no end.
+    // Springs: errors due to the pieces of a contact. SoftStep determines the share of a rebound allowed by the energy with 24
+    // bisections. HuntCrossley treats e = 0 as .01, as its damping would otherwise be infinite.
     constexpr Bound<4> table[] = {
         {"at ends", "Rows/SoftStep", {1.2e-7, 6e-8, 1e-15, 1e-15}},
         {"*", "Impulse", {1e-15, 1e-15, 1e-15, 1e-15}},
@@ -87,14 +88,14 @@ Oblique oblique(const Algorithm& algorithm, double slip)
 
 TEST_CASE("C2: a sphere meets a wall at an angle: stick and slip, the same in all directions")
 {
-    // None + Impulse: overlap is up to v h, the point in its middle is nearer to the centre by half of that.
+    // None + Impulse: the overlap is up to v h, and the contact point in its middle is nearer to the centre by half of that.
     constexpr double share = 0.5 * 4 / 60 / 0.1;
     // Stick: normal, along, spin; slip: the same; spread over azimuths.
     constexpr Bound<7> table[] = {
         {"None", "Impulse", {1e-13, share * 3, share * 1.5, 1e-13, share * 12, share * 1.5, 1e-14}, {0, 0, 1e-3, 0, 0, 1e-3, 0}},
-        // 1.2 = mu (u_n after) m is missing of the friction: this manager gives back speed without it.
+        // The friction lacks 1.2 = mu (u_n after) m: this manager applies restitution without friction.
         {"None", "Rows/SoftStep", {1e-13, 1e-13, 1e-13, 1e-13, 0.961, 0.445, 1e-14}, {0, 0, 0, 0, 0.959, 0.444, 0}},
-        // And contacts across a gap act in its middle, at an arm that is too long.
+        // A contact across a gap acts in the middle of the gap, with a lever arm that is too long.
         {"Speculative", "Rows/SoftStep", {1e-13, 0.32, 0.15, 1e-13, 0.961, 0.27, 1e-14}, {0, 0.3, 0.14, 0, 0.959, 0.25, 0}},
         {"halved", "*", {2e-13, 2e-13, 2e-13, 2e-13, 2e-13, 2e-13, 1e-14}},
         {"*", "Impulse", {1e-13, 1e-13, 1e-13, 1e-13, 1e-13, 1e-13, 1e-14}},
@@ -114,7 +115,7 @@ TEST_CASE("C2: a sphere meets a wall at an angle: stick and slip, the same in al
 
 namespace
 {
-/// Speed and spin after the end of a rod met an edge.
+/// Linear and angular velocity after the end of a rod has hit an edge.
 std::array<double, 2> rod_on_edge(const Algorithm& algorithm, double e)
 {
     // J = (1 + e) v m / (1 + 12 (a/L)^2), arm a: 1/4 of (1 + e) v m at a = L/2, where the edge has 1 nm to hit.
@@ -161,7 +162,8 @@ namespace
 {
 constexpr double kStiff = 1e8;
 
-/// A ball of 1 kg falls 1 m and bounces out: gap, speed and creep afterwards; how late its last bounce or rest is told; Zeno's end told.
+/// A ball of 1 kg falls 1 m and bounces until it rests. Measures: gap, speed and creep afterwards; the delay with which its last
+/// bounce or rest is reported; the event that ends Zeno's sequence.
 std::array<double, 5> bounce_out(const Algorithm& algorithm, double e, double rest)
 {
     Scene s(kGround + sphere("a", 0.1, at({0, 0, 1.1})) + gravity("a") +
@@ -170,7 +172,7 @@ std::array<double, 5> bounce_out(const Algorithm& algorithm, double e, double re
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.keep_events = true;
     s.run(rest + 2);
-    // Springs give way: m g / k, (m g / k)^(2/3).
+    // Springs yield: m g / k, (m g / k)^(2/3).
     const double deep = !algorithm.springs() ? 0 : algorithm.law() == "Penalty" ? 9.81 / kStiff : std::pow(9.81 / 1e10, 2. / 3);
     const double gap = s.vec("a", "position").z - 0.1, speed = length(s.vec("a", "linear_velocity"));
     double last = 0;
@@ -186,11 +188,12 @@ std::array<double, 5> bounce_out(const Algorithm& algorithm, double e, double re
 TEST_CASE("C5: bounces that lose speed end at the sum of their series, on each algorithm as well as it can tell")
 {
     // h = 1 m: t = sqrt(2 h / g) (1 + e) / (1 - e).
-    // Where nobody locates them, all bounces that last longer than a step are up to 2 h late; the fourth figure is in these.
+    // If bounces are not located, all bounces that last longer than a step are up to 2 h late; the fourth value is in units of
+    // that.
     constexpr Bound<5> table[] = {
         {"certified", "Rows/SoftStep", {3.5e-5, 1e-15, 1e-15, 1e-13, 1}, {0, 0, 0, 0, 1}},
         {"certified", "*", {3e-13, 2e-13, 4e-13, 1e-13, 1}, {0, 0, 0, 0, 1}},
-        // What `rest_height` leaves out: sqrt(8 rest_height / g) / (1 - e) s.
+        // Suppressed by `rest_height`: sqrt(8 rest_height / g) / (1 - e) s.
         {"halved", "Rows/SoftStep", {3.5e-5, 1e-15, 1e-15, 1e-6, 0}},
         {"halved", "*", {3e-13, 2e-13, 4e-13, 1e-6, 0}},
         {"at ends", "Impulse", {1e-14, 1e-14, 1e-14, 1, 0}},

@@ -1,4 +1,5 @@
-// Many bodies of several shapes in a closed room, long steps: nobody gets out, nobody sinks, energy stays.
+// Many bodies of several shapes in a closed room, with long steps: no body leaves the room, none sinks in, and energy is
+// conserved.
 #include <algorithm>
 
 #include "impacts.h"
@@ -28,7 +29,7 @@ std::string room(int n, bool boxes, double speed, double spin, std::uint64_t see
     for (int i = 0; i < n; ++i)
     {
         const std::string id = "b" + std::to_string(i);
-        // Places of a grid of 4 x 4 x 4, so that nobody starts in anybody.
+        // On a grid of 4 x 4 x 4, so that no two bodies overlap at the start.
         const Vec3 p{-0.75 + 0.5 * (i % 4), -0.75 + 0.5 * (i / 4 % 4), -0.75 + 0.5 * (i / 16)};
         const double vx = uniform(-speed, speed), vy = uniform(-speed, speed), vz = uniform(-speed, speed);
         const double wx = uniform(-spin, spin), wy = uniform(-spin, spin), wz = uniform(-spin, spin);
@@ -96,7 +97,7 @@ TEST_CASE("boxes that spin among balls: nobody gets out or sinks, nothing is mad
         CAPTURE(resolution);
         Scene s(room(30, true, 3, 20, 5, resolution, "1"), "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
-        // Steps of gap / closing speed are many where a corner spins past a wall.
+        // Steps of gap / closing speed are numerous where a corner spins past a wall.
         s.warnings_expected = std::string(resolution) == "ConservativeAdvancement";
         const Outcome o = play(s, 30, 2);
         CHECK(o.worst_energy < 1e-9);

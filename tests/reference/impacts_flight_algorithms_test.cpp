@@ -11,7 +11,8 @@ namespace
 {
 constexpr double kG = 9.81, kLinear = 1e7, kHertz = 1e9;
 
-/// s: how long the contact of 10 kg lasts that fell 5 m. Linear: z'' = -g - k z / m, z' = -v at z = 0. Hertz: by quadrature, 30 digits.
+/// s: duration of the contact of 10 kg that have fallen 5 m. Linear: z'' = -g - k z / m, z' = -v at z = 0. Hertz: by quadrature,
+/// 30 digits.
 double contact_time(const Algorithm& algorithm)
 {
     if (!algorithm.springs()) return 0;
@@ -20,7 +21,8 @@ double contact_time(const Algorithm& algorithm)
     return 2 / w * (std::numbers::pi - std::atan(v * w / kG));
 }
 
-/// C4 with five balls: the largest error of the energy as a share, and of the first ball's height while it flies, m.
+/// C4 with five balls: the largest relative error of the energy, and the largest error of the first ball's height while it
+/// flies, m.
 std::array<double, 2> bouncing(const Algorithm& algorithm, double h, double until, const SolverAlgorithm& solved_by = {"Automatic"})
 {
     std::string balls, all;
@@ -51,12 +53,13 @@ std::array<double, 2> bouncing(const Algorithm& algorithm, double h, double unti
 
 TEST_CASE("C4: elastic balls by every algorithm: energy, and height over 20 s at 1/100 and over 10 s at 1/400")
 {
-    // Each of ten bounces is up to 2 h late where nobody locates it, at 9.9 m/s: 198 h in 20 s, 99 h in 10 s.
+    // If it is not located, each of ten bounces is up to 2 h late, at 9.9 m/s: 198 h in 20 s, 99 h in 10 s.
     constexpr double late = 198 * 0.01, less = 99 * 0.0025;
     constexpr Bound<3> table[] = {
         {"located", "*", {1.3e-14, 2e-13, 4.2e-13}},
         {"None", "Rows/SoftStep", {2.5e-4, late, less}, {2e-5, 0.03, 3e-3}},
-        // Restitution is given back at the end of the step in which a gap may close, ahead of the ground: energy goes, and time with it.
+        // Restitution is applied at the end of the step in which a gap may close, above the ground: energy is lost, and the
+        // timing changes.
         {"Speculative", "Rows/SoftStep", {0.36, 9.9, 0.9}, {0.08, 2, 0.1}},
         {"*", "Penalty", {1.2e-9, 5.2e-8, 1.1e-8}},
         {"*", "HuntCrossley", {2.4e-7, 1.4e-5, 3.2e-6}},
@@ -93,7 +96,7 @@ TEST_CASE("C4: elastic balls by every solver, located: exact for all but semi-im
         }
     const Algorithm located{"LocalRoot", "Impulse"};
     const auto coarse = bouncing(located, 0.01, 1.9, {"SemiImplicitEuler"}), fine = bouncing(located, 0.0025, 1.9, {"SemiImplicitEuler"});
-    // Its parabola is g h t / 2 off: 1 % of the height in a fall of 1 s.
+    // Its parabola is wrong by g h t / 2: 1 % of the height in a fall of 1 s.
     CHECK(coarse[0] < 0.037);
     CHECK(coarse[1] < 0.17);
     CHECK(std::fabs(observed_order(coarse[0], fine[0]) / 2 - 1) < 0.01);
@@ -102,8 +105,8 @@ TEST_CASE("C4: elastic balls by every solver, located: exact for all but semi-im
 
 namespace
 {
-/// C9: how far off the small ball's speed is from that after impacts one after the other, as a share. `away`: m, of the big one to the
-/// ground at the start, on its way from rest at 1 m.
+/// C9: relative deviation of the small ball's speed from that after sequential impacts. `away`: m, initial distance of the big
+/// ball from the ground, when it was released from rest at 1 m.
 double cannon(const Algorithm& algorithm, double h, double away, double until)
 {
     const double v0 = std::sqrt(2 * kG * (1 - away)), v = std::sqrt(2 * kG), t1 = (v - v0) / kG, t2 = t1 + 1e-3 / (2 * v);
@@ -121,7 +124,7 @@ double cannon(const Algorithm& algorithm, double h, double away, double until)
 
 TEST_CASE("C9: Galileo's cannon by every algorithm, at 1/60, where the gap closes within a step, and at 1e-5")
 {
-    // Springs push both at once, and answer otherwise.
+    // Springs push both balls at the same time, and give a different result.
     constexpr Bound<2> table[] = {
         {"located", "*", {4e-15, 2e-13}},
         {"at ends", "Rows/SoftStep", {0.5, 7e-5}, {0.05, 0}},

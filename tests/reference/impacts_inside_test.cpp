@@ -1,4 +1,4 @@
-// What passes within a step, grazes, or spins: nothing is missed, and times are right. C10 as in the catalogue.
+// Bodies that pass within a step, graze, or spin: no contact is missed, and times are accurate. C10 as in the catalogue.
 #include <algorithm>
 
 #include "impacts.h"
@@ -82,7 +82,7 @@ TEST_CASE("C10: random shots at a ball that moves: as many hits as the geometry 
         const bool hits = time < 1.0 / 60;
         const auto begins = events_of(s, "contact.begin");
         wrong += begins.size() != (hits ? 1u : 0u);
-        // Times of a grazing hit are known to the square root of rounding only.
+        // Rounding limits the times of grazing impacts to its square root.
         if (hits && begins.size() == 1 && square > 1e-3 * b * b * R * R)
             worst = std::max(worst, std::fabs(begins[0].time - (s.simulation().time() - s.simulation().dt()) - time));
     }
@@ -92,8 +92,8 @@ TEST_CASE("C10: random shots at a ball that moves: as many hits as the geometry 
 
 TEST_CASE("a spinning box hits the ground with a corner, though both ends of the step are clear")
 {
-    // Half extents .5 x .1 x .1, spinning at 40 rad/s about y above the ground: its end reaches .51 m below the centre at
-    // half turns only. Centre at .505: it touches when sin(angle) passes, between two steps.
+    // Half extents .5 x .1 x .1, spinning at 40 rad/s about y above the ground: its end reaches .51 m below the centre at half
+    // turns only. With the centre at .505 it touches between two steps.
     for (const char* resolution : kCertifying)
     {
         CAPTURE(resolution);

@@ -1,10 +1,10 @@
 // The same claims as in impacts_*_test.cpp, at full size.
 //
-// | problem | algorithm                 | bound                                                                                |
-// |---------|----------------------|--------------------------------------------------------------------------------------|
-// | C6      | LocalRoot + Impulse  | 31415 exactly; a step of 0.1 s has 9700 of them, so it may take more than others      |
-// | C10     | LocalRoot, sensor    | 0 wrong in 1e6                                                                       |
-// | D3      | LocalRoot + Impulse  | 216 elastic balls: energy to 1e-12 over the fall and the collapse (2 s), nobody sinks |
+// | problem | algorithm           | bound                                                                                 |
+// |---------|---------------------|---------------------------------------------------------------------------------------|
+// | C6      | LocalRoot + Impulse | 31415 exactly; a step of 0.1 s has 9700 of them, so it may take more than others      |
+// | C10     | LocalRoot, sensor   | 0 wrong in 1e6                                                                        |
+// | D3      | LocalRoot + Impulse | 216 elastic balls: energy to 1e-12 over the fall and the collapse (2 s), nobody sinks |
 #include <algorithm>
 
 #include "impacts.h"

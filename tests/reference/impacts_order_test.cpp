@@ -1,14 +1,14 @@
 // Many impacts: their number, their order and what they leave. C4, C5, C6 and C9 as in the catalogue, with the best algorithm; every
 // algorithm, C8 and C13: impacts_flight_algorithms_test.cpp and impacts_series_algorithms_test.cpp.
 //
-// | problem | algorithm                            | bound                                                                     |
-// |---------|---------------------------------|---------------------------------------------------------------------------|
-// | C4      | LocalRoot                       | energy 1e-12 of E0, heights 1e-9 m over 20 s at h = 0.01                  |
-// | C5      | certifying + Impulse            | rest at the sum of the series to 1e-6 s, gap 1e-12; at most 60 impacts in |
-// |         |                                 | a step for e = .5, .9; 200 for e = .99, whose bounces are cut off in the  |
-// |         |                                 | step in which their sum ends (1023 in all, 90 s)                          |
-// | C6      | LocalRoot                       | 3, 31, 314, 3141 (31415 in impacts_long)                                  |
-// | C9      | LocalRoot + Impulse             | 1e-12 of (3M - m)/(M + m); Penalty 8e-9 of its own equations, half of that  |
+// | problem | algorithm            | bound                                                                      |
+// |---------|----------------------|----------------------------------------------------------------------------|
+// | C4      | LocalRoot            | energy 1e-12 of E0, heights 1e-9 m over 20 s at h = 0.01                   |
+// | C5      | certifying + Impulse | rest at the sum of the series to 1e-6 s, gap 1e-12; at most 60 impacts in  |
+// |         |                      | a step for e = .5, .9; 200 for e = .99, whose bounces are cut off in the   |
+// |         |                      | step in which their sum ends (1023 in all, 90 s)                           |
+// | C6      | LocalRoot            | 3, 31, 314, 3141 (31415 in impacts_long)                                   |
+// | C9      | LocalRoot + Impulse  | 1e-12 of (3M - m)/(M + m); Penalty 8e-9 of its own equations, half of that |
 #include <algorithm>
 
 #include "impacts.h"

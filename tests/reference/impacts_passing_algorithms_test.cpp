@@ -1,4 +1,4 @@
-// What passes within one step, on every algorithm (contact_algorithms.h): C10 of the catalogue.
+// A bullet that passes within one step, with every algorithm (contact_algorithms.h): C10 of the catalogue.
 #include "impacts.h"
 
 using namespace plab;
@@ -6,8 +6,8 @@ using namespace plab::test;
 
 namespace
 {
-/// A bullet of 1 mm at 1000 m/s and paper of 0.1 mm, e = .5, 16.7 m per step: error of the time told, s (1 if none); of the speed after,
-/// as a share; whether it is told that the bullet got through.
+/// A bullet of 1 mm at 1000 m/s and paper of 0.1 mm, e = .5, 16.7 m per step. Measures: error of the reported time, s (1 if none
+/// is reported); relative error of the speed afterwards; whether it is reported that the bullet passed through.
 std::array<double, 3> shoot(const Algorithm& algorithm)
 {
     Scene s(sphere("bullet", 1e-3, at({0, 0, 0}, {1000, 0, 0}, 1e-3)) +
@@ -31,7 +31,7 @@ TEST_CASE("C10: a bullet and paper: certified algorithms at the time, springs to
         {"halved", "*", {1, 1.5, 1}, {1, 1.5, 1}},
         {"None", "springs", {1e-15, 2.2e-9, 0}},
         {"None", "*", {1, 1.5, 1}, {1, 1.5, 1}},
-        // Told at the start of the step in which it is stopped, 1.2335 ms early.
+        // Reported at the start of the step in which it is stopped, 1.2335 ms early.
         {"Speculative", "*", {1.24e-3, 1e-15, 0}, {1.23e-3, 0, 0}},
     };
     check_algorithms(every_algorithm(), table, shoot);

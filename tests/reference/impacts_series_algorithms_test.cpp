@@ -1,4 +1,4 @@
-// Many impacts that hang on one another, on every algorithm (contact_algorithms.h): C6, C8 and C13 of the catalogue.
+// Series of impacts that depend on one another, with every algorithm (contact_algorithms.h): C6, C8 and C13 of the catalogue.
 #include "impacts.h"
 
 using namespace plab;
@@ -6,7 +6,7 @@ using namespace plab::test;
 
 namespace
 {
-/// C6: collisions that are missing or too many, and the change of energy as a share.
+/// C6: number of missing or surplus collisions, and the relative change of energy.
 std::array<double, 2> galperin(const Algorithm& algorithm, int k, double digits)
 {
     const double heavy = std::pow(100.0, k);
@@ -24,7 +24,7 @@ std::array<double, 2> galperin(const Algorithm& algorithm, int k, double digits)
 
 TEST_CASE("C6: Galperin's balls by every algorithm: 3, 31, 314 collisions, and energy")
 {
-    // Speculative: what a gap allows is taken off the approach, and restitution gives back a share of what is left.
+    // Speculative: the speed that closes a gap is subtracted from the approach, and restitution returns a share of the rest.
     constexpr Bound<6> table[] = {
         {"*", "Impulse", {0, 0, 0, 4e-15, 4e-15, 4e-15}},
         {"located", "Rows", {0, 0, 0, 1e-15, 1e-15, 1e-15}},
@@ -47,7 +47,7 @@ TEST_CASE("C6: Galperin's balls by every algorithm: 3, 31, 314 collisions, and e
 
 namespace
 {
-/// C8: speeds after k of 5 balls came in with 1 m/s on the rest, which have `gap` between them.
+/// C8: speeds after k of 5 balls have hit the others with 1 m/s; `gap` is the distance between the others.
 std::array<double, 5> cradle(const Algorithm& algorithm, int k, double gap, std::vector<Event>* reported = nullptr)
 {
     std::string balls, all;
@@ -66,7 +66,7 @@ std::array<double, 5> cradle(const Algorithm& algorithm, int k, double gap, std:
     for (std::size_t i = 0; i < 5; ++i) v[i] = s.vec("b" + std::to_string(i), "linear_velocity").x;
     return v;
 }
-/// k in, k out: the largest error of a speed; and of what momentum and energy were.
+/// k in, k out: the largest error of a speed; and those of momentum and energy.
 std::array<double, 2> cradle_error(const Algorithm& algorithm, double gap)
 {
     std::array<double, 2> worst{};
@@ -99,7 +99,8 @@ std::array<double, 2> touching_law(const Algorithm& algorithm)
 
 namespace
 {
-/// Balls that are fixed springs' ends, m = 1, the first at 1 m/s: x'' by k d^power of each overlap d > 0. Classical Runge-Kutta.
+/// Balls connected by springs that only push, m = 1, the first at 1 m/s: x'' by k d^power of each overlap d > 0. Classical
+/// Runge-Kutta.
 std::array<double, 5> chain_speeds(double k, double power, double gap)
 {
     constexpr double kStep = 2e-8, kEnd = 2e-3;  // s
@@ -156,7 +157,8 @@ TEST_CASE("C8: springs across gaps of 1e-6 m: who stood still is found when it i
 TEST_CASE("C8: Newton's cradle by every algorithm: k in, k out; with gaps of 1e-6 and 1e-9 m")
 {
     // Speeds, momentum and energy; the same for the smaller gap.
-    // Rows at the ends of steps: up to 1e-9 m all that touch share; across a gap of 1e-6 m, which is held without restitution, energy goes.
+    // Rows at the ends of steps: gaps up to 1e-9 m count as touching, so all balls share the impact; across a gap of 1e-6 m,
+    // which is held without restitution, energy is lost.
     constexpr Bound<4> table[] = {
         {"*", "Impulse", {1e-15, 1e-15, 1e-15, 1e-15}},
         {"located", "Rows", {1e-15, 1e-15, 2e-15, 2e-15}},
@@ -175,7 +177,7 @@ TEST_CASE("C8: Newton's cradle by every algorithm: k in, k out; with gaps of 1e-
 
 TEST_CASE("C8: Newton's cradle without gaps: each response keeps to its declared law")
 {
-    // One in: speeds of the first, and of the last, beside the law's. k in: momentum and energy.
+    // One in: speeds of the first and of the last ball, relative to those of the law. k in: momentum and energy.
     constexpr Bound<3> table[] = {
         {"*", "Impulse", {1e-15, 1e-15, 1e-15}},
         {"located", "Rows", {1e-15, 1e-15, 2e-13}},
@@ -197,7 +199,8 @@ TEST_CASE("C8: Newton's cradle without gaps: each response keeps to its declared
 
 namespace
 {
-/// C13: speeds by place after a cue ball met a rack of 15, along its axis; ids run through `rank`. The cue ball's comes last.
+/// C13: speeds by place after a cue ball has hit a rack of 15 along its axis; ids are permuted by `rank`. The cue ball's speed
+/// is the last one.
 std::vector<Vec3> break_rack(const Algorithm& algorithm, const std::vector<int>& rank, double gap)
 {
     std::string balls, all;
@@ -221,7 +224,7 @@ std::vector<Vec3> break_rack(const Algorithm& algorithm, const std::vector<int>&
     return out;
 }
 
-/// What is lost of the mirror's symmetry; what changes with the ids, m/s; what momentum and energy change by, as a share.
+/// Deviation from mirror symmetry; change when the ids are permuted, m/s; relative changes of momentum and energy.
 std::array<double, 4> rack_error(const Algorithm& algorithm, double gap)
 {
     std::vector<int> straight, mixed;
@@ -245,7 +248,8 @@ std::array<double, 4> rack_error(const Algorithm& algorithm, double gap)
 
 TEST_CASE("C13: a rack breaks as symmetric as it stands, whatever the ids: touching, by every algorithm")
 {
-    // Bisections tell touching from not touching by rounding, and answer what comes at one time one after the other: no symmetry.
+    // Bisection distinguishes touching from separated only to rounding, and simultaneous impacts are answered one after the
+    // other: no symmetry.
     constexpr Bound<4> table[] = {
         {"None", "Impulse", {1e-15, 1e-15, 1e-15, 1e-15}},
         {"certified", "Impulse", {6e-15, 6e-15, 1e-15, 1e-15}},

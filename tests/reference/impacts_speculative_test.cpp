@@ -1,8 +1,8 @@
-// Resolution/Speculative: gaps that may close within the step are rows before they close, so nothing is met too late.
+// Resolution/Speculative: gaps that may close within the step become rows before they close, so no impact is answered too late.
 //
 //   problem                                   | bound
 //   ball at 100 m/s, wall of 1 cm, dt 1/60    | never behind the wall; stopped at most a step (1.7 m) short of it
-//   ball that passes 5 m beside the wall      | its course to the last bit, nothing told (nearer than 2 h v: a ghost may hold it up)
+//   ball that passes 5 m beside the wall      | same path to the last bit, no events (nearer than 2 h v: a ghost contact may stop it)
 //   plastic fall on the ground, dt 1/60       | never sinks by more than 1 mm
 #include "support/scene.h"
 
@@ -42,7 +42,7 @@ TEST_CASE("a fast ball does not get behind a thin wall, at any phase of the step
                 s.step();
                 CHECK(s.vec("ball", "position").x < 5 - 0.005 - 0.05 + 1e-3);
             }
-            // It is stopped in the step in which it would meet the wall: up to a step short of it.
+            // It is stopped in the step in which it would hit the wall: up to one step short of it.
             CHECK(s.vec("ball", "position").x > 5 - 0.005 - 0.05 - 100.0 / 60);
             CHECK(s.count("contact.impact") >= 1);
         }

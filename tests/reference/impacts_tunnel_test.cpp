@@ -1,14 +1,16 @@
-// Nothing passes through anything: fast, spinning bodies of several shapes against a wall of 1 mm, a step many times too long.
+// No body tunnels through another: fast, spinning bodies of several shapes against a wall of 1 mm, with steps that are far too
+// long.
 //
-// Truth is found without pLab's geometry: the points of a body (half-width r around them) turn with constant spin, as its inertia
-// is that of a ball; the first time at which the furthest of them is at the wall is sampled and halved in long double. Shots whose
-// closest approach is within 1e-7 m of the wall are left out: they are decided by rounding.
+// The reference does not use pLab's geometry. The points of a body (with half-width r around them) rotate at constant angular
+// velocity, as its inertia is that of a ball; the first time at which the furthest of them reaches the wall is bracketed by
+// sampling and found by bisection in long double. Shots whose closest approach is within 1e-7 m of the wall are excluded, as
+// rounding decides them.
 //
-// | resolution              | bound                                                                             |
-// |-------------------------|-----------------------------------------------------------------------------------|
-// | LocalRoot               | 0 missed, 0 made up, time 1e-11 s head-on, 1e-8 s where a corner comes round       |
-// | ConservativeAdvancement | the same where it does not say resolution.grazing (it gives up after max_iterations)|
-// | Bisection, LocalBisection, None, Speculative | what begins and ends within a step is not seen: no bound      |
+// | resolution                                   | bound                                                                                |
+// |----------------------------------------------|--------------------------------------------------------------------------------------|
+// | LocalRoot                                    | 0 missed, 0 made up, time 1e-11 s head-on, 1e-8 s where a corner comes round         |
+// | ConservativeAdvancement                      | the same where it does not say resolution.grazing (it gives up after max_iterations) |
+// | Bisection, LocalBisection, None, Speculative | what begins and ends within a step is not seen: no bound                             |
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -65,7 +67,7 @@ std::array<long double, 3> turned(const Vec3& r, const Vec3& w, long double t)
     for (std::size_t i = 0; i < 3; ++i) out[i] = x[i] * c + across[i] * s + k[i] * d * (1 - c);
     return out;
 }
-/// m: from the body's furthest point along x to the wall at t.
+/// m: distance from the wall of the body's furthest point along x, at t.
 long double gap(const Solid& solid, const Shot& shot, long double t)
 {
     long double furthest = -1e9L;
@@ -78,7 +80,7 @@ struct Truth
     bool hits = false, unsure = false;
     double time = 0;
 };
-/// Samples closer than anything turns, minima sharpened by thirds.
+/// Samples more densely than anything rotates; minima are refined by ternary search.
 Truth truth(const Solid& solid, const Shot& shot)
 {
     const int n = 64 + static_cast<int>(60 * length(shot.w) * kStep);

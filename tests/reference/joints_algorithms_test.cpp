@@ -1,7 +1,8 @@
 // Pendulums, tops and hanging chains by every solver (catalogue: A4, A9, E1, E6). Digits and scenes: pendulums.h.
 //
-// Rows are held at acceleration level in every evaluation of a solver, and projected after its step, so that each keeps its order.
-// Exact has no closed form for what joints hold: it is RungeKutta4 then, as Automatic is for what is soft and slow.
+// Rows are satisfied at acceleration level in every evaluation of a solver, and projected after its step, so that each solver
+// keeps its order. Exact has no closed form for constrained bodies and falls back to RungeKutta4, as does Automatic for soft,
+// slow problems.
 #include "reference/algorithms.h"
 #include "reference/pendulums.h"
 
@@ -48,8 +49,8 @@ double pendulum_error(const std::string& joint, const SolverAlgorithm& algorithm
     return angle_error(s.vec("bob", "position"), kPendulumAt10);
 }
 
-/// After 5/4 of the period, steps of which `steps` make one: of the state (x, v / w), relative to the amplitude. There nothing is at
-/// its end by symmetry alone, as after a whole period.
+/// State after 5/4 of the period, with `steps` per period: (x, v / w), relative to the amplitude. After a whole period some
+/// errors would vanish by symmetry.
 double mode_error(double w, const SolverAlgorithm& algorithm, int steps)
 {
     Scene s(mode_chain(solver(algorithm), w), "dt='" + text(2 * M_PI / w / steps) + "'");
@@ -120,7 +121,7 @@ TEST_CASE("A9: a double pendulum by every solver, 5 s")
 
 TEST_CASE("E1: a pendulum by every solver, 10 s, on each kind of joint")
 {
-    // One motion, three sets of rows: the same error but for what a body's turning adds (a point on a rod has none).
+    // One motion, three sets of rows: the same error except for that of a body's rotation (a point on a rod has none).
     struct Row
     {
         AlgorithmRow at_hinge;

@@ -1,4 +1,5 @@
-// E2 by every solver: two four-bars that pass their singular places twice a turn. The scene: linkages.h.
+// E2 with every solver: two four-bar linkages that pass their singular configurations twice per turn. The scene is in
+// linkages.h.
 #include "reference/algorithms.h"
 #include "support/linkages.h"
 
@@ -25,7 +26,7 @@ Vec3 four_bars_top(int bars, double t)
     return {std::sin(angle), 0, std::cos(angle)};
 }
 
-/// m, of the top after 3.6 s: a turn and a bit, two singular places.
+/// m, error of the top after 3.6 s: more than one turn, two singular configurations.
 double four_bars_error(const SolverAlgorithm& algorithm, int steps)
 {
     Scene s(four_bars(2, solver(algorithm)), per_second(steps));
@@ -42,7 +43,7 @@ TEST_CASE("E2: two four-bars through their singular places, by every solver")
 {
     CHECK(distance(four_bars_top(2, 10), {.328458111540815379, 0, .944518538178600962}) < 1e-11);
     CHECK(distance(four_bars_top(40, 10), {.18051222668672839, 0, .983572740582311575}) < 1e-11);
-    // Observed orders above 2: what the passes through the singular places leave is of order 3, and the larger part.
+    // Observed orders above 2: the passage through singular configurations leaves an error of order 3, which dominates.
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 500, 0.86, 1},
         {{"StoermerVerlet"}, 200, 2.6e-4, 2.75},
@@ -54,8 +55,9 @@ TEST_CASE("E2: two four-bars through their singular places, by every solver")
         {{"Radau5"}, 5, 6.1e-10, 0},
     };
     for (const AlgorithmRow& row : table) check_algorithm(row, four_bars_error);
-    // Order 4 of RotationSplitting goes forth and back within a step, off the rows: it comes closer to singular places than others do, and
-    // is right or not by where its kicks fall. At 1/100 it goes on as another linkage. Nothing tells of it.
+    // RotationSplitting of order 4 moves forward and back within a step, off the rows. It comes closer to singular
+    // configurations than other solvers do, and its result depends on where its kicks fall. At 1/100 it continues as a different
+    // linkage. Nothing reports that.
     CHECK(four_bars_error({"RotationSplitting"}, 80) < 1e-4);
     CHECK(four_bars_error({"RotationSplitting"}, 100) > 1);
     check_same({"Exact"}, {"RungeKutta4"}, 50, four_bars_error);

@@ -115,7 +115,7 @@ TEST_CASE("F9: forces between helical teeth: 1000 N m at a pitch radius of 2 m, 
             CHECK(near(s.real(gear, "radial_force"), radial, 1e-12));
             CHECK(near(s.real(gear, "axial_force"), sign * axial, 1e-12));
         }
-        // A pure couple: the bearings of the wheels feel nothing.
+        // A pure couple: the bearings of the wheels carry no load.
         CHECK(length(s.vec("bearing_d", "force")) < 1e-9);
         CHECK(near(s.real("no_radius", "torque"), sign * 1000, 1e-12));
         for (const char* output : {"tangential_force", "radial_force", "axial_force"}) CHECK(s.real("no_radius", output) == 0);

@@ -94,7 +94,7 @@ TEST_CASE("B6: a stiff governor with error control, 10 s: a millionth of a metre
     CHECK(pair.turned < 2e-7);
     CHECK(radau.evaluations < 72'000);
     CHECK(pair.evaluations > 2 * radau.evaluations);
-    // Evaluations are what can be told apart on any machine: 65000 took 0.4 s on a busy one (aim: 0.2 s).
+    // The number of evaluations can be compared on any machine: 65000 took 0.4 s on a busy one (aim: 0.2 s).
     CHECK(radau.cost < 4);
 }
 
@@ -104,7 +104,8 @@ TEST_CASE("B6: by every solver")
     CHECK(std::fabs(height({"DormandPrince54", kLoose}, 20, 1) - kHeightAt1) < 1e-11);
     CHECK(std::fabs(height({"Automatic"}, 20, 1) - kHeightAt1) < 6e-11);
     CHECK(std::fabs(height({"Radau5", kLoose}, 2, 1) - kHeightAt1) < 1.7e-8);
-    // m, after 0.2 s. The dampers' fastest rate is about 1e4 1/s: explicit algorithms begin at 1/4000, their orders show later.
+    // m, after 0.2 s. The fastest rate of the dampers is about 1e4 1/s: explicit algorithms start at 1/4000, and show their
+    // orders only with shorter steps.
     const auto error = [&](const SolverAlgorithm& algorithm, int steps) { return std::fabs(height(algorithm, steps, .2) - expected); };
     const AlgorithmRow table[] = {
         {{"SemiImplicitEuler"}, 8000, 2.9e-5, 1},

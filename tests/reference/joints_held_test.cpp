@@ -1,4 +1,4 @@
-// Rows that may let go (limits, motors with a largest effort), and joints among contacts: what managers hold.
+// Rows with bounded impulses (limits, motors with a largest effort), and joints among contacts: rows that managers satisfy.
 #include <algorithm>
 #include <numbers>
 
@@ -74,7 +74,7 @@ TEST_CASE("a limit stops a fall along a slider, with and without rebound")
 
 TEST_CASE("a limit gives its restitution back, with joints beside it, by Direct and by SoftStep")
 {
-    // Down 0.5 m: it comes at v = sqrt(g). A pendulum that is let go level comes to 0.6 rad with w^2 = 2 m g l sin(0.6) / J.
+    // Falls 0.5 m: arrives at v = sqrt(g). A pendulum released horizontally reaches 0.6 rad with w^2 = 2 m g l sin(0.6) / J.
     struct Row
     {
         std::string type;
@@ -211,7 +211,8 @@ TEST_CASE("limits and weak motors without a manager are refused with what would 
 
 TEST_CASE("a pendulum hits a wall: it comes back with e times its speed, and its joint holds")
 {
-    // Let go 0.5 rad out of the plumb; the wall is met in the plumb: back up to where 1 - cos is e^2 of what it was.
+    // Released 0.5 rad from the vertical; it hits the wall at the vertical and returns to where 1 - cos is e^2 of its initial
+    // value.
     constexpr double e = .6;
     for (const std::string type : {"Ball", "Hinge"})
     {
@@ -283,7 +284,7 @@ TEST_CASE("a motor drives a pusher that shoves a box along the floor against fri
         dt(240));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(2);
-    // Where it meets the box, at an instant, a motor has no impulse: it makes up for that in the next step.
+    // At the instant at which it hits the box, a motor exerts no impulse: it compensates for that in the next step.
     CHECK(near(s.vec("pusher", "position").x, 1, 2e-3));
     CHECK(near(s.vec("pusher", "linear_velocity").x, .5, 1e-12));
     CHECK(std::fabs(s.vec("box", "linear_velocity").x - .5) < 1e-9);

@@ -12,7 +12,8 @@ TEST_CASE("E2: forty four-bars")
     MESSAGE("N=40 t=10: ", top_of(s).x - .18051222668672839, " ", top_of(s).z - .983572740582311575);
     CHECK(distance(top_of(s), {.18051222668672839, 0, .983572740582311575}) < 1e-8);
     s.run(20);
-    // A step that begins 8e-6 rad off the singular configuration (at t = 18.41 s) does not know all its accelerations: 5e-8 m.
+    // A step that begins 8e-6 rad from the singular configuration (at t = 18.41 s) cannot determine all its accelerations: 5e-8
+    // m.
     MESSAGE("N=40 t=20: ", distance(top_of(s), {.410901153762945222, 0, .911679900971980652}));
     CHECK(distance(top_of(s), {.410901153762945222, 0, .911679900971980652}) < 1e-7);
 }
@@ -27,7 +28,7 @@ TEST_CASE("E2: no jump to another branch in 10^4 turns, singular twice in each")
         s.step();
         if (i % 64 != 0) continue;
         turns = std::fabs(s.real("f100", "angle")) / 6.283185307179586;
-        // On the right branch the uprights stay parallel, and what joins them level.
+        // On the correct branch the uprights stay parallel, and the bars between them level.
         worst = std::fmax(worst, distance(s.vec("v101", "position") - s.vec("v100", "position"), {1, 0, 0}));
         REQUIRE(worst < 1e-3);
     }

@@ -1,9 +1,9 @@
-// Closed loops, a heavy chain and joints that contradict each other, by every solver and, where rows may yield, by every manager
-// (catalogue: E4, E5, E8). Digits and scenes: joints_loops_test.cpp, linkages.h, pendulums.h.
+// Closed loops, a heavy chain and contradictory joints, with every solver and, for rows with bounded impulses, with every
+// manager (catalogue: E4, E5, E8). Reference digits and scenes: joints_loops_test.cpp, linkages.h, pendulums.h.
 //
-// Managers hold rows that may yield (limits, weak motors, contacts); joints of a group without such rows are the solver's. So E5 is run
-// twice: on joints, by solvers, and on ropes (limits of distance), by managers. E2, E4 and E8 have no row that may yield. E2:
-// joints_fourbars_algorithms_test.cpp
+// Managers satisfy rows with bounded impulses (limits, weak motors, contacts); the joints of a group without such rows are the
+// solver's. E5 is therefore run twice: with joints, by solvers, and with ropes (distance limits), by managers. E2, E4 and E8
+// have no such rows. For E2 see joints_fourbars_algorithms_test.cpp.
 #include <algorithm>
 
 #include "reference/algorithms.h"
@@ -16,7 +16,7 @@ using namespace plab::test;
 namespace
 {
 
-/// m, the worst of the rocker's end in a turn.
+/// m, largest error of the rocker's end in one turn.
 double four_bar_error(const SolverAlgorithm& algorithm, int steps)
 {
     Scene s(FourBar::scene(solver(algorithm)), per_second(steps));
@@ -74,7 +74,7 @@ TEST_CASE("E5: a chain under a tonne, by every solver: it hangs, so no order sho
     {
         const std::string name = name_of(algorithm);
         CAPTURE(name);
-        // Dense methods: 12 numbers a link, and their cube.
+        // Dense methods: 12 numbers per link, at a cubic cost.
         const int links = algorithm.type == "Radau5" || algorithm.type == "Exponential" ? 10 : 100;
         Scene s(heavy_chain(solver(algorithm), links), per_second(60));
         REQUIRE_MESSAGE(s.loaded(), s.error());
@@ -88,7 +88,8 @@ TEST_CASE("E5: a chain under a tonne, by every solver: it hangs, so no order sho
 
 TEST_CASE("E5: the same chain of ropes, by every manager")
 {
-    // A tonne under a kilogram, a hundred times over: all but Direct let it fall (4.9 m in 1 s). SoftStep does not say so.
+    // A tonne below a kilogram, a hundred times over: all managers but Direct let it fall (4.9 m in 1 s). SoftStep does not
+    // report it.
     struct Row
     {
         std::string manager;

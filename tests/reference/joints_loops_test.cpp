@@ -24,7 +24,8 @@ TEST_CASE("E2: two four-bars go through their singular configuration on the righ
 
 TEST_CASE("E2: a stage of a step next to the singular configuration costs nothing")
 {
-    // At t = 3.16 s a stage is 1e-4 rad off it. Rows that let go there would leave an energy of 6e-10 more, and 3e-9 m here.
+    // At t = 3.16 s a stage is 1e-4 rad away from it. If rows were released there, the energy would be wrong by 6e-10, and the
+    // position here by 3e-9 m.
     Scene s(four_bars(5), dt(1000));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(4);
@@ -46,7 +47,7 @@ TEST_CASE("E4: a four-bar follows Freudenstein's equation")
     MESSAGE("worst place of the rocker's end: ", worst);
     CHECK(worst < 1e-9);
     CHECK(near(s.real("j1", "angle"), 6 * std::numbers::pi, 1e-9));
-    // The loop lies in a plane: three of its rows say nothing new.
+    // The loop is planar: three of its rows are redundant.
     double redundant = 0;
     for (const char* j : {"j1", "j2", "j3", "j4", "m"}) redundant += static_cast<double>(std::get<std::int64_t>(s.get(j, "redundant")));
     CHECK(redundant == 3);
@@ -82,7 +83,7 @@ TEST_CASE("E3: Bricard's linkage moves though a count of its rows says it cannot
 
 TEST_CASE("E3: Bricard's linkage keeps the solver's order")
 {
-    // At coarser steps than these it is not to be seen yet, least of all in the largest drift of energy.
+    // With coarser steps the order is not visible yet, least of all in the largest drift of energy.
     const auto rod_at = [](int per_second)
     {
         Scene s(bricard(), dt(per_second));
@@ -100,7 +101,7 @@ TEST_CASE("E3: Bricard's linkage keeps the solver's order")
 namespace
 {
 
-/// Bodies whose centres all stand at the origin, in a chain of joints whose points are there too. `chance` changes.
+/// A chain of joints in which all centres of mass and all joint points are at the origin. `chance` changes.
 std::string centred_chain(std::uint64_t& chance)
 {
     const auto draw = [&](double size) { return (2 * next_uniform(chance) - 1) * size; };

@@ -91,7 +91,7 @@ TEST_CASE("A4: Lagrange's top on a ball joint")
 
 TEST_CASE("E5: a chain of 100 links bears a ball of a tonne")
 {
-    // What each bears is the weight below it.
+    // Each joint carries the weight below it.
     Scene s(heavy_chain(solver_is("RungeKutta4"), 100), dt(60));
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(5);
@@ -106,7 +106,7 @@ TEST_CASE("E5: a chain of 100 links bears a ball of a tonne")
 
 TEST_CASE("E6: the modes of a hanging chain are zeros of Laguerre's polynomial")
 {
-    // It comes back after a period.
+    // It returns after one period.
     for (const double w : kModes)
     {
         CAPTURE(w);
@@ -117,7 +117,7 @@ TEST_CASE("E6: the modes of a hanging chain are zeros of Laguerre's polynomial")
         const auto x = mode_shape(w);
         for (int k = 0; k < kModeLinks; ++k)
             CHECK(std::fabs(s.vec(mode_id(k), "position").x - kModeAmplitude * x[static_cast<std::size_t>(k)]) < 1e-10);
-        // At rest again, to the second order of the error in w.
+        // At rest again, to second order in the error of w.
         CHECK(length(s.vec(mode_id(0), "linear_velocity")) < kModeAmplitude * w * 1e-4);
     }
 }

@@ -146,9 +146,9 @@ TEST_CASE("a ball rolls on a ball that turns as told, along with it")
 TEST_CASE("what cannot roll so is refused")
 {
     const auto error = [](const std::string& more) { return Scene(gravity() + ball({0, 0, 0.6}, 0.1) + rolling(more), dt(100)).error(); };
-    CHECK(error("semi_axes='0.1 0.2 0.1' on='sphere' radius='1'").find("only a ball rolls") != std::string::npos);
-    CHECK(error("semi_axes='0.1 0.1 0.1' on='cylinder'").find("needs that one's radius") != std::string::npos);
+    CHECK(error("semi_axes='0.1 0.2 0.1' on='sphere' radius='1'").find("only a ball can roll") != std::string::npos);
+    CHECK(error("semi_axes='0.1 0.1 0.1' on='cylinder'").find("the parameter radius must be above 0") != std::string::npos);
     CHECK(error("semi_axes='0.1 0.1 0.1' on='sphere' radius='0.05' inside='true'").find("must be smaller") != std::string::npos);
-    CHECK(error("semi_axes='0.1 0.1 0.1' parallel='true'").find("parallel is for") != std::string::npos);
+    CHECK(error("semi_axes='0.1 0.1 0.1' parallel='true'").find("parallel requires") != std::string::npos);
     CHECK(error("semi_axes='0.1 0.1 0.1' on='cone' radius='1'").find("cylinder") != std::string::npos);
 }

@@ -64,7 +64,7 @@ Stone rock(const std::string& solver, int per_second, double spin, double t)
 
 TEST_CASE("C20: a rattleback turns round, one way only")
 {
-    // It pitches at 107 rad/s, and what it starts with grows a thousandfold until it turns round: error control.
+    // It pitches at 107 rad/s, and initial errors grow a thousandfold until it reverses: error control.
     const std::string solver =
         "<component id='solver' type='Solver/DormandPrince54' relative_tolerance='1e-12' absolute_tolerance='1e-15'/>";
     for (const auto& [t, spin] : {std::pair{1, -4.973786074188076}, {3, -1.744817329018057}, {5, 1.809295913463068}})
@@ -84,7 +84,7 @@ TEST_CASE("C20: a rattleback turns round, one way only")
 
 TEST_CASE("C20: solvers keep their order while rolling")
 {
-    // Against the finest run, while the pitching has but begun.
+    // Compared with the finest run, while the pitching has only begun.
     const auto spin_at = [](const std::string& solver, int per_second)
     {
         Scene s(rattleback(solver_is(solver), -5), dt(per_second));
@@ -105,8 +105,8 @@ TEST_CASE("C20: solvers keep their order while rolling")
 
 TEST_CASE("C20: the spin after a second, by every solver")
 {
-    // rad/s at 2000 steps per second, about twice what is reached; order from there to 4000. Contacts play no part: rolling is a joint, and
-    // there is no ellipsoid to collide with.
+    // rad/s at 2000 steps per second, about twice the achieved error; observed order from there to 4000. Contacts are not
+    // involved: rolling is a joint, and there is no ellipsoid shape to collide with.
     struct SolverRow
     {
         std::string type, attributes;
@@ -150,17 +150,17 @@ TEST_CASE("a ball rolls down an incline with 5/7 g sin a, whatever its solver")
         const double method = .5 * 5. / 7 * kG * std::sin(a) * 4;
         CHECK(distance(s.vec("ball", "position"), r * n + method * down) < 1e-12);
         CHECK(near(s.real("rolls", "normal_force"), 2 * kG * std::cos(a), 1e-13));
-        // What friction takes: 2/7 of the weight along the slope.
+        // Friction takes 2/7 of the weight component along the slope.
         CHECK(near(-dot(s.vec("rolls", "force"), down), 2 * kG * std::sin(a) * 2 / 7, 1e-13));
     }
 }
 
 TEST_CASE("a ball on a turntable goes round in circles, at 2/7 of its speed")
 {
-    // v' = 2/7 W x v: the table moves as told, 3 rad/s.
+    // v' = 2/7 W x v: the table is kinematic, 3 rad/s.
     const double w = 2. / 7 * 3;
     const Vec3 at{.5, 0, .1}, v{.2, .3, 0};
-    // Rolling asks for v + s x r = W x p, r = (0, 0, -0.1).
+    // Rolling requires v + s x r = W x p, r = (0, 0, -0.1).
     const Vec3 missing = Vec3{0, 3 * .5, 0} - v;
     const Vec3 spin{missing.y / .1, -missing.x / .1, 0};
     Scene s(

@@ -1,4 +1,5 @@
-// Joints that come, go and are exchanged while a scene runs: momentum is kept, energy is not made, what was taken away is gone.
+// Joints that are added, removed and exchanged while a scene runs: momentum is conserved, no energy is added, and removed joints
+// leave no trace.
 #include "support/joints.h"
 
 using namespace plab;

@@ -1,5 +1,5 @@
-// The ledger closes where time goes back within a step, and where a joint comes that speeds do not fit: kinetic energy = at the start +
-// work of all components.
+// The energy balance closes also where time is rewound within a step, and where a joint is added that the velocities violate:
+// kinetic energy = initial kinetic energy + work of all components.
 #include "swaps.h"
 
 using namespace plab;
@@ -14,7 +14,8 @@ double unexplained(const Scene& s)
     return t.kinetic - s.simulation().kinetic_at_start() - t.work;
 }
 
-/// J: the worst of one second, at 1/60 s. The ball is thrown upwards at first, so that its bounces come at any time of a step.
+/// J: the largest imbalance within one second, at 1/60 s. The ball is thrown upwards first, so that its bounces occur at
+/// arbitrary times within a step.
 double worst_of_bounces(const std::string& solver, const std::string& resolution, const std::string& response)
 {
     Scene s(gravity() + solver_is(solver) +
@@ -43,7 +44,7 @@ TEST_CASE("what an event takes back is taken back in the ledger, by every solver
             if (resolution == "None" || resolution == "Speculative") continue;
             CAPTURE(solver);
             CAPTURE(resolution);
-            // One kick of the method of order 1 is (h g)^2 m / 2 = 0.13 J short, with either sign where the ball turns round.
+            // One kick of the method of order 1 misses (h g)^2 m / 2 = 0.13 J, with either sign where the ball reverses.
             const double most = solver == "SemiImplicitEuler" ? 60 * 0.14 : 1e-9;
             CHECK(worst_of_bounces(solver, resolution, "Impulse' response.restitution='0.8") <= most);
         }
@@ -51,7 +52,7 @@ TEST_CASE("what an event takes back is taken back in the ledger, by every solver
 
 TEST_CASE("a spring that begins and ends within a step is booked as far as it pushed")
 {
-    // What is left is the method's: springs in 20 pieces per contact, of which each is one step of it.
+    // The remaining error is that of the method: springs in 20 pieces per contact, each of which is one step of it.
     const auto most = [](const std::string& solver)
     {
         if (solver == "SemiImplicitEuler") return 40.0;
@@ -91,7 +92,7 @@ TEST_CASE("a joint that stops what swings books the blow, with springs in the sc
 
 TEST_CASE("gears that contradict one another take energy in every projection, and book it")
 {
-    // Factors that multiply to 1.2, and to 0.99998, at speeds that two of the three would like.
+    // Factors that multiply to 1.2, and to 0.99998, with velocities that satisfy two of the three couplings.
     for (const char* factor : {"0.2", "0.16666388893518441"})
         for (const bool bodies : {false, true})
         {

@@ -1,4 +1,4 @@
-/// Scenes and measures that the tests of solvers share.
+/// Scenes and measures shared by the tests of solvers.
 #pragma once
 
 #include "support/scene.h"
@@ -7,7 +7,7 @@
 namespace plab::test
 {
 
-/// A algorithm as a table names it: type without "Solver/", and attributes.
+/// An algorithm as a table names it: its type without "Solver/", and attributes.
 struct SolverAlgorithm
 {
     std::string type;
@@ -29,7 +29,7 @@ inline Vec3 body_spin(const Scene& s, const std::string& body)
     return rotate_back(s.quat(body, "orientation"), s.vec(body, "angular_velocity"));
 }
 
-/// m x'' = -k x - c x' along x; the spring hangs so far away that its length is never 0.
+/// m x'' = -k x - c x' along x; the spring's anchor is so far away that its length is never 0.
 inline std::string spring_scene(const SolverAlgorithm& algorithm, double k, double c, double start = 1)
 {
     return solver(algorithm) + "<component id=\"mass\" type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\" position=\"" + text(start) +

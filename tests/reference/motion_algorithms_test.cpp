@@ -1,4 +1,4 @@
-// A1 and A2 by every algorithm of the ladder of solvers. References: closed forms; A2 by Jacobi's elliptic functions in 30 digits, checked
+// A1 and A2 with every solver algorithm. References: closed forms; for A2 Jacobi's elliptic functions in 30 digits, checked
 // against an extrapolation method in 113-bit arithmetic.
 //
 // A1 projectile, 2 s            Semi-implicit Euler g dt T / 2, all others 1e-13 relative, at 1/60 and 1/960

@@ -1,4 +1,5 @@
-// Solver/Automatic in scenes: what it picks, that it has the bits of what it picks, and that nobody sees who shares it.
+// Solver/Automatic in scenes: which solver it picks, that it gives the same bits as that solver, and that other bodies of the
+// scene do not change the result.
 //
 // scene                                picks               checked
 // drag, pendulum, gears, script        RungeKutta4         the state hash of RungeKutta4 in each step

@@ -1,9 +1,10 @@
-// A13: 1000 bodies that drag brings to rest, c/m = 5 1/s, for 300 s, to e^-1500; and the floating-point environment of a step.
+// A13: 1000 bodies that drag brings to rest, c/m = 5 1/s, for 300 s, i.e. by a factor of e^-1500; and the floating-point
+// environment of a step.
 //
-// Arithmetic with denormal numbers takes a hundredfold of the time. pLab leaves the environment as it is (rounding to nearest, denormals
-// neither flushed nor taken for zero, no traps) and sets speeds below 1e-150 to 0 instead, so that none stays in what decays.
-// Told apart in two ways: the processor's own flag of denormal operands (x86), which no other load of the machine moves, and the time
-// of steps at the end over that of steps at the start, taken by turns.
+// Arithmetic with denormal numbers takes a hundred times as long. pLab leaves the environment unchanged (rounding to nearest,
+// denormals neither flushed nor treated as zero, no traps) and instead sets speeds below 1e-150 to 0, so that no decaying value
+// stays denormal. Checked in two ways: by the processor's own flag for denormal operands (x86), which other load on the machine
+// does not affect, and by the ratio of the times of steps at the end and at the start, measured alternately.
 #include <cfenv>
 #include <ctime>
 #include <limits>
@@ -25,7 +26,7 @@ std::string braked(int n)
     return out + "<component id=\"drag\" type=\"Field/Drag\" between=\"*\" linear=\"5\" rotational=\"5\"/>";
 }
 
-/// The flag of denormal operands, where there is one.
+/// The flag for denormal operands, where the processor has one.
 void forget_denormals()
 {
 #if defined(__SSE2__)
@@ -41,7 +42,7 @@ bool met_denormals()
 #endif
 }
 
-/// s of processor time for some steps.
+/// Processor time of some steps, s.
 double time_of(Scene& s, int steps)
 {
     const std::clock_t begin = std::clock();
@@ -89,7 +90,7 @@ TEST_CASE("A13: 1000 bodies: a step at rest takes no longer than one in motion")
     REQUIRE_MESSAGE(moving.loaded(), moving.error());
     fading.run(120), resting.run(300);
     CHECK(resting.vec("b999", "linear_velocity") == Vec3{});
-    // The least of many, by turns: what else the machine does falls on all.
+    // The minimum of many alternating measurements: other load on the machine affects both alike.
     double first = 1e9, middle = 1e9, last = 1e9;
     for (int i = 0; i < 12; ++i)
     {
@@ -104,7 +105,7 @@ TEST_CASE("A13: 1000 bodies: a step at rest takes no longer than one in motion")
 
 TEST_CASE("A13: the floating-point environment inside a step: nearest, denormals as they are, on every thread")
 {
-    // A shaft gets its torque of 1 N m if both hold where its forces are evaluated.
+    // A shaft receives its torque of 1 N m only if both hold where its forces are evaluated.
     std::string parts;
     for (int i = 0; i < 12; ++i)
         parts += "<component id=\"s" + std::to_string(i) + "\" type=\"State/Shaft\" inertia=\"1\"/><component id=\"law" +

@@ -1,5 +1,6 @@
-// A11 and A13. A11: two tumbling bodies on a spring, translated by 1e7 m, boosted by 1e3 m/s, turned: the same relative motion.
-// A13: bodies that drag brings to rest, to e^-1500: zeros at the end, never denormal numbers, whose arithmetic costs a hundredfold.
+// A11 and A13. A11: two tumbling bodies on a spring, translated by 1e7 m, boosted by 1e3 m/s, rotated: the same relative motion.
+// A13: bodies that drag brings to rest, by e^-1500: zeros at the end, never denormal numbers, whose arithmetic takes a hundred
+// times as long.
 //
 // A11, after 2 s       translated 1e7 m   boosted 1e3 m/s   turned
 //   explicit, Automatic  1e-7 m           8e-12 m           3e-14 m
@@ -40,7 +41,7 @@ struct Relative
     Quat attitude;
 };
 
-/// Of b, in the frame of the scene, after 2 s.
+/// State of b, in the frame of the scene, after 2 s.
 Relative pair(const SolverAlgorithm& algorithm, const Frame& f)
 {
     Scene s(solver(algorithm) + body("a", f, {}, {0, 0.1, 0}, {0.5, 1, 2}) + body("b", f, {1, 0, 0}, {0, -0.3, 0.2}, {2, 0.1, -1}) +

@@ -1,6 +1,6 @@
 // A6: Kepler's ellipse, e = 0.9, the force in a script, to t = 10 (1.59 orbits). Reference: Kepler's equation in 30 digits.
 //
-// algorithm                     force calls per orbit   error
+// algorithm                force calls per orbit   error
 // DormandPrince54, 1e-7    < 850                   3e-6
 // DormandPrince54, 1e-9    < 1600                  1e-7
 // DormandPrince54, 1e-11   < 3800                  1e-9

@@ -24,7 +24,7 @@ struct Swing
     double worst = 0, kept = 0, last = 0;  ///< relative: of the energy, of x^2 + a x v + b v^2; energy at the end
 };
 
-/// a, b: what a method keeps is x^2 + a x v + b v^2, here 1 at the start.
+/// a, b: the method conserves x^2 + a x v + b v^2, which is 1 at the start.
 Swing swing(const SolverAlgorithm& algorithm, std::int64_t steps, double a = 0, double b = 1)
 {
     Scene s(spring_scene(algorithm, 1, 0), "dt=\"0.01\"");
@@ -67,10 +67,10 @@ TEST_CASE("A7: energy over 1e7 steps: bounded where it should be, lost by the la
         CHECK(found.worst < 1.01 * row.worst + rounding);
         CHECK(found.worst >= 0.99 * row.worst);
     }
-    // As it is set, its iteration ends at 1e-12 of a step's change: a slope below 1e-12 h/2 per step.
+    // With the default setting, its iteration ends at 1e-12 of a step's change: a slope below 1e-12 h/2 per step.
     CHECK(swing({"ImplicitMidpoint"}, 1'000'000).worst < 1e6 * 1e-12 * kStep / 2);
     CHECK(swing({"RotationSplitting"}, 1'000'000).worst < 6e-12);
-    // Of the ratio: doctest::Approx allows epsilon beside 0, whatever the number.
+    // The ratio is compared, as doctest::Approx allows an absolute epsilon near 0.
     CHECK(swing({"RungeKutta4"}, 1'000'000).last / (-1e6 * 1e-12 / 72) == doctest::Approx(1).epsilon(0.005));
     CHECK(swing({"Exponential"}, 100'000).worst < 1e-12);
 }

@@ -87,8 +87,8 @@ TEST_CASE("A3: a wing nut flips when the elliptic integral says")
         if (before > 0 && now <= 0) flip = s.simulation().time() - s.simulation().dt() * now / (now - before);
         before = now;
     }
-    // From near the middle axis it takes half an interval to the first crossing, less the head start of the disturbance;
-    // crossings are one interval apart.
+    // Starting near the middle axis, the first crossing takes half an interval, less the head start given by the disturbance;
+    // further crossings are one interval apart.
     REQUIRE(flip > 0);
     double second = 0;
     while (s.simulation().time() < 8 && second == 0)

@@ -1,4 +1,4 @@
-// The paper's scene: its course, and that both forms of the blueprint say the same.
+// The paper's scene: its results, and that both forms of the blueprint are equivalent.
 #include "support/scene.h"
 
 using namespace plab;

@@ -1,4 +1,4 @@
-// B2 of the catalogue by every solver: what a contact that is a spring gives back, and the order in the length of its pieces.
+// B2 of the catalogue with every solver: the restitution of a spring contact, and its order in the length of the pieces.
 #include "impacts.h"
 #include "motion.h"
 
@@ -9,7 +9,7 @@ namespace
 {
 constexpr double kDamped = 0.72924761428767;  // exp(-pi z / sqrt(1 - z^2)), z = .1
 
-/// Of 1 m/s that 1 kg had, what comes back, beside `e`: `pieces` per half period, whatever the phase of the step.
+/// Rebound speed after an approach of 1 kg at 1 m/s, relative to `e`: `pieces` per half period, at any phase of the step.
 double bounce_error(const SolverAlgorithm& algorithm, const std::string& law, int pieces, double e)
 {
     double worst = 0;

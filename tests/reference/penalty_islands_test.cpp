@@ -1,4 +1,4 @@
-// Contacts that are springs among other things: joints, bodies that move as told, hard contacts, rewinding, several threads.
+// Spring contacts combined with other things: joints, kinematic bodies, hard contacts, rewinding, several threads.
 #include <numbers>
 
 #include "support/ground.h"

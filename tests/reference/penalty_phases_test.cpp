@@ -1,4 +1,5 @@
-// Penalty contacts in every phase of a step (B2), Hunt and Crossley's loss, the books within a contact, stiction that does not creep.
+// Penalty contacts that begin at any phase of a step (B2), Hunt and Crossley's damping, the energy balance within a contact,
+// stiction that does not creep.
 #include <numbers>
 
 #include "swaps.h"

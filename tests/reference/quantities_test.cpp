@@ -103,7 +103,7 @@ TEST_CASE("quantities that leave the numbers stand still from then on, are told 
     s.run(3);
     CHECK(s.count("state.not_finite") == 1);
     REQUIRE(!s.events.empty());
-    CHECK(s.events.front().message.find("z left the numbers") != std::string::npos);
+    CHECK(s.events.front().message.find("z left the range of numbers") != std::string::npos);
     CHECK(values(s, "z")[0] == 1);
     CHECK(values(s, "zclock")[0] == doctest::Approx(3).epsilon(1e-12));
 

@@ -1,4 +1,4 @@
-/// Scenes of C23 (a rocking block) and C24 (a rimless wheel): rocking_test.cpp says what is known of them.
+/// Scenes of C23 (a rocking block) and C24 (a rimless wheel); rocking_test.cpp gives the theory.
 #pragma once
 
 #include <numbers>
@@ -10,9 +10,9 @@ namespace plab::test
 
 inline constexpr double kAlpha = 0.2, kQuarter = .48608973195735393546;
 
-/// A block on two plates, so that each edge meets a body of its own and its impact can be located; turned about the edge at the
-/// origin by `tilt` from standing flat, spinning with `spin` towards flat. The plates reach `under` (m) below it: where that is much,
-/// it comes to lie on their ends as well as on its edge, and what the impact leaves is not Housner's.
+/// A block on two plates, so that each edge touches a body of its own and its impact can be located. The block is rotated about
+/// the edge at the origin by `tilt` from its upright position and rotates towards it with `spin`. The plates extend `under` (m)
+/// below the block. If that is large, the block also touches their ends, and the impact is not Housner's.
 inline std::string block(double tilt, double spin, double under, const Algorithm& algorithm)
 {
     const Vec3 arm{-std::sin(kAlpha - tilt), 0, std::cos(kAlpha - tilt)};
@@ -26,7 +26,7 @@ inline std::string block(double tilt, double spin, double under, const Algorithm
                    "against=\"left right\" " + stiffness(algorithm, 1e5, 1e7, "response.steps_per_contact=\"20\""));
 }
 
-/// s: when the block first meets the other plate, as it is told.
+/// s: the reported time at which the block first hits the other plate.
 inline double first_impact(const Algorithm& algorithm, double h)
 {
     Scene s(block(0.1, 0, 0.1, algorithm) + gravity("block"), "dt=\"" + text(h) + "\"");
@@ -53,14 +53,14 @@ inline std::string wheel(const Algorithm& algorithm)
            contact("wheel ground", algorithm, plastic(algorithm), 3, stiffness(algorithm, 1e5, 1e7, "response.steps_per_contact=\"20\""));
 }
 
-/// Spins after each step of a rimless wheel.
+/// Angular velocity after each step of a rimless wheel.
 inline std::vector<double> walk(const Algorithm& algorithm, double h, double until)
 {
     Scene s(wheel(algorithm), "dt=\"" + text(h) + "\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.warnings_expected = true;
     std::vector<double> out;
-    // A step of the walk is where the spin falls; the impact may take two time steps.
+    // A step of the walk is recognised by a drop of the angular velocity; the impact may take two time steps.
     double before = 1.2, least = 1.2;
     bool falling = false;
     while (s.simulation().time() < until)

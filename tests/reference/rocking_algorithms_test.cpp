@@ -14,7 +14,8 @@ TEST_CASE("C23: spin after the impact of a rocking block, by every algorithm")
         {"at ends", "Rows/Direct", {2.6e-8}},
         {"at ends", "Rows/SequentialImpulse", {2.6e-8}},
         {"at ends", "Rows/SoftStep", {1.3e-3}, {3e-4}},
-        // The old edge is let go while the new one pushes, not at once: w is that before the impact, less what the damper takes.
+        // The old edge is released while the new one is loaded, not instantly: the result is w before the impact, less the work
+        // of the damper.
         {"*", "springs", {0.13}, {0.03}},
     };
     check_algorithms(standing_algorithms(), table,

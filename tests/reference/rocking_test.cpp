@@ -7,16 +7,16 @@
 //   w+ = r w-,  r = (I + cos 45) / (I + 1);   w-^2 = w+^2 + 2 g (cos(.08 - pi/8) - cos(.08 + pi/8)) / (1 + I)
 // fixed point 1.0954628 and contraction of w^2 cos^2 45 = .5 for I = 0; 1.0958222331616213, .50041388537773225 for I = 1e-3.
 //
-// | problem | algorithm                                    | bound                                                               |
-// |---------|-----------------------------------------|---------------------------------------------------------------------|
-// | C23     | impact alone, all that locate           | w'/w to 6e-8 (started 1e-7 rad ahead of it: the arms are off by it) |
-// |         | quarter period, located + Impulse       | .15 h: an edge that stands is stepped with order 1 (asserted)       |
-// |         | located + Rows                          | .45 h: the edge trembles                                            |
-// |         | None, Speculative + either              | 1.15 h: .15 h, found at the end of a step                           |
-// | C24     | located + Impulse                       | fixed point to 12 h rad/s, contraction .5 -+ .035 at h = .001       |
-// |         | None + Rows                             | fixed point to 6 h rad/s                                            |
-// |         | Speculative, LocalRoot + Rows           | 12 h for the largest spin of a walking step; a spoke's two corners  |
-// |         |                                         | may come down one step apart, and between them it dips by 0.1 rad/s |
+// | problem | algorithm                         | bound                                                               |
+// |---------|-----------------------------------|---------------------------------------------------------------------|
+// | C23     | impact alone, all that locate     | w'/w to 6e-8 (started 1e-7 rad ahead of it: the arms are off by it) |
+// |         | quarter period, located + Impulse | .15 h: an edge that stands is stepped with order 1 (asserted)       |
+// |         | located + Rows                    | .45 h: the edge trembles                                            |
+// |         | None, Speculative + either        | 1.15 h: .15 h, found at the end of a step                           |
+// | C24     | located + Impulse                 | fixed point to 12 h rad/s, contraction .5 -+ .035 at h = .001       |
+// |         | None + Rows                       | fixed point to 6 h rad/s                                            |
+// |         | Speculative, LocalRoot + Rows     | 12 h for the largest spin of a walking step; a spoke's two corners  |
+// |         |                                   | may come down one step apart, and between them it dips by 0.1 rad/s |
 //
 // Why 12 h: a stance loses 2.5 h J by its steps of order 1 (measured), 2.3 h rad/s of the fixed point. A corner that comes down is of
 // the pair that stands, so it is not located but met ahead of its step, up to h early: 3.1 h rad/s, twice that at the fixed point (what is

@@ -1,4 +1,4 @@
-// Other units are another scale, and no other motion: lengths, masses and times scaled by powers of two change no bit.
+// Changing the units only rescales the motion: lengths, masses and times scaled by powers of two change no bit.
 #include <array>
 #include <cstring>
 #include <vector>

@@ -1,4 +1,4 @@
-/// Gear trains that several tests run: pieces of blueprints, and F2, F7.
+/// Gear trains used by several tests: parts of blueprints, and F2, F7.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ inline std::string shaft(const std::string& id, double inertia, double speed = 0
 {
     return "<component id=\"" + id + "\" type=\"State/Shaft\" inertia=\"" + text(inertia) + "\" angular_velocity=\"" + text(speed) + "\"/>";
 }
-/// `type`: Graph, Impulse or Assign; or Gear, which is a row that the solver holds.
+/// `type`: Graph, Impulse or Assign; or Gear, whose row the solver satisfies.
 inline std::string gear(const std::string& id, const std::string& type, const std::string& a, const std::string& b,
                         const std::string& factor)
 {
@@ -35,7 +35,7 @@ inline std::string six_meshes(const std::string& type, const std::string& factor
     for (int i = 0; i < 6; ++i) parts += gear("g" + std::to_string(i), type, "s" + std::to_string(i), "s" + std::to_string(i + 1), factor);
     return parts + torque("s0", "1");
 }
-/// What the shafts from `first` on feel like at `first`, kg m^2.
+/// The effective inertia at `first` of the shafts from `first` on, kg m^2.
 inline double inertia_from(int first, double ratio)
 {
     double sum = 0;
@@ -43,11 +43,11 @@ inline double inertia_from(int first, double ratio)
     return sum;
 }
 
-/// F7: a line of gears with ratios between 1/3 and 3, of whole teeth; a torque of 1 N m on the first shaft.
+/// F7: a chain of gears with ratios between 1/3 and 3, given by whole numbers of teeth; a torque of 1 N m on the first shaft.
 struct GearLine
 {
     std::string parts;
-    std::vector<double> ratios{1};  ///< of each shaft's speed to the first one's
+    std::vector<double> ratios{1};  ///< speed of each shaft over that of the first
 
     static std::string id(int i)
     {
@@ -71,7 +71,7 @@ struct GearLine
         }
         parts += torque(id(0), "1");
     }
-    /// The worst |angle_i / (ratio_i angle_0) - 1|.
+    /// The largest |angle_i / (ratio_i angle_0) - 1|.
     double phase(const Scene& s) const
     {
         double worst = 0;
@@ -79,7 +79,8 @@ struct GearLine
             worst = std::fmax(worst, std::fabs(s.angle(id(static_cast<int>(i))) / (ratios[i] * s.angle(id(0))) - 1));
         return worst;
     }
-    /// rad, the worst |angle_i - rho_i angle_root| with the ratios and the root that the graph found: 0 if angles are derived.
+    /// rad, the largest |angle_i - rho_i angle_root| with the ratios and the root that the graph has found: 0 if angles are
+    /// derived.
     static double drift(const Scene& s)
     {
         const auto& shafts = s.simulation().world().host().shafts;

@@ -1,4 +1,4 @@
-// F1, F2, F3, F7 and F8 by every solver and by every kind of gear.
+// F1, F2, F3, F7 and F8 with every solver and every kind of gear.
 //
 // kind      F1 pair   F2 six meshes 10:1, down, up   F3 engaged at run time   F7 line
 // Graph     1e-13     2e-14, torques too             1e-14                    no drift: angles are derived
@@ -19,13 +19,13 @@ using namespace plab::test;
 namespace
 {
 
-/// What a solver of order 1 adds to the angle under a constant angular acceleration.
+/// The error that a solver of order 1 adds to the angle under a constant angular acceleration.
 double ahead(const SolverAlgorithm& algorithm, double acceleration, double t, double h)
 {
     return algorithm.type == "SemiImplicitEuler" ? 0.5 * h * acceleration * t : 0;
 }
 
-/// F8: let go horizontally, a period of which `steps` make one: m + m/s.
+/// F8: released horizontally, with `steps` steps per period: m + m/s.
 double geared_pendulum_error(const SolverAlgorithm& algorithm, int steps)
 {
     // About the pivot: inertia .5, m g l = 4.905; flywheel .005 at ratio 10.
@@ -98,8 +98,8 @@ TEST_CASE("F2: by the other kinds of gears")
         std::string type;
         double factor, speed, ratio;  ///< relative errors of the first shaft's speed and of the last one's to it
     };
-    // Step-up: the torque alone would give the first shaft 1e3 rad/s^2, and 1e-9 are left of it. Rows and pairwise impulses are
-    // differences of these: 1e12 roundings of 1e-16 at the most, 1e-7 as it happens.
+    // Step-up: the torque alone would give the first shaft 1e3 rad/s^2, of which 1e-9 remain. Rows and pairwise impulses compute
+    // this as a difference: at most 1e12 roundings of 1e-16, actually 1e-7.
     const Row table[] = {{"Gear", 0.1, 1e-15, 1e-15},     {"Gear", 10, 1.4e-7, 1.4e-7},  {"Impulse", 0.1, 1e-15, 1e-15},
                          {"Impulse", 10, 3.8e-8, 3.8e-8}, {"Assign", 0.1, 1e-15, 1e-15}, {"Assign", 10, 1e-15, 1e-15}};
     for (const Row& row : table)

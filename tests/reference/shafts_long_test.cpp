@@ -7,7 +7,8 @@ using namespace plab::test;
 TEST_CASE("F7: a line of 1000 gears has no drift after 1e6 steps")
 {
     const GearLine line(1000, "Graph");
-    // One evaluation a step: whether angles are derived is no matter of the solver (shafts_algorithms_test.cpp).
+    // One evaluation per step is sufficient: whether angles are derived does not depend on the solver
+    // (shafts_algorithms_test.cpp).
     Scene s("<component id=\"solver\" type=\"Solver/SemiImplicitEuler\"/>" + line.parts, "dt=\"1/100\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     double worst = 0;

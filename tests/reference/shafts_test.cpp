@@ -85,7 +85,7 @@ TEST_CASE("F5: a contradictory loop is refused with its edges and product")
 namespace
 {
 
-/// The only event of a kind, which must be there once however long the scene runs.
+/// The only event of a kind; it must occur exactly once however long the scene runs.
 Event only(const Scene& s, const std::string& kind)
 {
     REQUIRE(s.count(kind) == 1);

@@ -1,4 +1,4 @@
-// scenes/shapes.xml: every kind of shape that collides comes to lie where its form says.
+// scenes/shapes.xml: every kind of colliding shape comes to rest where its geometry requires.
 #include "support/scene.h"
 
 using namespace plab;

@@ -1,4 +1,4 @@
-/// Scenes of C14 and C15: what slides on a plane.
+/// Scenes of C14 and C15: bodies that slide on a plane.
 #pragma once
 
 #include "impacts.h"
@@ -9,7 +9,7 @@ namespace plab::test
 inline constexpr double kG = 9.81;  // m/s^2
 
 inline std::string step_of(double h) { return "dt=\"" + text(h) + "\""; }
-/// A ramp that stays level, with gravity leaning along x.
+/// A ramp modelled by a level plane with gravity inclined towards x.
 inline Vec3 leaning(double angle) { return {kG * std::sin(angle), 0, -kG * std::cos(angle)}; }
 inline std::string brick(const Vec3& v = {}) { return kGround + box("a", {0.5, 0.5, 0.1}, at({0, 0, 0.1}, v)); }
 inline std::string held(const Algorithm& algorithm, double friction)

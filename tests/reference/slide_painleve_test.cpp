@@ -3,7 +3,7 @@
 // the slip at once. About its end the rod keeps its angular momentum, so it goes on with w = 3/2 v sin(theta) / L = 3.8971 rad/s.
 // Dragged the other way (the mirror image) it slides on, without paradox.
 //
-// Springs give way instead: their rod is not stopped at once, and nobody speaks of a paradox.
+// Springs yield instead: their rod is not stopped at once, and no paradox is reported.
 #include <algorithm>
 #include <numbers>
 
@@ -68,7 +68,7 @@ TEST_CASE("C22: Painleve's rod: an impulse ends the slip, it is said, and energy
         {"*", "Rows/Direct", {3 * 9.81e-3, 1e-12, 1e-12, 2e-10, 0.01, 0.01, 1, 0.06}, {0, 0, 0, 0, 0, 0, 1, 0}},
         {"*", "Rows/SequentialImpulse", {3 * 9.81e-3, 1e-12, 0.34, 1.1e-3, 0.011, 0.011, 1, 1e-9}, {0, 0, 0.08, 0, 0, 0, 1, 0}},
         {"*", "Rows/SoftStep", {3, 1e-12, 1e-12, 7e-4, 0.01, 0.01, 1, 6e-4}, {2.6, 0, 0, 0, 0, 0, 1, 0}},
-        // What a step gains comes out of the spring.
+        // Energy gained in a step comes from the spring.
         {"*", "springs", {3.9, 1e-9, 1e-9, 1.2, 0.01, 0.01, 0, 0.06}, {3.8, 0, 0, 0, 0, 0, 0, 0}},
     };
     check_algorithms(standing_algorithms(), table,

@@ -1,4 +1,5 @@
-// A box on a ramp: C14b and C14c of the catalogue, by every algorithm (contact_algorithms.h). Bounds: about twice what is reached.
+// A box on a ramp: C14b and C14c of the catalogue, with every algorithm (contact_algorithms.h). Bounds: about twice the achieved
+// error.
 #include <numbers>
 
 #include "slide.h"
@@ -9,12 +10,12 @@ using namespace plab::test;
 TEST_CASE("C14b: a box slides down 30 degrees with mu = 0.3 at g (sin - mu cos)")
 {
     const double a = kG * (0.5 - 0.3 * std::sqrt(0.75));  // 2.35628723666239706 m/s^2
-    // Speed after 1 s as a share, and place, m.
+    // Relative error of the speed after 1 s, and error of the position, m.
     constexpr Bound<2> table[] = {
         {"*", "Rows/Direct", {1.1e-14, 6e-15}},
         {"*", "Rows/SequentialImpulse", {4e-14, 2.1e-10}},
         {"*", "Rows/SoftStep", {1.5e-5, 3e-3}, {0, 7e-4}},
-        // It begins to press one step late.
+        // The contact starts to carry load one step late.
         {"None", "Impulse", {5e-15, 2.6e-4}, {0, 6e-5}},
         {"located", "Impulse", {6e-15, 2e-15}},
         {"*", "springs", {3.2e-13, 2.2e-5}, {0, 3e-6}},
@@ -32,7 +33,7 @@ TEST_CASE("C14b: a box slides down 30 degrees with mu = 0.3 at g (sin - mu cos)"
 
 namespace
 {
-/// m: where a box of 30 degrees is after `until`, friction `off` from what would hold it.
+/// m: displacement after `until` of a box at 30 degrees, with a friction that differs by `off` from what would hold it.
 double on_ramp(const Algorithm& algorithm, double off, double h, double until)
 {
     const double angle = std::numbers::pi / 6;
@@ -56,9 +57,9 @@ TEST_CASE("C14c: a box on a ramp at mu = tan(angle) (1 -+ 1e-6) holds for an hou
 
 TEST_CASE("C14c: by every algorithm at 1/100: what it moves at mu = tan(angle) (1 + 1e-6), and beside what is due at (1 - 1e-6)")
 {
-    // m: in 5 s (springs: .5 s); in as much again; beside what is due in both, 0.25 mm (2.5e-6 m).
-    // What has begun to slip in the first steps is braked by a millionth of the weight only, so it goes on. Impulses that hold do so below
-    // the limit as well: they miss what is due.
+    // m: in 5 s (springs: .5 s); in the same time again; relative to the expected displacement in both, 0.25 mm (2.5e-6 m).
+    // Slip that began in the first steps is braked by only a millionth of the weight, so it continues. Impulses that hold the
+    // box also do so just below the limit, and so miss the expected slip.
     constexpr Bound<3> table[] = {
         {"*", "Rows/Direct", {3e-14, 1.8e-13, 3.4e-11}},
         {"*", "Rows/SequentialImpulse", {5e-3, 5e-3, 0.011}, {1e-3, 1e-3, 2e-3}},
@@ -80,7 +81,7 @@ TEST_CASE("C14c: by every algorithm at 1/100: what it moves at mu = tan(angle) (
 
 TEST_CASE("C14c: one percent below slipping every algorithm holds")
 {
-    // m: in the first half of a second; in ten times as much (springs: once more).
+    // m: in the first half second; in ten times as long (springs: once more).
     constexpr Bound<2> table[] = {
         {"*", "Rows/Direct", {7e-15, 7e-14}},
         {"*", "Rows/SequentialImpulse", {1.3e-6, 3e-18}},

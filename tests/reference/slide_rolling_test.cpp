@@ -9,14 +9,14 @@
 // in whatever direction the push goes: a friction pyramid of the usual kind does not move at all at 60 degrees (it holds up to
 // sqrt 2 mu N there).
 //
-// | algorithm                              | bound at h = 1/100, after 4 s                                     |
-// |-----------------------------------|-------------------------------------------------------------------|
-// | Rows/Direct, any resolution       | speeds 2e-14 m/s, sideways 4e-15, yaw 2e-16 rad/s: rounding       |
-// | Impulse, certifying               | speeds 2e-11                                                      |
-// | Impulse, None and bisections      | with four balls only: they begin to touch one by one, and each is |
-// |                                   | answered with all the others; 25 take seconds                     |
-// | Rows/SequentialImpulse            | 1.4e-4 m/s: up to its tolerance, 1e-6 m/s, in each of 400 steps   |
-// | Rows/SoftStep                     | 1.5e-4 m/s: sub-steps of finite stiffness                         |
+// | algorithm                    | bound at h = 1/100, after 4 s                                     |
+// |------------------------------|-------------------------------------------------------------------|
+// | Rows/Direct, any resolution  | speeds 2e-14 m/s, sideways 4e-15, yaw 2e-16 rad/s: rounding       |
+// | Impulse, certifying          | speeds 2e-11                                                      |
+// | Impulse, None and bisections | with four balls only: they begin to touch one by one, and each is |
+// |                              | answered with all the others; 25 take seconds                     |
+// | Rows/SequentialImpulse       | 1.4e-4 m/s: up to its tolerance, 1e-6 m/s, in each of 400 steps   |
+// | Rows/SoftStep                | 1.5e-4 m/s: sub-steps of finite stiffness                         |
 #include <algorithm>
 #include <numbers>
 

@@ -1,7 +1,7 @@
-// Sliding, sticking and rolling on a plane. C14a, C15 as in the catalogue (C14b, C14c: slide_ramp_test.cpp), and the scene of C15 far away,
-// fast and turned (A11). Bounds of each algorithm stand in the tables of the tests: about twice what is reached. A11: LocalRoot and
-// LocalBisection 1e-7 m at 1e7 m, boosted by 1e3 m/s 1e-11 m, turned 1e-13 m; None + Rows boosted 6e-7 m: rounding chooses the step of its
-// last bounces.
+// Sliding, sticking and rolling on a plane. C14a, C15 as in the catalogue (C14b, C14c: slide_ramp_test.cpp), and the scene of
+// C15 translated far away, boosted and rotated (A11). The bounds of each algorithm are in the tables of the tests: about twice
+// the achieved error. A11: LocalRoot and LocalBisection 1e-7 m at 1e7 m, boosted by 1e3 m/s 1e-11 m, rotated 1e-13 m; None +
+// Rows boosted 6e-7 m, as rounding decides the step of its last bounces.
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -13,7 +13,7 @@ using namespace plab::test;
 
 namespace
 {
-/// C14a: how far the way to the end is off, m, and by how many steps the time is.
+/// C14a: error of the sliding distance, m, and of the stopping time, in steps.
 std::array<double, 2> stop(const Algorithm& algorithm, double h, double angle)
 {
     const double method = 25 / (2 * 0.5 * kG), end = 5 / (0.5 * kG);  // 2.54841997961264 m, 1.01936799184506 s
@@ -33,7 +33,7 @@ std::array<double, 2> stop(const Algorithm& algorithm, double h, double angle)
 
 TEST_CASE("C14a: a box slides to a stop, at 5 m/s and mu = 0.5, as far in any direction")
 {
-    // Way and end at 1/100, at 1/400.
+    // Distance and stopping time at 1/100, at 1/400.
     // SoftStep: .31 h. Impulse: the end of slip falls within a step.
     constexpr Bound<4> table[] = {
         {"*", "Rows/Direct", {4e-14, 1.01, 4e-14, 1.01}},
@@ -41,7 +41,7 @@ TEST_CASE("C14a: a box slides to a stop, at 5 m/s and mu = 0.5, as far in any di
         {"*", "Rows/SoftStep", {6.2e-3, 62, 1.55e-3, 250}, {1.5e-3, 0, 3.8e-4, 0}},
         {"None", "Impulse", {5.2e-4, 1.01, 4e-5, 1.01}},
         {"located", "Impulse", {3e-5, 1.01, 6e-6, 1.01}},
-        // The drop on its springs and the tilt that friction makes.
+        // The displacement due to its springs, and the tilt that friction causes.
         {"*", "Penalty", {7.5e-5, 9, 7.5e-5, 39}, {1.8e-5, 0, 1.8e-5, 0}},
         {"*", "HuntCrossley", {0.012, 11, 0.012, 41}, {3e-3, 0, 3e-3, 0}},
     };
@@ -61,7 +61,7 @@ TEST_CASE("C14a: a box slides to a stop, at 5 m/s and mu = 0.5, as far in any di
 
 namespace
 {
-/// C15: place, speed and spin after 1 s of a ball that slides at first.
+/// C15: position, velocity and spin after 1 s of a ball that slides at first.
 std::array<double, 3> slide_and_roll(const Algorithm& algorithm, double h)
 {
     const double v0 = 5, mu = 0.3, end = 2 * v0 / (7 * mu * kG);  // .485413329450026698 s
@@ -76,8 +76,8 @@ std::array<double, 3> slide_and_roll(const Algorithm& algorithm, double h)
 
 TEST_CASE("C15: a sliding ball comes to roll, when and as fast as it should")
 {
-    // Place, speed, spin at 1/100; place at 1/400.
-    // Impulse: the end of slip falls within a step. Springs: R is m g / k shorter, 1e-3 of it.
+    // Position, velocity, spin at 1/100; position at 1/400.
+    // Impulse: the end of sliding falls within a step. Springs: R is m g / k shorter, 1e-3 of it.
     constexpr Bound<4> table[] = {
         {"*", "Rows/Direct", {4e-14, 1e-13, 1.8e-12, 5e-14}},
         {"*", "Rows/SequentialImpulse", {4e-14, 1.5e-14, 1.5e-13, 5e-14}},
@@ -96,7 +96,7 @@ TEST_CASE("C15: a sliding ball comes to roll, when and as fast as it should")
 
 namespace
 {
-/// C15 with a bounce ahead of it, in another frame. Where the ball is, seen from where it began in that frame, turned back.
+/// C15 after a bounce, in another frame. The displacement of the ball relative to its start in that frame, rotated back.
 std::vector<Vec3> path(const Algorithm& algorithm, const Vec3& origin, const Vec3& boost, const Quat& q)
 {
     const std::string turned = "orientation=\"" + text(q.w) + " " + text(q.x) + " " + text(q.y) + " " + text(q.z) + "\"";

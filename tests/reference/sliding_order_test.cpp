@@ -1,4 +1,4 @@
-// Balls that slide and roll along curves, and leave them: order 2 in the state, the time of release, no hops.
+// Balls that slide and roll along curved surfaces and leave them: order 2 in the state and in the time of release, no hops.
 #include <array>
 #include <vector>
 
@@ -56,7 +56,7 @@ const std::string kDome = "<component id='dome' type='Shape/Sphere' radius='1'/>
 const std::array<std::string, 3> kResponses{"Response/Rows' response.manager='Manager/Direct",
                                             "Response/Rows' response.manager='Manager/SequentialImpulse", "Response/Impulse"};
 
-/// Halving the step quarters the error, but for what the first one is too coarse for.
+/// Halving the step divides the error by four, except where the first step is too coarse.
 void check_order(const std::vector<double>& errors, double finest)
 {
     for (std::size_t i = 1; i < errors.size(); ++i)
@@ -69,7 +69,7 @@ void check_order(const std::vector<double>& errors, double finest)
     CHECK(errors.back() < finest);
 }
 
-/// m and m/s: of a ball that goes down in the bowl from 1 rad, rolling or sliding, after 1.5 s.
+/// m and m/s: errors of a ball that moves down in a bowl from 1 rad, rolling or sliding, after 1.5 s.
 double error_in_bowl(const std::string& response, double friction, int steps_per_second)
 {
     constexpr double kLength = 1 - kRadius, kStart = 1.0, kTime = 1.5;
@@ -93,7 +93,7 @@ struct Leaving
     double state = 0, time = 0;  ///< m and m/s, s: errors
 };
 
-/// Of a ball that slides down a dome with 1 m/s at its top: where it leaves, and its state 0.1 s later.
+/// A ball that slides down a dome, with 1 m/s at the top: where it leaves, and its state 0.1 s later.
 Leaving errors_on_dome(const std::string& response, int steps_per_second)
 {
     constexpr double kLength = 1 + kRadius, kSpeed = 1, kAfter = 0.0625;
@@ -195,7 +195,7 @@ TEST_CASE("who stands between walls and is lifted off is released once from what
         {
             CAPTURE(response);
             CAPTURE(std::string(shapes));
-            // It touches the wall, and presses the floor alone: both are of one body, so it is one pair.
+            // It touches the wall but presses only on the floor; both belong to one body, so this is one pair.
             Scene s(
                 "<component id='floor' type='Shape/Plane'/><component id='wall' type='Shape/Plane' orientation='axis 0 1 0 "
                 "-1.5707963267948966'"
@@ -259,13 +259,13 @@ TEST_CASE("a ball slides off a dome: where it leaves, order 2, and one release w
         }
         if (response.find("Sequential") != std::string::npos)
         {
-            // It leaves what pressed up to its slop, 5e-5 m, away from the surface.
+            // A contact held within the slop is 5e-5 m away from the surface when the ball leaves.
             CHECK(states.back() < 5e-4);
             CHECK(times.back() < 2e-3);
             continue;
         }
         check_order(states, 2e-5);
-        // The instant lies anywhere in its step: the bound falls with the square, not each error.
+        // The instant may be anywhere in its step: the bound falls with the square of the step, not each error.
         for (std::size_t i = 0; i < times.size(); ++i) CHECK(times[i] < 0.02 / std::pow(4.0, static_cast<double>(i)));
     }
 }

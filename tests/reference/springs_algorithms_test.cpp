@@ -1,12 +1,13 @@
-// B1, B3 and B4 by the algorithms that springs_test.cpp leaves out, and where algorithms end.
+// B1, B3 and B4 for the algorithms that springs_test.cpp leaves out, and the limits of the algorithms.
 //
-// B1, in steps of 10 ms, 30 of them
-//   ImplicitMidpoint                         any k: the recursion of its own closed form, R(z) = (1 + z/2) / (1 - z/2) for each z = h
-//   lambda SemiImplicitEuler .. RotationSplitting   h w = 1 (k = 1e4): stable; h w = 10 and more: they blow up, and are told of when
-//   numbers end Exact                                    RotationSplitting of order 4, for its forces are not uniform DormandPrince54 k =
-//   1e10, 1e12: gives up by name after max_substeps
-// B3, the drag in a script (airflow)         all solvers, the table below
-// B4, the transient in steps of 1e-7 s       all solvers: (R(-0.1))^20 of each
+// B1, 30 steps of 10 ms:
+//   ImplicitMidpoint        any k: the recursion of its closed form, R(z) = (1 + z/2) / (1 - z/2) for each z = h lambda
+//   SemiImplicitEuler .. RotationSplitting
+//                           h w = 1 (k = 1e4): stable; h w = 10 and more: they diverge, which is reported when values overflow
+//   Exact                   is RotationSplitting of order 4 here, as its forces are not uniform
+//   DormandPrince54         k = 1e10, 1e12: gives up after max_substeps, which is reported
+// B3, the drag in a script (airflow): all solvers, the table below
+// B4, the transient in steps of 1e-7 s: all solvers, (R(-0.1))^20 of each
 #include <complex>
 
 #include "reference/algorithms.h"

@@ -1,7 +1,7 @@
 // B5: stiff numbers with rates, the rates in scripts, whole runs in one to ten steps of the scene. References: test set for IVP solvers
 // (Mazzia, Magherini), recomputed there in quadruple precision. Correct digits (scd: relative, of the worst component) at rtol 1e-9:
 //
-//   algorithm             Robertson, 1e11 s   van der Pol, 1e-6, 2 s   HIRES, 321.8122 s
+//   algorithm        Robertson, 1e11 s   van der Pol, 1e-6, 2 s   HIRES, 321.8122 s
 //   Radau5           10.4                                                    with absolute_tolerance 1e-18
 //   Radau5           6.3                 9.8                      8.3, 8.6   as it is set without a word, 1e-12; in 1 step, in 10
 //   Automatic        6.3                 9.8                      8.6        is Radau5 as it is set without a word: it has no tolerances

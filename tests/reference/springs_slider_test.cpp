@@ -1,7 +1,7 @@
 // A stiff spring on a slider at any step: m = 1 on a vertical slider, k = 1e6, c = 20, rest position 0.01 m below the start, 1 s
 // (1000 rad/s); and 1e-3 kg against 1e3 kg on k = 1e6. References: the damped oscillator.
 //
-// algorithm                       steps of                place, relative to 0.01 m   ledger, relative to the spring's energy
+// algorithm                  steps of                place, relative to 0.01 m   ledger, relative to the spring's energy
 // Exponential                1/2 .. 1/1000 s         1e-11                       1e-9
 // Automatic                  1/2 .. 1/240 s          1e-9                        1e-8
 #include "reference/motion.h"
@@ -14,7 +14,7 @@ namespace
 
 constexpr double kStiffness = 1e6, kDamping = 20, kGravity = 9.81, kStretch = 0.01;
 
-/// Below the start, m.
+/// m, displacement below the start.
 double exact_position(double t)
 {
     const double w = std::sqrt(kStiffness), zeta = kDamping / (2 * w), root = std::sqrt(1 - zeta * zeta);

@@ -1,7 +1,7 @@
 // B1, B3 and B4 by the algorithms: a spring from soft to 1e12 N/m, quadratic drag, stiff drag. References: closed forms.
 //
 // B1, m = 1, damping ratio 0.05, from rest at 1 m, 0.3 s; error of the place in m
-//   algorithm                         step      k
+//   algorithm                    step      k
 //   Exponential                  1e-2 s    1e2 .. 1e12: 1e-12
 //   Automatic                    1e-2 s    the same from 1e4 on; 1e2: 1e-5 (RungeKutta4)
 //   Radau5                       1e-2 s    1e2 .. 1e12: 1e-8
@@ -199,7 +199,7 @@ TEST_CASE("B4: a jump of the wind on stiff drag")
         CHECK(speed < row.speed);
         CHECK(place < row.place);
     }
-    // A-stable, not L-stable: it rings about the answer, and never leaves (0, 20).
+    // A-stable, not L-stable: it oscillates about the solution, and never leaves (0, 20).
     Scene midpoint = windy({"ImplicitMidpoint"}, "dt=\"1/100\"");
     for (int i = 0; i < 100; ++i)
     {

@@ -1,5 +1,5 @@
-// Contacts by rows, answered at the ends of steps (Resolution/None), must not make energy, however deep a step takes bodies into
-// one another: D3 of the catalogue at 1/60, and boxes thrown into a heap with much friction.
+// Contacts by rows, answered at the ends of steps (Resolution/None), must not add energy, however deep the overlap in a step: D3
+// of the catalogue at 1/60, and boxes thrown into a heap with much friction.
 #include "plab/random.h"
 #include "statics_scene.h"
 
@@ -85,7 +85,8 @@ TEST_CASE("D3: 216 elastic balls fall on the ground at 1/60: Direct and sweeps k
     }
 }
 
-// Overlap that a step leaves is parted, which lifts what lies above: that is the rise of a step, and far less than impacts take.
+// Remaining overlap is corrected, which lifts the bodies above: this explains the energy gain of a step, and is far less than
+// impacts dissipate.
 TEST_CASE("boxes thrown into a heap at 8 m/s: no manager makes energy, and what did not converge is told")
 {
     for (const char* manager : {"Direct", "SequentialImpulse", "SoftStep"})
@@ -96,7 +97,7 @@ TEST_CASE("boxes thrown into a heap at 8 m/s: no manager makes energy, and what 
                 CAPTURE(friction);
                 CAPTURE(restitution);
                 const Trajectory c = play(thrown(manager, friction, restitution), 0.7);
-                // Without friction and loss what is left is the error of turning, order 2.
+                // Without friction and loss, the remaining error is that of rotation, of order 2.
                 CHECK(c.highest < 2e-3);
                 CHECK(c.rise < 5e-3);
                 if (restitution < 1) CHECK(c.last < -0.5);

@@ -1,5 +1,5 @@
-// Stacks, slides, racks and towers of contacts that are rows (Response/Rows), for each manager. C.., D.. as in the catalogue
-// of reference problems. What a cheap algorithm gets wrong stands here with a bound.
+// Stacks, sliding bodies, racks and towers with contacts by rows (Response/Rows), for each manager. C.., D.. as in the catalogue
+// of reference problems. Known errors of a cheap algorithm are listed here with a bound.
 #include <array>
 
 #include "statics_scene.h"
@@ -82,7 +82,7 @@ TEST_CASE("C14: a box slides to a stop: the way to 1e-12 in any direction at any
 
 TEST_CASE("C14: a ramp at mu = tan(angle) (1 -+ 1e-6): holds, and slides by the difference")
 {
-    // The ground stays level, gravity leans.
+    // The ground stays level, and gravity is inclined.
     const double angle = 0.5, g = 9.81;
     for (const double off : {1e-6, -1e-6})
     {
@@ -121,8 +121,8 @@ TEST_CASE("bounces without event location keep the energy exactly: the time of i
     }
 }
 
-// All at once where the manager answers (None), one after the other where impacts are located (LocalRoot): two answers, both
-// symmetric. LocalBisection tells touching to rounding (1e-16 m) from not touching, and is not.
+// Simultaneous where the manager answers (None), sequential where impacts are located (LocalRoot): two results, both symmetric.
+// LocalBisection distinguishes touching from separated only to rounding (1e-16 m), and its result is not symmetric.
 TEST_CASE("C13: a ball hits a rack of fifteen: what was symmetric stays so to 1e-12, whatever the bodies are called")
 {
     for (const auto& [resolution, renamed] : {std::pair{"None", false}, {"None", true}, {"LocalRoot", false}, {"LocalRoot", true}})

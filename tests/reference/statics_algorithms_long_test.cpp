@@ -1,4 +1,5 @@
-// Stacks by every algorithm of contacts (contact_algorithms.h): D2 of the catalogue. Direct alone to 100 cubes: statics_test.cpp.
+// Stacks with every contact algorithm (contact_algorithms.h): D2 of the catalogue. For Direct up to 100 cubes see
+// statics_test.cpp.
 #include "statics_problems.h"
 
 using namespace plab;

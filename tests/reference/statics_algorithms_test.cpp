@@ -1,19 +1,19 @@
-// What stands, by every algorithm of contacts (contact_algorithms.h): D6, D7 of the catalogue. D1: statics_heavy_algorithms_test.cpp; D2:
-// statics_algorithms_long_test.cpp; Direct alone to its limits: statics_test.cpp. Solvers play no part: what stands is stepped by the
-// managers and the host.
+// Bodies at rest, with every contact algorithm (contact_algorithms.h): D6, D7 of the catalogue. D1:
+// statics_heavy_algorithms_test.cpp; D2: statics_algorithms_long_test.cpp; Direct alone up to its limits: statics_test.cpp. The
+// solver does not matter: bodies at rest are advanced by the managers and the host.
 #include "statics_problems.h"
 
 using namespace plab;
 using namespace plab::test;
 
-// Equilibrium gives three equations for four feet; what is left free is the split (+ - - +). Of all splits Direct takes the one with the
-// least sum of squares: f_i = W / 4 (1 + x x_i / a^2 + y y_i / b^2), (x, y) where the resultant passes. From nothing it does so to
-// rounding; later steps look again where rounding has moved the table, and take the split with them.
+// Equilibrium gives three equations for four feet; the split (+ - - +) remains undetermined. Of all splits Direct takes the one with the
+// least sum of squares: f_i = W / 4 (1 + x x_i / a^2 + y y_i / b^2), where (x, y) is the point of action of the resultant. Without a
+// guess it does so to rounding; later steps solve again when rounding has moved the table, and the split drifts with them.
 TEST_CASE("D6: a table with four feet: the sum and the moments, and which split, by every algorithm")
 {
     // Relative: the split after one step, and after 300; sum and moments.
     constexpr Bound<3> table[] = {
-        // What its points give in one step is not the load.
+        // The impulses of its points in one step are not the load.
         {"None", "Impulse", {2, 2.4, 0.53}, {0.1, 0.1, 0.02}},
         {"located", "Impulse", {1.27, 1.27, 3e-14}, {0.1, 0.1, 0}},
         {"halved", "Rows/Direct", {1.5e-7, 2e-7, 4e-13}},
@@ -36,8 +36,8 @@ TEST_CASE("D6: a table with four feet: the sum and the moments, and which split,
 
 TEST_CASE("D7: a ladder slips iff tan theta < 1 / (2 mu), to 1e-4 rad either way, by every algorithm")
 {
-    // m: what it moves in a second above the limit; below: beside what it should slide, as a share.
-    // 1.5 % is what the linear law of sliding leaves out.
+    // m: displacement in a second above the limit; below it: relative to the expected slip.
+    // The linearised law of sliding neglects 1.5 %.
     constexpr Bound<2> table[] = {
         {"None", "Impulse", {4.7e-4, 2.1}, {5e-5, 0.2}},
         {"located", "Impulse", {7e-15, 0.0305}},

@@ -1,4 +1,5 @@
-// Heavy on light, by every algorithm of contacts (contact_algorithms.h): D1 of the catalogue. Direct alone to 1e8 : 1: statics_test.cpp.
+// Heavy on light, with every contact algorithm (contact_algorithms.h): D1 of the catalogue. For Direct up to 1e8 : 1 see
+// statics_test.cpp.
 #include "statics_problems.h"
 
 using namespace plab;
@@ -6,7 +7,8 @@ using namespace plab::test;
 
 TEST_CASE("D1: 1 kg on 1 kg, 10 kg on 1 kg, 1000 kg on 1 kg, for a second, by every algorithm")
 {
-    // Loads and way of the top for 1:1; the same for 10:1; way of the top for 1000:1, and whether it is told.
+    // Loads and displacement of the top for 1:1; the same for 10:1; displacement of the top for 1000:1, and whether it is
+    // reported.
     constexpr Bound<6> table[] = {
         {"None", "Impulse", {2e-11, 2.7e-3, 1.01, 0.17, 0.9, 9}, {0, 5e-4, 0.9, 0.02, 0.1, 1}},
         {"halved", "Impulse", {1.6e-12, 2e-13, 1.8e-6, 3e-7, 0.16, 0}, {0, 0, 0, 0, 0.01, 0}},

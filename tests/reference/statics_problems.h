@@ -1,4 +1,5 @@
-/// Problems of statics for any algorithm (contact_algorithms.h): stacks (D1, D2), a table (D6), a ladder (D7), and what they should carry.
+/// Statics problems for any algorithm (contact_algorithms.h): stacks (D1, D2), a table (D6), a ladder (D7), with the loads that
+/// they should carry.
 #pragma once
 
 #include "reference/contact_algorithms.h"
@@ -9,7 +10,8 @@ namespace plab::test
 
 inline constexpr double kG = 9.81;  // m/s^2
 
-/// Those that let nothing give way. Springs sink by m g / k: penalty_test.cpp; stacks and mass ratios on them: tests/stability.
+/// Algorithms with rigid contacts. Springs sink by m g / k: penalty_test.cpp; for stacks and mass ratios on springs see
+/// tests/stability.
 inline std::vector<Algorithm> rigid_algorithms()
 {
     std::vector<Algorithm> out = standing_algorithms();
@@ -17,7 +19,7 @@ inline std::vector<Algorithm> rigid_algorithms()
     return out;
 }
 
-/// Unit cubes one upon another.
+/// Unit cubes stacked on one another.
 inline std::string stack(const std::vector<double>& masses, const Algorithm& algorithm)
 {
     std::string body = kGround, ids;
@@ -29,7 +31,7 @@ inline std::string stack(const std::vector<double>& masses, const Algorithm& alg
     return body + gravity(ids) + contact(ids + "ground", algorithm, 0, 0.8);
 }
 
-/// Largest relative error of what a face carries.
+/// Largest relative error of the load on a face.
 inline double worst_load(const Scene& s, const std::vector<double>& masses)
 {
     double above = 0, worst = 0;
@@ -44,11 +46,11 @@ inline double worst_load(const Scene& s, const std::vector<double>& masses)
 
 struct Stood
 {
-    double load = 0;      ///< largest relative error of what a face carries
-    double sunk = 0;      ///< m, the top
-    double reported = 0;  ///< times that it was said that contacts did not converge, or sink
+    double load = 0;      ///< largest relative error of the load on a face
+    double sunk = 0;      ///< m, displacement of the top
+    double reported = 0;  ///< number of reports that contacts did not converge, or sink
 };
-/// `over`: the loads are means over so many of the last steps; what sweeps leave unfinished jumps from step to step.
+/// `over`: the loads are averaged over this many of the last steps, as unconverged sweeps make them fluctuate from step to step.
 inline Stood stand(const Algorithm& algorithm, const std::vector<double>& masses, std::int64_t steps, std::int64_t over = 1)
 {
     Scene s(stack(masses, algorithm), "dt=\"1/60\"");
@@ -75,7 +77,8 @@ struct FourFeet
     static double y_of(std::size_t foot) { return (foot & 2) != 0 ? b : -b; }
 
     static std::string scene(const Algorithm& algorithm);
-    /// Of forces of the feet, relative: from the split of least norm, affine in their places; from the sum and the moments.
+    /// Relative errors of the forces of the feet: from the split of least norm, which is affine in their positions; from the sum
+    /// and the moments.
     static double off_least(const std::vector<double>& f);
     static double off_balance(const std::vector<double>& f);
 };
@@ -115,8 +118,8 @@ inline double FourFeet::off_balance(const std::vector<double>& f)
                      std::fabs(b * (f[2] + f[3] - f[0] - f[1]) / weight - cy)});
 }
 
-// D7: a uniform capsule of length L between the centres of its ends (radius r), its foot on a floor with friction, its head at a smooth
-// wall. Moments about the foot's centre: m g L cos / 2 = f (L sin + r), f <= mu m g: it slips iff
+// D7: a uniform capsule of length L between the centres of its ends (radius r), its foot on a floor with friction, its head at a
+// smooth wall. Moments about the centre of the foot: m g L cos / 2 = f (L sin + r), f <= mu m g. It slips if and only if
 //   (sin theta + r / L) / cos theta < 1 / (2 mu),     tan theta < 1 / (2 mu) for a thin one.
 // Below that, by delta, it slides: with F' = mu L cos + L sin / 2 the angle falls by delta (cosh k t - 1),
 //   k^2 = m g F' / (I + m L^2 sin^2 / 4),   I = m L^2 / 12.
@@ -130,7 +133,7 @@ struct Ladder
         const double q = 1 / (2 * mu);
         return std::atan(q) - std::asin(r / L / std::sqrt(1 + q * q));
     }
-    /// m: how far its middle slides in `t` from `off` below the limit.
+    /// m: the distance that its centre slides in `t`, starting `off` below the limit angle.
     static double slides(double off, double t)
     {
         const double c = std::cos(limit() - off), sn = std::sin(limit() - off);
@@ -143,7 +146,7 @@ struct Ladder
 inline std::string Ladder::scene(const Algorithm& algorithm, double theta)
 {
     const double c = std::cos(theta), sn = std::sin(theta);
-    // The capsule's axis is z, tilted towards +x, where the wall is.
+    // The axis of the capsule is z, tilted towards +x, where the wall is.
     const std::string turn = "axis 0 1 0 " + text((1.5707963267948966 - theta) * 57.295779513082321) + " deg";
     return kGround +
            std::string("<component id=\"wall\" type=\"State/Static\" shape=\"floor\" orientation=\"axis 0 1 0 -90 deg\" position=\"") +

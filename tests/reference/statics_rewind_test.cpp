@@ -1,5 +1,5 @@
-// A12: what a step depends on is state: put back what was saved at any step, and the same bits follow, in contact, for each
-// manager, on one thread and two. Where nothing is lost, speeds turned round lead back.
+// A12: everything that a step depends on is state. If a saved state is restored at any step, the same bits follow: in contact,
+// with each manager, with one thread and two. Without dissipation, reversed velocities lead back.
 #include "plab/random.h"
 #include "statics_scene.h"
 #include "support/bare_run.h"

@@ -1,4 +1,4 @@
-/// Scenes of things that lie on one another, from blueprint text: contacts by rows (Response/Rows) and a manager.
+/// Scenes of stacked and supported bodies, from blueprint text: contacts by rows (Response/Rows) with a manager.
 #pragma once
 
 #include <string>
@@ -40,12 +40,12 @@ inline std::string contact(const std::string& between, const std::string& manage
 
 inline std::string name_of_box(std::size_t i) { return "b" + std::string(i < 10 ? "00" : i < 100 ? "0" : "") + std::to_string(i); }
 
-/// What each contact point of two bodies puts on the pair's second one, N, W; in the order of features. Of managers and impulses: over the
-/// last step.
+/// The force of each contact point of two bodies on the second body of the pair, N, W; in the order of features. For managers
+/// and impulses: the mean over the last step.
 struct PointForce
 {
     Vec3 force, normal;
-    bool on_first = false;  ///< of those asked for: then the force is on `a`
+    bool on_first = false;  ///< the first of the two requested bodies: then the force is on `a`
 };
 inline std::vector<PointForce> forces_of(const Scene& s, const std::string& a, const std::string& b)
 {
@@ -63,7 +63,7 @@ inline std::vector<PointForce> forces_of(const Scene& s, const std::string& a, c
     return out;
 }
 
-/// What the contacts of a and b put on b, N, W.
+/// Total force of the contacts of a and b on b, N, W.
 inline Vec3 force_between(const Scene& s, const std::string& a, const std::string& b)
 {
     Vec3 sum;
@@ -71,7 +71,7 @@ inline Vec3 force_between(const Scene& s, const std::string& a, const std::strin
     return sum;
 }
 
-/// Forces of a pair's points along the normal, N.
+/// Normal forces at the points of a pair, N.
 inline std::vector<double> point_forces(const Scene& s, const std::string& a, const std::string& b)
 {
     std::vector<double> out;

@@ -1,5 +1,5 @@
-// Statics under Response/Rows with Manager/Direct: what contacts carry, in closed form. D1, D2 as in the catalogue; the other algorithms
-// and problems: statics_algorithms_test.cpp.
+// Statics with Response/Rows and Manager/Direct: the loads on contacts in closed form. D1, D2 as in the catalogue; for the other
+// algorithms and problems see statics_algorithms_test.cpp.
 #include <algorithm>
 
 #include "statics_problems.h"
@@ -18,7 +18,7 @@ struct Loads
     std::size_t reported = 0;  ///< events that contacts did not converge
 };
 
-/// Direct has to be right in each step.
+/// Direct must be accurate in every step.
 Loads loads_of(const std::vector<double>& masses, std::int64_t steps)
 {
     Scene s(stack(masses, {"None", "Rows"}), "dt=\"1/60\"");

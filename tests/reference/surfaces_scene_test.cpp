@@ -1,4 +1,4 @@
-// scenes/surfaces.xml: what is in something concave stays in it.
+// scenes/surfaces.xml: bodies inside concave surfaces stay inside.
 #include "support/scene.h"
 
 using namespace plab;

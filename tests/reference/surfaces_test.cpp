@@ -15,7 +15,7 @@ std::string still(const std::string& id, const std::string& type, const std::str
     return "<component id=\"" + id + ".shape\" type=\"Shape/" + type + "\" " + attributes + "/><component id=\"" + id +
            "\" type=\"State/Static\" shape=\"" + id + ".shape\"/>";
 }
-/// 40 x 40 squares of 1/8 m at height 0.
+/// A field of 40 x 40 squares of 1/8 m at height 0.
 std::string flat() { return still("ground", "HeightField", "columns=\"41\" rows=\"41\" spacing=\"0.125\""); }
 std::string step_of(double h) { return "dt=\"" + text(h) + "\""; }
 std::string cylinder(const std::string& id, double radius, double height, const std::string& attributes)
@@ -42,7 +42,7 @@ TEST_CASE("a ball on a height field at height 0 does what it does on a plane, bi
             on_plane.step(), on_field.step();
             const double place = distance(on_plane.vec("a", "position"), on_field.vec("a", "position"));
             const double spin = distance(on_plane.vec("a", "angular_velocity"), on_field.vec("a", "angular_velocity"));
-            // Who certifies looks at other times: a field is not convex, so its bounds are others.
+            // Certifying resolutions query at other times: a height field is not convex, so its bounds differ.
             CHECK(place <= (algorithm.certifies() ? 1e-9 : 0));
             CHECK(spin <= (algorithm.certifies() ? 1e-8 : 0));
         }
@@ -61,7 +61,7 @@ TEST_CASE("what slides over inner edges of a flat grid keeps its speed, and roll
         CHECK(distance(s.vec("a", "linear_velocity"), {1.3, 0.17, 0}) < 1e-12);
         CHECK(distance(s.vec("b", "linear_velocity"), {1.1, 0.29, 0}) < 1e-12);
         CHECK(length(s.vec("b", "angular_velocity")) < 1e-12);
-        // It slides until it rolls, at 5/7 of its speed.
+        // It slides until it rolls, at 5/7 of its initial speed.
         Scene rolls(flat() + sphere("a", 0.1, at({-1.3, 0.3, 0.1}, {1.4, 0.14, 0})) + gravity("a") +
                     contact("a ground", algorithm, 0, 0.8));
         rolls.run(1.5);
@@ -100,7 +100,8 @@ TEST_CASE("a ball in a closed shell is a billiard: energy, angular momentum and 
 
 namespace
 {
-/// Where a ball of radius 0.1 in a bowl or bore of radius 0.6 is after one period, how fast, and what it did.
+/// A ball of radius 0.1 in a bowl or bore of radius 0.6 after one period: its distance from the start (m), the change of its energy (J),
+/// and the numbers of contact events.
 struct Swing
 {
     double place = 0, energy = 0;
@@ -145,7 +146,7 @@ TEST_CASE("a ball swings in a bowl like a pendulum, and rolls in a bore with 7/5
 
 TEST_CASE("a ball that slides or rolls over a ball or a cylinder stays in one contact until it leaves")
 {
-    // It leaves where cos theta = 2/3 (slides), 10/17 (rolls). Before that, at cos theta = 0.75:
+    // It leaves where cos theta = 2/3 (sliding), 10/17 (rolling). Before that, at cos theta = 0.75:
     const double R = 0.5, r = 0.1, start = 0.1;
     for (const Algorithm& algorithm : {Algorithm{"None", "Rows"}, {"Speculative", "Rows"}, {"LocalRoot", "Rows"}, {"LocalRoot", "Impulse"}})
         for (const bool rolls : {false, true})
@@ -178,7 +179,7 @@ TEST_CASE("a ball that slides or rolls over a ball or a cylinder stays in one co
 
 TEST_CASE("a box lies in a bore on two edges, and carries its weight there")
 {
-    // Edges at 30 degrees from the vertical: each presses with m g / (2 cos 30).
+    // Edges at 30 degrees from the vertical: each carries m g / (2 cos 30).
     const double half = 0.3, low = 0.1;
     for (const Algorithm& algorithm : {Algorithm{"None", "Rows"}, {"LocalRoot", "Rows"}, {"LocalRoot", "Impulse"}, {"None", "Impulse"}})
     {
@@ -209,7 +210,7 @@ TEST_CASE("solids of every kind come to rest on waves, on a mesh and in a bowl")
                     cylinder("c", 0.1, 0.3, at({-0.6, 0.3, 0.6}) + " orientation=\"axis 1 0 0 1\"") + gravity("a b c") +
                     contact("a b c wall", algorithm, 0, 0.6));
             REQUIRE_MESSAGE(s.loaded(), s.error());
-            // Where triangles rise beyond the plane of contact, bounds are of first order: resolution.grazing.
+            // Where triangles rise above the plane of contact, the bounds are of first order: resolution.grazing.
             s.warnings_expected = algorithm.certifies();
             const double before = energy(s);
             double most = before;
@@ -230,7 +231,7 @@ TEST_CASE("a surface is for what stands still, and has no mass")
     { return Scene("<component id=\"s\" " + shape + "/><component id=\"b\" shape=\"s\" " + body + "/>").error(); };
     const std::string bowl = "type=\"Shape/Bowl\" radius=\"1\"";
     CHECK(error(bowl, "type=\"State/RigidBody\" density=\"100\"").find("a bowl is a surface and has no volume") != std::string::npos);
-    CHECK(error(bowl, "type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"").find("that forces do not move") != std::string::npos);
+    CHECK(error(bowl, "type=\"State/RigidBody\" mass=\"1\" inertia=\"1 1 1\"").find("that are not dynamic") != std::string::npos);
     CHECK(error(bowl, "type=\"State/Static\"").empty());
     CHECK(error("type=\"Shape/Bowl\" radius=\"1\" opening=\"-1\"", "type=\"State/Static\"").find("opening must be above") !=
           std::string::npos);

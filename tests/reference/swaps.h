@@ -1,4 +1,4 @@
-/// What the tests of swaps share: scenes in which every algorithm has something to do, and requests.
+/// Shared by the tests of swaps: scenes in which every algorithm has something to do, and requests.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,8 @@ inline const std::vector<std::string>& managers()
     return list;
 }
 
-/// The ground, and the laws: ids `contact`, `contact.resolution`, `contact.response` and, of rows, `contact.response.manager`.
+/// The ground and the contact laws: ids `contact`, `contact.resolution`, `contact.response` and, for rows,
+/// `contact.response.manager`.
 inline std::string ground_and_contact(const std::string& resolution, const std::string& response, const std::string& more = "")
 {
     std::string parts =
@@ -42,14 +43,14 @@ inline std::string ground_and_contact(const std::string& resolution, const std::
     return parts;
 }
 
-/// A body that collides as its shape.
+/// A body that collides with its shape.
 inline std::string solid(const std::string& id, const std::string& shape, double mass, const Vec3& position, const std::string& more = "")
 {
     return "<component id='" + id + ".shape' type='Shape/" + shape + "/><component id='" + id + "' type='State/RigidBody' shape='" + id +
            ".shape' mass='" + text(mass) + "' position='" + text(position) + "' " + more + "/>";
 }
 
-/// A box on a box, a ball that rolls, one that bounces and one that spins far away.
+/// A box on a box, a rolling ball, a bouncing ball, and a ball that spins far away.
 inline std::string heap()
 {
     return gravity() + solid("low", "Box' half_extents='0.2 0.2 0.1'", 2, {0, 0, 0.1}) +
@@ -59,7 +60,7 @@ inline std::string heap()
            solid("spinner", "Box' half_extents='0.1 0.2 0.3'", 1, {0, 0, 1000}, "linear_velocity='1 2 30' angular_velocity='3 0.1 0.2'");
 }
 
-/// A block on a slope of 30 degrees (gravity leans), held by the stretch of its contacts' springs, at 1/60 s.
+/// A block on a slope of 30 degrees (inclined gravity), held by the stiction springs of its contacts, at 1/60 s.
 inline Scene block_on_a_slope()
 {
     return Scene(
@@ -75,7 +76,7 @@ inline simulation::Reply swap(Scene& s, const std::string& id, const std::string
 {
     return s.ask(simulation::SwapOperation{id, type, std::move(values)});
 }
-/// A swap that must be done.
+/// A swap that must succeed.
 inline simulation::Reply swapped(Scene& s, const std::string& id, const std::string& type, std::vector<simulation::NamedValue> values = {})
 {
     simulation::Reply reply = swap(s, id, type, std::move(values));
@@ -94,7 +95,7 @@ inline std::string type_name(const Scene& s, const std::string& id)
 {
     return s.simulation().world().type_of(s.simulation().world().find(id))->info.name;
 }
-/// "kept", "lost" ... as the reply says of a field; empty if it says nothing.
+/// What the reply reports for a field: "kept", "lost" ...; empty if it reports nothing.
 inline std::string transfer_of(const simulation::Reply& reply, const std::string& field)
 {
     constexpr const char* kNames[] = {"kept", "converted", "given", "fresh", "lost"};

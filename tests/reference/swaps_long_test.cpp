@@ -1,4 +1,4 @@
-// H8 at length, and an hour of stiction.
+// H8 with more swaps, and stiction over one hour.
 #include "swaps_storm.h"
 
 using namespace plab;

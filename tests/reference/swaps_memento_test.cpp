@@ -1,4 +1,5 @@
-// What a step depends on is in the memento also where contacts remember: stiction springs, warm starts, overlap that a swap left.
+// Everything that a step depends on is in the memento, including the memory of contacts: stiction springs, warm starts, overlap
+// left by a swap.
 #include "support/bare_run.h"
 #include "swaps.h"
 

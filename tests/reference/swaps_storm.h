@@ -1,5 +1,5 @@
-/// H8: a storm of seeded swaps over balls that bounce (C4), a chain of joints (E5), a gear line (F2) and stacks on both kinds of
-/// contact.
+/// H8: a sequence of random (seeded) swaps applied to bouncing balls (C4), a chain of joints (E5), a gear train (F2), and stacks
+/// on both kinds of contact.
 #pragma once
 
 #include <utility>
@@ -13,7 +13,7 @@ namespace plab::test
 inline std::string storm_scene()
 {
     std::string parts = gravity() + solver_is("RungeKutta4");
-    // Balls over a floor of their own.
+    // Balls above a floor of their own.
     std::string balls;
     for (int i = 0; i < 6; ++i)
     {
@@ -52,20 +52,21 @@ struct StormResult
 {
     std::uint64_t hash = 0;
     int done = 0, refused = 0;
-    // What kinetic energy, work and the start leave unexplained in one step:
-    double worst_ledger = 0;   ///< J, without springs, by solvers of order 2 and more
-    double worst_springs = 0;  ///< J, the same while springs push
-    double worst_kicks = 0;    ///< by the solver of order 1: over what its kicks leave out (see Audit)
+    // Energy of one step that kinetic energy, work and the initial energy do not explain:
+    double worst_ledger = 0;   ///< J, without springs, for solvers of order 2 and more
+    double worst_springs = 0;  ///< J, the same while springs are active
+    double worst_kicks = 0;    ///< for the solver of order 1: relative to what its kicks neglect (see Audit)
     double highest = 0;        ///< m, of the balls
     double gear_error = 0;     ///< rad/s
     double chain_error = 0;    ///< m
-    double sunk = 0;           ///< m, of the stack into the floor
+    double sunk = 0;           ///< m, sinking of the stack into the floor
     bool finite = true;
 };
 
-/// The ledger, step by step. The solver of order 1 books less than it does: a kick from v to v + dv is booked as m v dv (the
-/// power of the forces where it begins) and changes the energy by m v dv + m dv^2 / 2. The kicks of one step leave out no more
-/// than one of their sum would, as far as they push one way; joints and impacts, booked as what they are, only add to the sum.
+/// The energy balance, step by step. The solver of order 1 records less work than it does: a kick from v to v + dv is recorded
+/// as m v dv (the power of the forces at its beginning), but changes the energy by m v dv + m dv^2 / 2. The kicks of one step
+/// together neglect no more than one kick with their sum would, if they have the same direction; joints and impacts are recorded
+/// exactly and only add to the sum.
 class Audit
 {
 public:
@@ -78,11 +79,11 @@ public:
         const bool pushed = springs();
         s.step();
         const simulation::Totals t = s.simulation().totals();
-        // What contacts made up is told of by itself.
+        // Energy added by contacts is reported separately.
         double made = 0;
         for (const simulation::ContactEnergy& e : s.simulation().stepper().contact_energy()) made += e.made;
         const double now = t.kinetic - s.simulation().kinetic_at_start() - t.work - made;
-        // A comparison with what is not a number is false: it has to be asked for.
+        // Comparisons with NaN are false, so NaN must be checked explicitly.
         out.finite = out.finite && std::isfinite(now) && std::isfinite(t.stored);
         const double change = std::fabs(now - std::exchange(unexplained_, now));
         constexpr double kNothing = 1e-9;  // J
@@ -133,7 +134,7 @@ inline void check_storm(Scene& s, StormResult& out)
     }
 }
 
-/// `swaps` that are done, with 0 to 3 steps in between. What is swapped is always one of the algorithms.
+/// Applies `swaps` swaps with 0 to 3 steps in between. Each swap exchanges one of the algorithms.
 inline StormResult storm(int swaps, std::uint64_t seed, int threads = 1)
 {
     Scene s(storm_scene(), dt(240), threads);
@@ -174,7 +175,7 @@ inline StormResult storm(int swaps, std::uint64_t seed, int threads = 1)
                 break;
         }
         const std::uint64_t before = s.hash();
-        // Soft ones that a step of 1/240 s is not cut to pieces for.
+        // Soft contacts for which a step of 1/240 s need not be divided.
         std::vector<simulation::NamedValue> values;
         if (type == "Response/Penalty")
             values = {{"stiffness", std::string("1e4")}, {"steps_per_contact", std::string("10")}, {"restitution", std::string("0.5")}};
@@ -191,23 +192,24 @@ inline StormResult storm(int swaps, std::uint64_t seed, int threads = 1)
     return out;
 }
 
-/// What must hold after any storm.
+/// Checks what must hold after any sequence of swaps.
 inline void check_result(const StormResult& r, double most_sunk)
 {
     CHECK(r.finite);
     CHECK(r.refused < r.done / 4);
-    // The highest ball began at 2 m, and no law gives back more than came in.
+    // The highest ball started at 2 m, and no law returns more energy than it received.
     CHECK(r.highest <= 2.0 + 1e-3);
     CHECK(r.gear_error <= 1e-12);
     CHECK(r.chain_error <= 1e-9);
     CHECK(r.sunk <= most_sunk);
-    // Methods of order 2 and more: 1.2e-4 J is reached, by StoermerVerlet on the chain.
+    // Methods of order 2 and more: measured 1.2e-4 J, by StoermerVerlet on the chain.
     CHECK(r.worst_ledger <= 1e-3);
-    // A swing of energy E at w in pieces h books power E w sin(2 w t); one piece of order 2 leaves up to E (w h)^3 / 3. Of a fall of
-    // 2 m, E = 196 J, in ten pieces per contact that is 2 J; reached are 0.05 J by StoermerVerlet, 0.14 J by Exponential.
+    // An oscillation of energy E and frequency w in pieces of length h records the power E w sin(2 w t); one piece of order 2
+    // leaves up to E (w h)^3 / 3. For a fall of 2 m, E = 196 J, in ten pieces per contact that is 2 J; measured are 0.05 J by
+    // StoermerVerlet, 0.14 J by Exponential.
     CHECK(r.worst_springs <= 0.5);
-    // By the method of order 1 itself 1, and more by what is of higher order: 1.013 is reached. A term with the wrong sign is twice
-    // its work off, which is 4 v / dv of that.
+    // The method of order 1 itself leaves 1, and terms of higher order add to that: measured 1.013. A term with the wrong sign
+    // would be wrong by twice its work, which is 4 v / dv in this unit.
     CHECK(r.worst_kicks <= 1.1);
 }
 

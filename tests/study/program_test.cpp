@@ -259,7 +259,7 @@ TEST_CASE("wrong use ends with code 2, nothing to study with code 1, and both sa
              {{scene, "-o", "x"}, 2, "needs --until"},
              {{scene, "--until", "1"}, 2, "needs -o DIR"},
              {{scene, "--until", "nan", "-o", "x"}, 2, "positive number"},
-             {{scene, "--until", "1", "-o", "x", "--vary", "dt"}, 2, "--vary wants"},
+             {{scene, "--until", "1", "-o", "x", "--vary", "dt"}, 2, "--vary needs"},
              {{scene, "--until", "1", "-o", "x", "--swap", "solver=x"}, 2, "STEP:ID=TYPE"},
              {{scene, "--until", "1", "-o", "x", "--swap", "0:solver=Nope"}, 2, "unknown type 'Solver/Nope'"},
              {{scene, "--until", "1", "-o", "x", "--swap", "0:slover=Exact"}, 2, "did you mean 'solver'"},
@@ -267,9 +267,11 @@ TEST_CASE("wrong use ends with code 2, nothing to study with code 1, and both sa
              {{scene, "--until", "1", "-o", "x", "--swap", "30:solver=Exact", "--vary", "dt=1/60,1/120"}, 2, "give a time"},
              {{scene, "--until", "1", "-o", "x", "--swap", "0.51s:solver=Exact", "--vary", "dt=1/60,1/120"}, 2, "no step of dt = "},
              {{scene, "--until", "1", "-o", "x", "--vary", "dt=1/60", "--vary", "dt=1/120"}, 2, "--vary dt is given twice"},
-             {{scene, "--until", "1", "-o", "x", "--vary", "dt=1/60,1/60"}, 2, "one value given twice"},
+             {{scene, "--until", "1", "-o", "x", "--vary", "dt=1/60,1/60"}, 2, "the same value, given twice"},
              {{scene, "--until", "1", "-o", "x", "--scale", "nosuch.position=1"}, 1, "no quantity of that name is compared"},
-             {{scene, "--until", "1", "-o", "x", "--reference", "none", "--reference-algorithm", "dt=1/60"}, 2, "--reference auto only"},
+             {{scene, "--until", "1", "-o", "x", "--reference", "none", "--reference-algorithm", "dt=1/60"},
+              2,
+              "requires --reference auto"},
              {{scene, "--until", "1", "-o", "x", "--suite", "y"}, 2, "leave SCENE out"},
              {{"nowhere.xml", "--until", "1", "-o", "x"}, 1, "nowhere.xml"},
              {{scene, "--until", "1", "-o", "x", "--reference", "exact:bounce"}, 1, "does not describe this scene"},
@@ -309,7 +311,8 @@ TEST_CASE("a study that is interrupted writes nothing, says where it was, and en
         std::this_thread::sleep_for(Milliseconds(1500));
         process.signal(signal);
         CHECK(process.wait(Milliseconds(5000)) == 128 + signal);
-        CHECK_MESSAGE(has(process.errors(), "interrupted while recording run 1 of 6; nothing of this study is written"), process.errors());
+        CHECK_MESSAGE(has(process.errors(), "interrupted while recording run 1 of 6; no result of this study is written"),
+                      process.errors());
         CHECK(!std::filesystem::exists(where));
     }
 }

@@ -1,4 +1,4 @@
-/// A world with its stepper, without Simulation around them: the memento is taken and put back from outside.
+/// A world with its stepper but without Simulation: tests save and restore the memento from outside.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace plab::test
 class BareRun
 {
 public:
-    /// What the next steps depend on.
+    /// Everything that the next steps depend on.
     struct Memento
     {
         Tick tick;
@@ -21,7 +21,7 @@ public:
         simulation::ContactCache contacts;
     };
 
-    /// A scene that the world or the stepper refuses fails the test.
+    /// The test fails if the world or the stepper refuses the scene.
     explicit BareRun(const model::SceneSpec& scene, int threads = 1) : dt_(scene.settings.dt), world_(library())
     {
         world_.describe(scene.settings, scene.file);
@@ -47,7 +47,7 @@ public:
         ++tick_;
         return stepper_->state_hash();
     }
-    /// Hash after each of `steps` steps.
+    /// The hash after each of `steps` steps.
     std::vector<std::uint64_t> advance(int steps)
     {
         std::vector<std::uint64_t> out;

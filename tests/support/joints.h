@@ -1,4 +1,4 @@
-/// Pieces of blueprints for scenes with joints.
+/// Parts of blueprints for scenes with joints.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// Linkages of the catalogue that several tests run: E2, E3, E4 and E8.
+/// Linkages of the catalogue used by several tests: E2, E3, E4 and E8.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace plab::test
 {
 
-/// A rod of 1 kg along an axis of the world: m l^2/12 across, little about itself.
+/// A rod of 1 kg along an axis of the world: inertia m l^2/12 about the transverse axes, little about its own axis.
 inline std::string rod(const std::string& id, const Vec3& from, const Vec3& to, const std::string& more = "")
 {
     const Vec3 along = to - from;
@@ -25,14 +25,15 @@ inline std::string hinge(const std::string& id, const std::string& a, const std:
 }
 inline std::string number(int i) { return std::to_string(100 + i); }
 
-/// E2: N four-bars side by side, upright, moving to +x at 1 m/s on top. Passes its singular configuration twice a turn.
+/// E2: N four-bar linkages side by side, upright, whose tops move towards +x at 1 m/s. It passes its singular configuration
+/// twice per turn.
 inline std::string four_bars(int n, const std::string& solver = solver_is("RungeKutta4"))
 {
     std::string parts = solver + gravity();
     for (int i = 0; i <= n; ++i)
     {
         const Vec3 foot{double(i), 0, 0}, top{double(i), 0, 1};
-        // Turns about y with w = 1 rad/s: the top moves at 1 m/s to +x.
+        // Rotates about y with w = 1 rad/s: the top moves at 1 m/s towards +x.
         parts += rod("v" + number(i), foot, top, "linear_velocity='0.5 0 0' angular_velocity='0 1 0'");
         parts += hinge("f" + number(i), "", "v" + number(i), foot);
     }
@@ -52,7 +53,8 @@ struct FourBar
 {
     static constexpr double crank = .2, coupler = .5, rocker = .4, ground = .5;
 
-    /// The rocker's end: where the circle of the coupler about the crank's end meets that of the rocker about its foot, above the ground.
+    /// The end of the rocker: the intersection, above the ground, of the coupler's circle about the crank's end with the
+    /// rocker's circle about its base.
     static Vec3 rocker_end(double angle)
     {
         const double x = crank * std::cos(angle), z = crank * std::sin(angle), dx = ground - x, dz = -z, r2 = dx * dx + dz * dz,
@@ -71,7 +73,7 @@ struct FourBar
                hinge("j3", "coupler", "rocker", end) + hinge("j4", "", "rocker", foot) +
                joint("m", "Motor", "", "crank", "axis='0 -1 0' speed='" + text(2 * std::numbers::pi) + "'");
     }
-    /// m, of the rocker's end: its middle is half way up to it.
+    /// m, position of the rocker's end; the rocker's centre is half way up to it.
     static double error(const Scene& s)
     {
         const double angle = 2 * std::numbers::pi * s.simulation().time();
@@ -87,11 +89,12 @@ inline std::string torn_rod(const std::string& solver)
            joint("right", "Ball", "", "rod", "anchor_a='1 0 0' anchor_b='0.9 0 0'");
 }
 
-/// E3: five rods and the ground, six hinges; let go.
+/// E3: five rods and the ground, six hinges; released from rest.
 inline std::string bricard()
 {
     const Vec3 at[6] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, -1, 1}, {0, -1, 1}, {0, 0, 1}};
-    // Each hinge is square to both rods that meet in it; the first and the last are on the ground, whose rod is the sixth.
+    // Each hinge axis is perpendicular to both rods that it connects; the first and the last hinge are on the ground, which
+    // counts as the sixth rod.
     const char* axis[6] = {"0 1 0", "0 0 1", "1 0 0", "0 1 0", "0 0 1", "1 0 0"};
     std::string parts = solver_is("RungeKutta4") + gravity("0 -9.81 0");
     for (int i = 0; i < 5; ++i)

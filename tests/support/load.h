@@ -1,5 +1,5 @@
-/// From blueprint text to a scene that runs, with the plugins of this build. Without a test framework, so that measuring
-/// programs use it too. Errors are those of the reader, of the compiler and of loading.
+/// Turns blueprint text into a running scene with the plugins of this build. Independent of the test framework, so that
+/// benchmark programs can use it too. Errors are those of the reader, the compiler and the loader.
 #pragma once
 
 #include <memory>
@@ -33,7 +33,7 @@ inline Result<model::SceneSpec> compile_read(const Result<model::Blueprint>& blu
     return model::compile(*blueprint, library(), existing);
 }
 
-/// `name` stands for the file in error messages.
+/// `name` replaces the file name in error messages.
 inline Result<model::SceneSpec> compile_text(const std::string& text, const std::string& name = "scene.xml",
                                              const model::SceneSpec* existing = nullptr)
 {

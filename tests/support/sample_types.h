@@ -1,5 +1,5 @@
-/// Component types for tests of the blueprint language: the roles, fields, rules and commands of the real ones in
-/// small, without plugins and without anything behind the commands.
+/// Component types for tests of the blueprint language: roles, fields, rules and commands like those of the real types, but
+/// without plugins and without implementations of the commands.
 #pragma once
 
 #include <algorithm>
@@ -211,7 +211,7 @@ inline void register_sample_interactions(Registrar& r)
         .host_command(Phase::Force, "Script/Force", "force(t, state)");
 }
 
-/// All sample types, always loaded.
+/// All sample types; they are always loaded.
 class SampleTypes final : public model::TypeSource
 {
 public:

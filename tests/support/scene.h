@@ -1,4 +1,4 @@
-/// A scene in a test: blueprint text in, figures out. Unexpected warnings fail the test.
+/// A scene in a test: blueprint text in, results out. Unexpected warnings fail the test.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -18,14 +18,14 @@ inline std::string first_error(const Errors& errors)
     return all;
 }
 
-/// Why something was refused; empty if it was not.
+/// The reason for which something was refused; empty if it was accepted.
 template <class T>
 std::string reasons(const Result<T>& result)
 {
     return result.ok() ? std::string() : first_error(result.errors());
 }
 
-/// A file of the project, `name` from its root.
+/// A file of the project; `name` is relative to its root.
 inline Result<model::SceneSpec> compile_file(const std::string& name)
 {
     return compile_read(blueprint::read_blueprint_file(std::string(PLAB_SOURCE_DIR) + "/" + name));
@@ -34,7 +34,7 @@ inline Result<model::SceneSpec> compile_file(const std::string& name)
 class Scene
 {
 public:
-    /// `body` is what stands inside <plab>; dt and more go into `settings`, e.g. "dt='1/60'".
+    /// `body` is the content of <plab>; dt and more go into `settings`, e.g. "dt='1/60'".
     explicit Scene(const std::string& body, const std::string& settings = "dt=\"1/240\"", int threads = 1) : simulation_(library(), threads)
     {
         load(compile_text(whole_scene(body, settings)));
@@ -54,7 +54,7 @@ public:
             for (const Event& e : simulation_.events())
             {
                 if (keep_events) events.push_back(e);
-                // What a manager leaves is judged by each test's own bounds.
+                // Each test has its own bounds for the residual of a manager.
                 const bool fine = e.severity == Severity::Info || e.kind == "manager.not_converged";
                 if (!warnings_expected) CHECK_MESSAGE(fine, e.kind, ": ", e.message);
             }
@@ -76,7 +76,7 @@ public:
     double angle(const std::string& shaft) const { return real(shaft, "angle"); }
 
     std::uint64_t hash() const { return simulation_.state_hash(); }
-    /// Carries out one request at the present boundary, without a step.
+    /// Executes one request at the present step boundary, without a step.
     simulation::Reply ask(simulation::Operation operation) { return ask_all({std::move(operation)}); }
     simulation::Reply ask_all(std::vector<simulation::Operation> operations)
     {
@@ -109,7 +109,7 @@ private:
 /// |a - b| <= tolerance max(1, |b|).
 inline bool near(double a, double b, double tolerance) { return std::fabs(a - b) <= tolerance * std::fmax(1.0, std::fabs(b)); }
 inline double distance(const Vec3& a, const Vec3& b) { return length(a - b); }
-/// Angle of the rotation between two attitudes, rad.
+/// Rotation angle between two attitudes, rad.
 inline double attitude_error(const Quat& a, const Quat& b)
 {
     const Quat d = conjugate(a) * b;

@@ -1,4 +1,4 @@
-/// Numbers as blueprints write them, to their last digit.
+/// Numbers in the format of blueprints, with all their digits.
 #pragma once
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-/// One way: the driven shaft turns as the driver says, and the driver feels nothing.
+/// One-way coupling: the driven shaft copies the speed of the driver, and the driver feels no reaction.
 #pragma once
 
 #include "angular_velocity/coupling_rows.h"

@@ -3,9 +3,9 @@
 namespace plab::constraints
 {
 
-RoleBuilder CouplingRows::describe_driver(Schema& s) { return s.role(driver, "driver", {Facet::Shaft}, "turns the other"); }
+RoleBuilder CouplingRows::describe_driver(Schema& s) { return s.role(driver, "driver", {Facet::Shaft}, "the driving side"); }
 
-RoleBuilder CouplingRows::describe_driven(Schema& s) { return s.role(driven, "driven", {Facet::Shaft}, "is turned"); }
+RoleBuilder CouplingRows::describe_driven(Schema& s) { return s.role(driven, "driven", {Facet::Shaft}, "the driven side"); }
 
 void CouplingRows::describe_fields(Schema& s)
 {

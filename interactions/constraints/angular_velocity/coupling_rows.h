@@ -1,4 +1,4 @@
-/// What the algorithms of Constraint/AngularVelocity share: they can stand in for one another.
+/// Shared by the algorithms of Constraint/AngularVelocity, which are interchangeable.
 ///
 ///   C  = angle_b - f angle_a - phase_offset    rad      a: driver, b: driven, f: velocity factor
 ///   C' = speed_b - f speed_a                   rad/s
@@ -11,7 +11,7 @@
 namespace plab::constraints
 {
 
-/// Columns of one algorithm's table. Angles are never wrapped, so C needs no case for whole turns.
+/// Columns of one algorithm's table. Angles are never wrapped, so C needs no special case for whole turns.
 struct CouplingRows
 {
     Column<Ref> driver, driven;
@@ -29,10 +29,10 @@ protected:
     void describe_fields(Schema& s);
 };
 
-/// The ratio from factor or teeth.
+/// Sets the ratio from the factor or the tooth counts.
 Result<void> prepare_ratio(CouplingRows& rows, Row row);
-/// Errors and torque of a finished step. The phase counts from the end of the first step, and anew when the factor
-/// changed.
+/// Errors and torque at the end of a step. The phase is measured from the end of the first step, and anew after a change of the
+/// factor.
 void measure_coupling(CouplingRows& rows, Row row, const Shafts& shafts, const ShaftReactions& reactions, std::uint32_t component);
 
 /// Phase::Prepare.

@@ -1,4 +1,4 @@
-/// Reduced coordinates: all shafts that are coupled so turn as one, and only the root of each tree is integrated.
+/// Reduced coordinates: coupled shafts form one degree of freedom, and only the root of each tree is integrated.
 ///
 ///   J_root = sum rho_i^2 J_i,  alpha_root = sum rho_i tau_i / J_root,  speed_i = rho_i speed_root
 /// Ratios to the root are products of exact rationals; loops are compared exactly

@@ -19,7 +19,7 @@ void exchange_impulses(const StepContext& step, Rows which, const ImpulseRows& r
         const double f = rows.ratio[row].value;
         motion.begin(step.component_of_row[row], b);
         const double mobility = motion.mobility(b) + f * f * motion.mobility(a);
-        if (mobility == 0) continue;  // both are prescribed: the error stays, and the host tells of it
+        if (mobility == 0) continue;  // both are prescribed: the error remains, and the host reports it
         const double lambda = -(motion.rate(b) - f * motion.rate(a)) / mobility;
         motion.apply(b, lambda);
         motion.apply(a, -f * lambda);

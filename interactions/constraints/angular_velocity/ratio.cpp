@@ -11,12 +11,12 @@ namespace
 __extension__ typedef unsigned __int128 Wide;
 
 constexpr Wide kLargestDenominator = 1'000'000;
-constexpr double kLargestInteger = 0x1p53;  // up to here p/q is rounded once
+constexpr double kLargestInteger = 0x1p53;  // up to here p/q is rounded only once
 
 }  // namespace
 
-// Continued fraction of the double itself, m / 2^k, in integers: its convergents are the best approximations
-// (Khinchin, Continued Fractions, theorem 15), so the first that rounds to the double is the simplest one.
+// Continued fraction of the double itself, m / 2^k, in integer arithmetic. Its convergents are the best approximations
+// (Khinchin, Continued Fractions, theorem 15), so the first one that rounds to the double is the simplest.
 Ratio simple_ratio(double factor)
 {
     Ratio r;
@@ -33,7 +33,7 @@ Ratio simple_ratio(double factor)
         const Wide quotient = rest / divisor;
         const Wide remainder = rest % divisor;
         rest = divisor, divisor = remainder;
-        if (q != 0 && quotient > kLargestDenominator) break;  // the next q is beyond; keeps products in range
+        if (q != 0 && quotient > kLargestDenominator) break;  // the next q is too large; stopping here also keeps the products in range
         const Wide p_next = quotient * p + p_before;
         const Wide q_next = quotient * q + q_before;
         p_before = p, p = p_next, q_before = q, q = q_next;

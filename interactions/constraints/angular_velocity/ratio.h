@@ -10,13 +10,13 @@
 namespace plab::constraints
 {
 
-/// The simplest p/q with q <= 10^6 that is the same double as `factor`, if there is one: 0.1 is 1/10.
+/// The simplest p/q with q <= 10^6 that equals `factor` as a double, if there is one: 0.1 is 1/10.
 Ratio simple_ratio(double factor);
 
-/// turns of driven per turn of driver: +- driver_teeth / driven_teeth, minus for an external mesh.
+/// Turns of driven per turn of driver: +- driver_teeth / driven_teeth, minus for an external mesh.
 Ratio tooth_ratio(std::int64_t driver_teeth, std::int64_t driven_teeth, bool reversing);
 
-/// The factor as an author may give it. Teeth of 0 are not given.
+/// The factor as written in a scene. Tooth counts of 0 mean "not given".
 struct FactorGiven
 {
     double velocity_factor = 1;
@@ -24,7 +24,7 @@ struct FactorGiven
     std::int64_t driven_teeth = 0;
     std::string mesh = "external";
 };
-/// The ratio that is meant, or why that is not clear.
+/// The ratio, or an error if the input is ambiguous or incomplete.
 Result<Ratio> ratio_of(const FactorGiven& given);
 
 }  // namespace plab::constraints

@@ -6,15 +6,15 @@ namespace plab::constraints
 void CoordinateRows::describe_coordinate(Schema& s, std::vector<std::string> coordinates)
 {
     describe_pair(s, {Facet::Body, Facet::Shaft});
-    describe_spin(s, "", "b against a");
-    s.param(
-         along, "along", unit::one,
-         "which way: turn about the axis, slide along it" + std::string(coordinates.size() > 2 ? ", or distance between the points" : ""))
+    describe_spin(s, "", "b relative to a");
+    s.param(along, "along", unit::one,
+            "kind of motion: turn about the axis, slide along it" +
+                std::string(coordinates.size() > 2 ? ", or distance between the points" : ""))
         .or_else("turn")
         .one_of(std::move(coordinates));
     s.state(travel_axis_a, "travel_axis", unit::one, "the axis in the frame of a, or in the world");
-    s.state(placed_travel_axis, "placed_travel_axis", unit::one, "the axis that it was taken from").initially({});
-    s.output(position, "position", unit::one, "how far b is along it, rad or m");
+    s.state(placed_travel_axis, "placed_travel_axis", unit::one, "the axis parameter from which it was taken").initially({});
+    s.output(position, "position", unit::one, "value of the coordinate, rad or m");
     s.output(speed_now, "rate", unit::one, "its rate, rad/s or m/s");
 }
 

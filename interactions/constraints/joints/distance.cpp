@@ -6,7 +6,7 @@ namespace plab::constraints
 void LengthRows::describe_length(Schema& s)
 {
     describe_pair(s);
-    s.param(length, "length", unit::metre, "between the points; infinite: not given, then what it is when the joint is placed")
+    s.param(length, "length", unit::metre, "between the points; infinite: not given, then the distance when the joint is placed")
         .or_else(kInfinity)
         .not_negative()
         .may_be_infinite();

@@ -1,4 +1,4 @@
-/// A rod without mass between two points, and the spring that can stand in for it. One family.
+/// A massless rod between two points, and the spring that can replace it. One family.
 ///
 ///   Distance       |d| = l                                    1 row: J v = u . d', u = d/|d|
 ///                  bias = -( (|d'|^2 - (u . d')^2) / |d| + u . (w_b x (w_b x r_b) - w_a x (w_a x r_a)) )
@@ -14,7 +14,7 @@ namespace plab::constraints
 struct LengthRows : PairRows
 {
     Column<double> length;         // m, as given
-    Column<double> placed_length;  // m, as taken
+    Column<double> placed_length;  // m, as measured when the joint was placed
     Column<double> distance, distance_rate;
 
     void describe_length(Schema& s);
@@ -33,15 +33,15 @@ struct SpringDamperRows : LengthRows
     void describe(Schema& s);
 };
 
-/// The way between the points, at the present state.
+/// The vector between the points at the present state.
 struct Stretch
 {
     Sides sides;
     double distance = 0, rate = 0;
-    Vec3 u;  ///< from a to b; where they meet, the way they move, or any
+    Vec3 u;  ///< from a to b; if the points coincide, their direction of motion, or any direction
 };
 Stretch stretch_of(const Sides& sides);
-/// sign (|d| - length) as a row's error.
+/// A row with the error sign (|d| - length).
 ConstraintRow stretch_row(const Stretch& s, double length, double sign, std::uint32_t feature);
 
 void prepare_distance(Row row, DistanceRows& rows, const Bodies& bodies);

@@ -29,14 +29,14 @@ void GearOutputs::describe_gear(Schema& s, const std::string& last)
     s.output(phase_error, "phase_error", unit::radian, "of the angles since it engaged").reported_as_error();
     s.output(velocity_error, "velocity_error", unit::radian_per_second, "of the speeds").reported_as_error();
     s.output(torque, "torque", unit::newton_metre, "on " + last + " about its axle, at the last solver stage of the step");
-    s.output(redundant, "redundant", unit::one, "1: other rows already imply it");
+    s.output(redundant, "redundant", unit::one, "1: the row is implied by other rows");
 }
 
 void GearRows::describe(Schema& s)
 {
-    s.role(driver, "driver", {Facet::Body, Facet::Shaft}, "turns the other").writes();
-    s.role(driven, "driven", {Facet::Body, Facet::Shaft}, "is turned").writes();
-    s.role(carrier, "carrier", {Facet::Body}, "what bears both bodies' axles; none: the world").optional().writes();
+    s.role(driver, "driver", {Facet::Body, Facet::Shaft}, "the driving side").writes();
+    s.role(driven, "driven", {Facet::Body, Facet::Shaft}, "the driven side").writes();
+    s.role(carrier, "carrier", {Facet::Body}, "the body that carries both axles; none: the world").optional().writes();
     s.param(velocity_factor, "velocity_factor", unit::one, "turns of driven per turn of driver").or_else(1).nonzero();
     s.param(driver_teeth, "driver_teeth", unit::one, "tooth count of the driver; with driven_teeth, instead of velocity_factor")
         .or_else(0)
@@ -49,7 +49,7 @@ void GearRows::describe(Schema& s)
     s.param(driven_radius, "driven_radius", unit::metre, "of the driven's pitch circle, for the forces between the teeth; 0: not given")
         .or_else(0)
         .not_negative();
-    s.param(pressure_angle, "pressure_angle", unit::radian, "of the teeth, normal to them; below 90 deg; 20 deg is usual")
+    s.param(pressure_angle, "pressure_angle", unit::radian, "normal pressure angle of the teeth; below 90 deg; 20 deg is usual")
         .or_else(kUsualPressureAngle)
         .not_negative();
     s.param(helix_angle, "helix_angle", unit::radian, "of the teeth against the axle, at the pitch circle; within 90 deg, 0: spur gears")
@@ -60,16 +60,16 @@ void GearRows::describe(Schema& s)
     s.output(tangential_force, "tangential_force", unit::newton,
              "P_t = torque / driven_radius, of the teeth on driven; 0 without driven_radius. A pure couple turns the wheels: bearings "
              "feel none of these forces");
-    s.output(radial_force, "radial_force", unit::newton, "P_r = |P_t| tan(pressure_angle) / cos(helix_angle), that drives the axles apart");
+    s.output(radial_force, "radial_force", unit::newton, "P_r = |P_t| tan(pressure_angle) / cos(helix_angle), pushes the axles apart");
     s.output(axial_force, "axial_force", unit::newton, "P_a = P_t tan(helix_angle), along driven's axle");
     s.scratch(ratio, "ratio", "the factor as a rational");
 }
 
 void PlanetaryRows::describe(Schema& s)
 {
-    s.role(sun, "sun", {Facet::Body, Facet::Shaft}, "the wheel inside").writes();
-    s.role(ring, "ring", {Facet::Body, Facet::Shaft}, "the wheel outside").writes();
-    s.role(carrier, "carrier", {Facet::Body, Facet::Shaft}, "bears the planets between them").writes();
+    s.role(sun, "sun", {Facet::Body, Facet::Shaft}, "the inner wheel").writes();
+    s.role(ring, "ring", {Facet::Body, Facet::Shaft}, "the outer wheel").writes();
+    s.role(carrier, "carrier", {Facet::Body, Facet::Shaft}, "carries the planets between them").writes();
     s.param(sun_teeth, "sun_teeth", unit::one, "tooth count of the sun").positive().at_most(1e9);
     s.param(ring_teeth, "ring_teeth", unit::one, "tooth count of the ring").positive().at_most(1e9);
     sun_spin.describe_spin(s, "sun_", "the sun");
@@ -81,7 +81,7 @@ void PlanetaryRows::describe(Schema& s)
 namespace
 {
 
-/// The carrier bears bodies; a shaft's axle is fixed in the world.
+/// The carrier is the base of bodies; the axle of a shaft is fixed in the world.
 Ref base_of(const GearRows& rows, Row row, Ref who) { return who.facet == Facet::Body ? rows.carrier[row] : Ref{}; }
 
 struct GearSpins

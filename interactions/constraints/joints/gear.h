@@ -1,17 +1,18 @@
-/// Gears between bodies and shafts, in any mixture: a pair at a ratio, and the planetary train of three.
+/// Gears between any mixture of bodies and shafts: a pair at a ratio, and the planetary train of three.
 ///
 ///   Gear        C = angle_b - f angle_a - offset = 0                      J = [ -f | 1 ] on spins; a carrier takes the rest
 ///   Planetary   C = N_s angle_s + N_r angle_r - (N_s + N_r) angle_c - offset = 0, divided by N_s + N_r
 ///               (R. Willis, Principles of mechanism, 1841: (w_s - w_c)/(w_r - w_c) = -N_r/N_s)
 ///
-/// Angles count whole turns, so C holds over any number of them. For shafts alone, Constraint/AngularVelocity/Graph is
-/// cheaper and has no drift at all.
+/// Angles include whole turns, so C holds over any number of them. For shafts alone, Constraint/AngularVelocity/Graph is cheaper
+/// and free of drift.
 ///
-/// Forces between the teeth of a Gear, at the driven's pitch circle of radius r, with normal pressure angle a and helix angle b
-/// (ISO 21771; J. Shigley, Mechanical engineering design, chapter 13), T: torque on driven about its axle:
+/// Forces between the teeth of a Gear, at the pitch circle of radius r of the driven gear, with normal pressure angle a and
+/// helix angle b (ISO 21771; J. Shigley, Mechanical engineering design, chapter 13); T is the torque on the driven gear about
+/// its axle:
 ///   P_t = T / r        P_r = |P_t| tan a / cos b        P_a = P_t tan b
-/// They are put out, and no more: the row is a pure couple. It turns both wheels as P_t would, but neither their bearings nor
-/// whatever holds those feels P_t, P_r or P_a; where they should, add them to the bodies as forces.
+/// They are outputs only. The row is a pure couple: it turns both wheels as P_t would, but neither the bearings nor the parts
+/// that hold them feel P_t, P_r or P_a. Where they should, add them to the bodies as forces.
 #pragma once
 
 #include "angular_velocity/ratio.h"
@@ -20,7 +21,7 @@
 namespace plab::constraints
 {
 
-/// What gears put out.
+/// Outputs of gears.
 struct GearOutputs
 {
     Column<double> phase_offset, phase_factor;  // rad, 1
@@ -28,19 +29,19 @@ struct GearOutputs
     Column<std::int64_t> redundant;
 
     void describe_gear(Schema& s, const std::string& last);
-    /// The offset counts from when the gear began, and anew when its factor changed.
+    /// The offset is taken when the gear engages, and anew after a change of its factor.
     void engage(Row row, double factor, double phase)
     {
         if (phase_factor[row] != factor) phase_offset[row] = phase, phase_factor[row] = factor;
     }
 };
 
-/// What the teeth of a pair press with, N.
+/// Forces between the teeth of a pair, N.
 struct ToothForces
 {
     double tangential = 0, radial = 0, axial = 0;
 };
-/// `torque` on a gear (N m), `radius` of its pitch circle (m, positive), angles below a right one (rad).
+/// `torque` on a gear (N m), `radius` of its pitch circle (m, positive), angles below a right angle (rad).
 ToothForces tooth_forces(double torque, double radius, double pressure_angle, double helix_angle);
 
 struct GearRows : GearOutputs

@@ -10,14 +10,14 @@ namespace plab::constraints
 void MotorRows::describe(Schema& s)
 {
     describe_coordinate(s, {"turn", "slide"});
-    s.role(manager, "manager", {Facet::Component}, "holds it where max_effort is finite").optional();
+    s.role(manager, "manager", {Facet::Component}, "solves the row if max_effort is finite").optional();
     s.param(mode, "mode", unit::one, "rate: moves at speed; servo: goes to target, at most at speed")
         .or_else("rate")
         .one_of({"rate", "servo"});
-    s.param(speed, "speed", unit::one, "rad/s or m/s; infinite for a servo: any").or_else(0).may_be_infinite();
+    s.param(speed, "speed", unit::one, "rad/s or m/s; infinite for a servo: no limit").or_else(0).may_be_infinite();
     s.param(target, "target", unit::one, "of a servo, rad or m").or_else(0);
-    s.param(gain, "gain", unit::one, "of a servo, 1/s: it comes nearer as exp(-gain t)").or_else(10).positive();
-    s.param(max_effort, "max_effort", unit::one, "largest torque or force, N m or N; infinite: whatever it takes")
+    s.param(gain, "gain", unit::one, "of a servo, 1/s: the error decays as exp(-gain t)").or_else(10).positive();
+    s.param(max_effort, "max_effort", unit::one, "largest torque or force, N m or N; infinite: no limit")
         .or_else(kInfinity)
         .not_negative()
         .may_be_infinite();
@@ -115,10 +115,10 @@ void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows
 void LimitRows::describe(Schema& s)
 {
     describe_coordinate(s, {"turn", "slide", "distance"});
-    s.role(manager, "manager", {Facet::Component}, "advances what is at its bounds");
+    s.role(manager, "manager", {Facet::Component}, "advances the bodies while a bound is near");
     s.param(lower, "lower", unit::one, "least position, rad or m; -inf: none").or_else(-kInfinity).may_be_infinite();
     s.param(upper, "upper", unit::one, "largest position, rad or m; inf: none").or_else(kInfinity).may_be_infinite();
-    s.param(restitution, "restitution", unit::one, "share of the speed with which it comes back from its limit")
+    s.param(restitution, "restitution", unit::one, "coefficient of restitution: fraction of the speed returned at a bound")
         .or_else(0)
         .not_negative()
         .at_most(1);
@@ -134,9 +134,10 @@ Result<void> prepare_limit(Row row, LimitRows& rows, const Bodies& bodies)
 namespace
 {
 
-/// Rows come in before they could act: by this share of the way between the limits, and twice as early as the present speed would have
-/// it. Where there is but one limit, or no way between them, by this share of 1 rad, or of the smaller body's radius of gyration. What
-/// is not foreseen is met in the next step.
+/// Rows are emitted before they can act: when the distance to a limit is less than this fraction of the distance between the
+/// limits, or at twice the time that the present speed needs to reach it. If there is only one limit, or no distance between
+/// them, it is this fraction of 1 rad, or of the smaller body's radius of gyration. A limit reached unexpectedly acts in the
+/// next step.
 constexpr double kReach = 0x1p-9;
 
 double gyration(const Bodies& bodies, Ref r)

@@ -1,10 +1,10 @@
-/// Motor: makes b turn against a, or slide along it, at a speed; or brings it to a target and keeps it there.
+/// Motor: turns b against a, or slides it along a, at a given speed; or moves it to a target and holds it there.
 ///
 ///   rate      J v = speed
-///   servo     J v = gain (target - x), within +-speed: x nears its target as exp(-gain t)      bias = -gain J v
+///   servo     J v = gain (target - x), within +-speed: x approaches its target as exp(-gain t)      bias = -gain J v
 ///
-/// J v is the turning speed about the axis or the rate of travel along it. What a motor can do may be limited: then a manager
-/// holds its row.
+/// J v is the angular velocity about the axis, or the rate of travel along it. If the effort of a motor is limited, its row can
+/// only be solved by a manager.
 #pragma once
 
 #include "joints/spin.h"
@@ -25,14 +25,14 @@ struct CoordinateRows : PairRows, SpinColumns
     bool of_shafts(Row row) const { return b[row].facet == Facet::Shaft; }
 };
 
-/// The coordinate at the present state, with a row for it: J, bias; no error yet.
+/// The coordinate at the present state, with its row: J and bias, but no error yet.
 struct Coordinate
 {
     double x = 0, speed = 0;
     ConstraintRow row;
 };
 Coordinate look_at(const CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
-/// Phase::Drive and Phase::Finish of turning.
+/// Phase::Drive and Phase::Finish of coordinates that count turns.
 void begin_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
 void keep_coordinate(CoordinateRows& rows, Row row, const Bodies& bodies, const Shafts& shafts, double now);
 
@@ -67,7 +67,7 @@ struct MotorRows : CoordinateRows, ReactionColumns
 Result<void> prepare_motor(Row row, MotorRows& rows, const Bodies& bodies);
 void constrain_motor(const StepContext& step, Rows which, const MotorRows& rows, const Bodies& bodies, const Shafts& shafts, RowSink& sink);
 
-/// TorsionSpring: torque -(k (x - rest) + c x') on b about the axis; or along it, a force.
+/// TorsionSpring: a torque -(k (x - rest) + c x') on b about the axis, or a force along it.
 struct TorsionSpringRows : CoordinateRows
 {
     Column<double> stiffness, damping, rest, effort;
@@ -79,9 +79,9 @@ void stored_by_torsion(const StepContext& step, Rows which, const TorsionSpringR
                        StoredEnergy& stored);
 void finish_torsion(const StepContext& step, Rows which, TorsionSpringRows& rows, const Bodies& bodies, const Shafts& shafts);
 
-/// Limit: the coordinate, or the distance between the points, stays within [lower, upper].
+/// Limit: keeps the coordinate, or the distance between the points, within [lower, upper].
 ///
-///   error = x - lower, or upper - x        one-sided rows, where they may act within the step
+///   error = x - lower, or upper - x        one-sided rows, emitted only where they may act within the step
 struct LimitRows : CoordinateRows, ReactionColumns
 {
     Column<double> lower, upper, restitution;

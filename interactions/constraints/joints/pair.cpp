@@ -5,10 +5,11 @@ namespace plab::constraints
 
 void PairRows::describe_pair(Schema& s, std::vector<Facet> facets)
 {
-    s.role(a, "a", facets, "who the other is held to; none: the world").optional().writes();
-    s.role(b, "b", facets, "who is held").writes();
+    s.role(a, "a", facets, "the base to which b is held; none: the world").optional().writes();
+    s.role(b, "b", facets, "the body or shaft that is held").writes();
     s.param(anchor, "anchor", unit::metre,
-            "the point in the world, as things are now; infinite: not given, then the origin of b (of both, for a length)")
+            "the point in the world at the present poses; infinite: not given, then the origin of b (for a "
+            "length, those of both)")
         .or_else(kNotGiven)
         .may_be_infinite();
     s.param(anchor_a, "anchor_a", unit::metre, "the point in the frame of a (of the world, if there is no a), instead of anchor")
@@ -17,7 +18,9 @@ void PairRows::describe_pair(Schema& s, std::vector<Facet> facets)
     s.param(anchor_b, "anchor_b", unit::metre, "the point in the frame of b, instead of anchor").or_else(kNotGiven).may_be_infinite();
     s.state(point_a, "point_a", unit::metre, "the joint's point in the frame of a, or of the world");
     s.state(point_b, "point_b", unit::metre, "the joint's point in the frame of b");
-    s.state(placed_anchor, "placed_anchor", unit::metre, "the anchor that the points were taken from").initially({}).may_be_infinite();
+    s.state(placed_anchor, "placed_anchor", unit::metre, "the anchor parameter from which the points were taken")
+        .initially({})
+        .may_be_infinite();
     s.state(placed, "placed", unit::one, "the points have been taken").initially(false);
 }
 
@@ -39,10 +42,10 @@ void PairRows::place_points(Row row, const Bodies& bodies, Missing missing)
 
 void AxisColumns::describe_axis(Schema& s)
 {
-    s.param(axis, "axis", unit::one, "direction in the world as it is now").or_else({0, 0, 1}).unit_length();
+    s.param(axis, "axis", unit::one, "direction in the world at the present poses").or_else({0, 0, 1}).unit_length();
     s.state(frame_a, "frame_a", unit::one, "the axis' frame (z along it) in a, or in the world");
     s.state(frame_b, "frame_b", unit::one, "the same frame in b");
-    s.state(placed_axis, "placed_axis", unit::one, "the axis that the frames were taken from").initially({});
+    s.state(placed_axis, "placed_axis", unit::one, "the axis parameter from which the frames were taken").initially({});
 }
 
 bool AxisColumns::place_axis(Row row, const Quat& q_a, const Quat& q_b)
@@ -81,7 +84,7 @@ void ReactionColumns::describe_reaction(Schema& s, const std::string& on)
              "on " + on + " about its centre of mass, in the world, at the last solver stage of the step");
     s.output(position_error, "position_error", unit::one, "largest error of its rows at the end of the step, m or rad").reported_as_error();
     s.output(speed_error, "speed_error", unit::one, "largest error of its rows' speeds, m/s or rad/s").reported_as_error();
-    s.output(redundant, "redundant", unit::one, "how many of its rows the others already imply");
+    s.output(redundant, "redundant", unit::one, "number of its rows that are implied by other rows");
 }
 
 RowReport ReactionColumns::take_report(Row row, const RowReports& reports, std::uint32_t component)

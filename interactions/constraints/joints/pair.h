@@ -1,7 +1,7 @@
-/// What joints between two bodies share: who they join, at which points, along which axis, and what they report.
+/// Shared by the joints between two bodies: the bodies they connect, the points, the axis, and what they report.
 ///
-/// Points and axes are given in the world at the pose at which the joint is placed (when its scene starts, when it is added,
-/// or when the parameter changes), and kept in the bodies' frames as state, so that mementos and swaps carry them over.
+/// Points and axes are given in the world, at the pose at which the joint is placed (when its scene starts, when it is added, or
+/// when the parameter changes). They are kept in the frames of the bodies as state, so that mementos and swaps preserve them.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@ namespace plab::constraints
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr Vec3 kNotGiven{kInfinity, kInfinity, kInfinity};
 
-/// Roles a and b, and a point on each.
+/// Roles a and b, and a point on each body.
 struct PairRows
 {
     Column<Ref> a, b;
@@ -24,13 +24,13 @@ struct PairRows
     Column<bool> placed;
 
     void describe_pair(Schema& s, std::vector<Facet> facets = {Facet::Body});
-    /// What a point is that no parameter gives.
+    /// The default of a point that no parameter gives.
     enum class Missing : std::uint8_t
     {
-        WhereOtherIs,  ///< the points meet
-        Origin,        ///< each body's own
+        WhereOtherIs,  ///< where the other body's point is
+        Origin,        ///< each body's own origin
     };
-    /// Points from parameters, where they are new.
+    /// Sets the points from the parameters, if these are new.
     void place_points(Row row, const Bodies& bodies, Missing missing = Missing::WhereOtherIs);
     Sides sides(Row row, const Bodies& bodies) const
     {
@@ -38,39 +38,39 @@ struct PairRows
     }
 };
 
-/// An axis through the point, as frames with z along it.
+/// An axis through the point, stored as frames whose z axis lies along it.
 struct AxisColumns
 {
     Column<Vec3> axis, placed_axis;
     Column<Quat> frame_a, frame_b;  // q_BF; of the world: q_WF
 
     void describe_axis(Schema& s);
-    /// False: the axis stayed as it was.
+    /// Returns false if the axis is unchanged.
     bool place_axis(Row row, const Quat& q_a, const Quat& q_b);
 };
 
-/// An angle that is never wrapped, from attitudes that only show it within half a turn: what is expected from the last
-/// known angle and the mean speed since then decides about whole turns.
+/// An angle that is never wrapped. Attitudes show it only within half a turn; whole turns are decided by extrapolating from the
+/// last known angle with the mean speed since then.
 struct MeterColumns
 {
     Column<double> angle, rate, time;  // rad, rad/s, s
 
-    /// `prefix`: of the fields' names.
+    /// `prefix`: prefix of the field names.
     void describe_meter(Schema& s, const std::string& prefix, const std::string& doc);
     void reset(Row row) { angle[row] = rate[row] = 0, time[row] = kNotRead; }
-    /// The unwrapped angle at `now`, when the attitudes show `twist` and turn at `speed`.
+    /// The unwrapped angle at `now`, given the `twist` that the attitudes show and the present `speed`.
     double read(Row row, double twist, double speed, double now) const;
-    /// The same, to be remembered. `step`: how long ago the angle was as it is remembered, where that is not known.
+    /// The same, and stores it. `step`: the time since the stored angle, used if no time is stored.
     void keep(Row row, double twist, double speed, double now, double step);
     bool is_read(Row row) const { return time[row] != kNotRead; }
-    /// The angle is known as of now.
+    /// Stores the angle as valid at `now`.
     void start(Row row, double speed, double now) { rate[row] = speed, time[row] = now; }
 
 private:
     static constexpr double kNotRead = -kInfinity;
 };
 
-/// What a row interaction puts out.
+/// Outputs of interactions by rows.
 struct ReactionColumns
 {
     Column<Vec3> force, torque;                  // N, N m
@@ -85,7 +85,7 @@ struct ReactionColumns
 struct JointRows : PairRows, ReactionColumns
 {
 };
-/// The same with an axis.
+/// The same, with an axis.
 struct AxisJointRows : JointRows, AxisColumns
 {
     void place(Row row, const Bodies& bodies)
@@ -96,7 +96,7 @@ struct AxisJointRows : JointRows, AxisColumns
     static Quat attitude(const Bodies& bodies, Ref who) { return who.valid() ? bodies.orientation[who.index] : Quat{}; }
 };
 
-/// Phase::Finish of joints without more to say.
+/// Phase::Finish of joints that have no further outputs.
 template <class Table>
 void finish_reaction(const StepContext& step, Rows which, Table& rows, const RowReports& reports)
 {

@@ -14,13 +14,14 @@ namespace
 constexpr const char* kRows = "Constraint/Rows";
 constexpr const char* kPrepare = "Constraint/Prepare";
 constexpr const char* kFinish = "Constraint/Finish";
-constexpr const char* kPlaced = "takes points and axis from the present pose, where they are new";
+constexpr const char* kPlaced = "takes points and axis from the present pose, if they are new";
 constexpr const char* kReport = "force, torque and errors of the step";
 constexpr const char* kFamily = "Constraint/Joint";
 constexpr const char* kAsSolver = "the solver's order; position and speed to rounding after each step";
 constexpr const char* kLimits =
-    "index 1 inside the stages, drift taken away after the step: near a singular configuration steps have to be short against the way to "
-    "it; rows that contradict one another end at least squares, with the event constraint.contradiction";
+    "index-1 formulation inside the stages, drift removed after the step; near a singular configuration "
+    "steps must be short compared with the distance to it; contradictory rows are solved in the "
+    "least-squares sense, with the event constraint.contradiction";
 constexpr const char* kSource = "Baraff, Linear-time dynamics using Lagrange multipliers, 1996; Hairer, Wanner, Solving ODEs II, VII.2";
 
 void register_rigid(Registrar& registrar)
@@ -28,40 +29,40 @@ void register_rigid(Registrar& registrar)
     registrar.component<BallRows>("Constraint/Ball", "holds a point of b at a point of a, or of the world")
         .family(kFamily)
         .command<&prepare_ball>(Phase::Prepare, kPrepare, kPlaced)
-        .command<&constrain_ball>(Phase::Constrain, kRows, "three rows: the points agree")
+        .command<&constrain_ball>(Phase::Constrain, kRows, "three rows: the points coincide")
         .command<&finish_reaction<BallRows>>(Phase::Finish, kFinish, kReport)
         .accuracy(kAsSolver)
-        .strengths("nothing to tune: neither stiff nor soft; redundant rows are found and counted")
+        .strengths("no stiffness to tune; redundant rows are detected and counted")
         .cost("3 rows; linear in the number of joints for chains and trees")
         .limits(kLimits)
         .source(kSource);
-    registrar.component<HingeRows>("Constraint/Hinge", "a ball joint about whose axis alone b turns against a")
+    registrar.component<HingeRows>("Constraint/Hinge", "a ball joint that lets b rotate relative to a about one axis only")
         .family(kFamily)
         .command<&prepare_hinge>(Phase::Prepare, kPrepare, kPlaced)
-        .command<&constrain_hinge>(Phase::Constrain, kRows, "five rows: the points agree, the axes lie along one another")
+        .command<&constrain_hinge>(Phase::Constrain, kRows, "five rows: the points coincide, the axes are parallel")
         .command<&finish_hinge>(Phase::Finish, kFinish, "angle, force, torque and errors of the step")
         .accuracy(kAsSolver)
-        .strengths("nothing to tune: neither stiff nor soft; redundant rows are found and counted")
+        .strengths("no stiffness to tune; redundant rows are detected and counted")
         .cost("5 rows; linear in the number of joints for chains and trees")
         .limits(kLimits)
         .source(kSource);
-    registrar.component<SliderRows>("Constraint/Slider", "b slides along an axis of a, without turning against it")
+    registrar.component<SliderRows>("Constraint/Slider", "b slides along an axis of a without rotating relative to it")
         .family(kFamily)
         .command<&prepare_slider>(Phase::Prepare, kPrepare, kPlaced)
-        .command<&constrain_slider>(Phase::Constrain, kRows, "five rows: no way across the axis, no turn")
+        .command<&constrain_slider>(Phase::Constrain, kRows, "five rows: no displacement across the axis, no rotation")
         .command<&finish_slider>(Phase::Finish, kFinish, "travel, force, torque and errors of the step")
         .accuracy(kAsSolver)
-        .strengths("nothing to tune: neither stiff nor soft; redundant rows are found and counted")
+        .strengths("no stiffness to tune; redundant rows are detected and counted")
         .cost("5 rows; linear in the number of joints for chains and trees")
         .limits(kLimits)
         .source(kSource);
-    registrar.component<FixedRows>("Constraint/Fixed", "holds b to a, or to the world, as if they were one")
+    registrar.component<FixedRows>("Constraint/Fixed", "fixes b to a, or to the world, as if they were one body")
         .family(kFamily)
         .command<&prepare_fixed>(Phase::Prepare, kPrepare, kPlaced)
-        .command<&constrain_fixed>(Phase::Constrain, kRows, "six rows: no way, no turn")
+        .command<&constrain_fixed>(Phase::Constrain, kRows, "six rows: no displacement, no rotation")
         .command<&finish_reaction<FixedRows>>(Phase::Finish, kFinish, kReport)
         .accuracy(kAsSolver)
-        .strengths("parts that are exchanged or let go while the scene runs")
+        .strengths("parts that are exchanged or released while the scene runs")
         .cost("6 rows; linear in the number of joints for chains and trees")
         .limits(kLimits)
         .source(kSource);
@@ -70,13 +71,13 @@ void register_rigid(Registrar& registrar)
 void register_lengths(Registrar& registrar)
 {
     constexpr const char* kLength = "Constraint/Length";
-    registrar.component<DistanceRows>("Constraint/Distance", "keeps two points at a distance, like a rod without mass")
+    registrar.component<DistanceRows>("Constraint/Distance", "keeps two points at a distance, like a massless rod")
         .family(kLength)
         .command<&prepare_distance>(Phase::Prepare, kPrepare, kPlaced)
         .command<&constrain_distance>(Phase::Constrain, kRows, "one row: the distance")
         .command<&finish_distance>(Phase::Finish, kFinish, kReport)
         .accuracy(kAsSolver)
-        .strengths("rods without mass: one row in place of a body and two joints")
+        .strengths("massless rods: one row in place of a body and two joints")
         .cost("1 row")
         .limits(std::string("a length of 0 has no direction: use a ball; ") + kLimits)
         .source(kSource);
@@ -87,17 +88,19 @@ void register_lengths(Registrar& registrar)
         .command<&stored_by_spring>(Phase::Potential, "Constraint/Energy", "k stretch^2 / 2")
         .command<&finish_spring>(Phase::Finish, kFinish, "length, its rate and force at the end of the step")
         .accuracy("the solver's order; with Solver/Exponential exact along a line")
-        .strengths("gives way: stores energy, damps")
+        .strengths("elastic: stores energy and damps")
         .cost("1 force; steps of explicit solvers shorter than 2 sqrt(m/k) and 2 m/c")
-        .limits("explicit solvers: unstable beyond those steps; stiff ones: take an implicit solver, or Constraint/Distance")
+        .limits(
+            "explicit solvers: unstable with longer steps; for a stiff spring use an implicit solver, or "
+            "Constraint/Distance")
         .source("Hooke's law, Kelvin-Voigt body");
 }
 
 void register_coordinates(Registrar& registrar)
 {
     constexpr const char* kStart = "Constraint/Start";
-    constexpr const char* kStartDoc = "the angle when it began, from which turns are counted";
-    registrar.component<MotorRows>("Constraint/Motor", "turns or slides b against a at a speed, or to a target")
+    constexpr const char* kStartDoc = "the initial angle, from which turns are counted";
+    registrar.component<MotorRows>("Constraint/Motor", "rotates or slides b relative to a at a speed, or to a target")
         .family("Constraint/Motor")
         .command<&prepare_motor>(Phase::Prepare, kPrepare, kPlaced)
         .command<&begin_turning<MotorRows>>(Phase::Drive, kStart, kStartDoc)
@@ -106,7 +109,9 @@ void register_coordinates(Registrar& registrar)
         .accuracy("a speed: the solver's order; with max_effort order 1")
         .strengths("drives without a controller to tune")
         .cost("1 row; with max_effort its bodies are stepped by a manager")
-        .limits("max_effort needs a manager; the axis is fixed in b and should be that of a hinge or slider between the same two")
+        .limits(
+            "max_effort needs a manager; the axis is fixed in b and should be that of a hinge or slider between "
+            "the same bodies")
         .source(kSource);
     registrar.component<TorsionSpringRows>("Constraint/TorsionSpring", "a spring with a damper about a hinge's axis, or along a slider's")
         .family("Constraint/TorsionSpring")
@@ -116,7 +121,7 @@ void register_coordinates(Registrar& registrar)
         .command<&stored_by_torsion>(Phase::Potential, "Constraint/Energy", "k (x - rest)^2 / 2")
         .command<&finish_torsion>(Phase::Finish, kFinish, "position, rate and effort at the end of the step")
         .accuracy("the solver's order")
-        .strengths("gives way about an axis; stores energy, damps")
+        .strengths("elastic about an axis: stores energy and damps")
         .cost("1 force")
         .limits("explicit solvers: unstable for steps beyond 2 sqrt(J/k) and 2 J/c")
         .source("Hooke's law, Kelvin-Voigt body");
@@ -124,7 +129,7 @@ void register_coordinates(Registrar& registrar)
         .family("Constraint/Limit")
         .command<&prepare_limit>(Phase::Prepare, kPrepare, kPlaced)
         .command<&begin_turning<LimitRows>>(Phase::Drive, kStart, kStartDoc)
-        .command<&constrain_limit>(Phase::Constrain, kRows, "a one-sided row, where the bound is near")
+        .command<&constrain_limit>(Phase::Constrain, kRows, "a one-sided row when a bound is near")
         .command<&finish_coordinate<LimitRows>>(Phase::Finish, kFinish, "position, force and errors of the step")
         .accuracy("its bound is met at the end of a step: order 1")
         .strengths("stops that cost nothing until they are reached")
@@ -137,18 +142,18 @@ void register_gears(Registrar& registrar)
 {
     constexpr const char* kStart = "Constraint/Start";
     constexpr const char* kStartDoc = "angles and phase when it engaged";
-    registrar.component<GearRows>("Constraint/Gear", "keeps the turns of two bodies or shafts at a ratio, over any number of them")
+    registrar.component<GearRows>("Constraint/Gear", "keeps the angles of two bodies or shafts at a ratio, over any number of turns")
         .family("Constraint/Gear")
         .command<&prepare_gear>(Phase::Prepare, kPrepare, "the ratio, and the axles where they are new")
         .command<&begin_gear>(Phase::Drive, kStart, kStartDoc)
         .command<&constrain_gear>(Phase::Constrain, kRows, "one row: the phase")
         .command<&finish_gear>(Phase::Finish, kFinish, "phase, torque and errors of the step")
         .accuracy(kAsSolver)
-        .strengths("gears on bodies that move themselves; forces between the teeth")
+        .strengths("gears on moving bodies; reports the forces between the teeth")
         .cost("1 row")
         .limits(
-            "bodies need bearings of their own, which do not feel the forces between the teeth: the row is a pure couple; a body must not "
-            "gain or lose half a turn against its mean speed within a step")
+            "bodies need bearings of their own, which do not feel the forces between the teeth as the row is a "
+            "pure couple; within a step, a body must not deviate by half a turn from its mean speed")
         .source(kSource);
     registrar.component<PlanetaryRows>("Constraint/Planetary", "sun, ring and carrier of a planetary train, as bodies or shafts")
         .family("Constraint/Planetary")
@@ -157,8 +162,8 @@ void register_gears(Registrar& registrar)
         .command<&constrain_planetary>(Phase::Constrain, kRows, "one row: Willis' equation")
         .command<&finish_planetary>(Phase::Finish, kFinish, "phase, torque and errors of the step")
         .accuracy(kAsSolver)
-        .strengths("differentials: two degrees of freedom left of three shafts")
-        .cost("1 row; the inertia of planets is not in it")
+        .strengths("differentials: three shafts with two degrees of freedom")
+        .cost("1 row; the inertia of the planets is neglected")
         .limits("bodies need bearings of their own, on one axis")
         .source("R. Willis, Principles of mechanism, 1841");
 }
@@ -169,16 +174,17 @@ void register_rolling(Registrar& registrar)
         .component<RollingRows>("Constraint/Rolling",
                                 "an ellipsoid rolls on a plane, a ball on a sphere or cylinder, outside or inside, without slipping")
         .family("Constraint/Rolling")
-        .command<&prepare_rolling>(Phase::Prepare, kPrepare, "takes the plane, sphere or cylinder into the frame of a, where it is new")
-        .command<&constrain_rolling>(
-            Phase::Constrain, kRows,
-            "three rows: no speed where it touches; along the normal the height, too; parallel: two more that keep "
-            "the axes parallel")
+        .command<&prepare_rolling>(Phase::Prepare, kPrepare, "transforms the plane, sphere or cylinder to the frame of a, if it is new")
+        .command<&constrain_rolling>(Phase::Constrain, kRows,
+                                     "three rows: no velocity at the contact point, and no gap along the normal; parallel: two more rows "
+                                     "keep the axes parallel")
         .command<&finish_rolling>(Phase::Finish, kFinish, "contact point, forces and errors of the step")
         .accuracy(kAsSolver)
-        .strengths("rolls for as long as one likes without slip, at the order of the solver")
+        .strengths("rolls without slip over any length of time, at the order of the solver")
         .cost("3 rows; parallel: 5")
-        .limits("holds on whatever happens: it neither slips nor lifts off; see normal_force, and friction = force along the plane")
+        .limits(
+            "holds unconditionally: it neither slips nor lifts off; check normal_force, and the friction force "
+            "along the plane")
         .source(
             "Kane, Levinson, Realistic mathematical modeling of the rattleback, 1982; Neimark, Fufaev, Dynamics of nonholonomic systems, "
             "1972");

@@ -30,7 +30,7 @@ void HingeRows::describe(Schema& s)
 {
     describe_pair(s);
     describe_axis(s);
-    describe_meter(s, "", "how far b has turned against a about the axis since it was placed");
+    describe_meter(s, "", "rotation of b relative to a about the axis since the joint was placed");
     describe_reaction(s, "b");
 }
 
@@ -39,15 +39,15 @@ void SliderRows::describe(Schema& s)
     describe_pair(s);
     describe_axis(s);
     describe_reaction(s, "b");
-    s.output(travel, "travel", unit::metre, "how far b's point has gone along the axis since it was placed");
+    s.output(travel, "travel", unit::metre, "displacement of b's point along the axis since the joint was placed");
     s.output(travel_rate, "travel_rate", unit::metre_per_second, "its rate");
-    s.state(travelled, "travelled", unit::metre, "how far point_a has gone along with b").initially(0);
+    s.state(travelled, "travelled", unit::metre, "displacement of point_a along the axis, with b").initially(0);
 }
 
 void FixedRows::describe(Schema& s)
 {
     describe_pair(s);
-    s.state(frame_b, "attitude_b", unit::one, "attitude of a (of the world) in b that is kept");
+    s.state(frame_b, "attitude_b", unit::one, "attitude of a (or the world) in b that is maintained");
     s.state(turned, "attitude_taken", unit::one, "that attitude has been taken").initially(false);
     describe_reaction(s, "b");
 }

@@ -1,6 +1,6 @@
 /// Joints between two bodies, or a body and the world: Ball, Hinge, Slider, Fixed.
 ///
-/// One family: they have the same roles and points, so that a request can exchange one for another.
+/// One family: they have the same roles and points, so that a request can replace one by another.
 ///
 ///   Ball     p_b = p_a                                     3 rows
 ///   Hinge    p_b = p_a, n_b along n_a                      5 rows, free: angle about n
@@ -24,12 +24,12 @@ struct HingeRows : AxisJointRows, MeterColumns
 struct SliderRows : AxisJointRows
 {
     Column<double> travel, travel_rate;  // m, m/s
-    Column<double> travelled;            // m: a's point goes along, so that another joint in its place holds b where it is
+    Column<double> travelled;            // m: a's point moves along, so that a joint that replaces this one holds b where it is
     void describe(Schema& s);
 };
 struct FixedRows : JointRows
 {
-    Column<Quat> frame_b;  // q_ab when it was placed
+    Column<Quat> frame_b;  // q_ab when the joint was placed
     Column<bool> turned;
     void describe(Schema& s);
 };

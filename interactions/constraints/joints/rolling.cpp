@@ -9,13 +9,13 @@ namespace
 
 Vec3 times(const Vec3& x, const Vec3& y) { return {x.x * y.x, x.y * y.y, x.z * y.z}; }
 
-/// The lowest point of an ellipsoid against the direction m, from its centre, in the frame of its axes.
+/// The point of an ellipsoid that is lowest against the direction m, from its centre, in the frame of its axes.
 Vec3 lowest(const Vec3& semi_axes, const Vec3& m)
 {
     const Vec3 g = times(times(semi_axes, semi_axes), m);
     return g * (-1 / std::sqrt(dot(m, g)));
 }
-/// How fast it moves there when m does.
+/// The rate of that point when m changes.
 Vec3 lowest_rate(const Vec3& semi_axes, const Vec3& m, const Vec3& m_rate)
 {
     const Vec3 squares = times(semi_axes, semi_axes), g = times(squares, m), g_rate = times(squares, m_rate);
@@ -26,7 +26,7 @@ Vec3 lowest_rate(const Vec3& semi_axes, const Vec3& m, const Vec3& m_rate)
 bool on_plane(const RollingRows& rows, Row row) { return rows.on[row] == "plane"; }
 bool on_cylinder(const RollingRows& rows, Row row) { return rows.on[row] == "cylinder"; }
 
-/// c.b.r still leads to the centre of the ellipsoid.
+/// On entry, c.b.r leads to the centre of the ellipsoid.
 void meet_plane(const RollingRows& rows, Row row, const Side& plane, RollingContact& c)
 {
     const Mat3 frame = rotation_matrix(plane.q * frame_of_axis(rows.plane_normal[row]));
@@ -37,7 +37,7 @@ void meet_plane(const RollingRows& rows, Row row, const Side& plane, RollingCont
     const Vec3 w_ba = c.b.w - c.a.w;
     const Vec3 m = rotate_back(q_F, c.n), m_rate = rotate_back(q_F, cross(c.n, w_ba));
     c.b.r += rotate(q_F, lowest(rows.semi_axes[row], m));
-    // Centres first: far from the origin they agree in most of their digits.
+    // Subtracts the centres first: far from the origin they agree in most of their digits.
     c.gap = dot(c.n, (c.b.c - c.a.c) + (c.b.r - plane.r));
     c.r_b_rate = cross(c.b.w, c.b.r) + rotate(q_F, lowest_rate(rows.semi_axes[row], m, m_rate));
 }
@@ -59,7 +59,7 @@ void meet_round(const RollingRows& rows, Row row, const Side& round, RollingCont
     const double distance = length(d);
     const Vec3 N = d / distance, n_rate = (sigma / distance) * (d_rate - dot(N, d_rate) * N);
     c.n = sigma * N, c.gap = sigma * (distance - rows.radius[row]) - r;
-    // Tangents: along the cylinder, or square to n and to an axis of W.
+    // Tangents: along the cylinder, or perpendicular to n and to an axis of W.
     const Vec3 k = std::fabs(c.n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, square = cross(c.n, k), square_rate = cross(n_rate, k);
     c.t1 = on_cylinder(rows, row) ? c.u : normalized(square), c.t2 = cross(c.n, c.t1);
     const Vec3 t1_rate = on_cylinder(rows, row) ? cross(round.w, c.u) : (square_rate - dot(c.t1, square_rate) * c.t1) / length(square);
@@ -68,7 +68,7 @@ void meet_round(const RollingRows& rows, Row row, const Side& round, RollingCont
     c.b.r -= r * c.n;
 }
 
-/// The ellipsoid's centre stands over the point of the surface where `normal` leads from it to b.
+/// The default `point` of the surface: such that b touches it where `normal` points from the surface to b.
 Vec3 point_below(const RollingRows& rows, Row row, const Bodies& bodies)
 {
     const Vec3 &s = rows.semi_axes[row], &n = rows.normal[row];
@@ -82,10 +82,11 @@ Result<void> check_rolling(const RollingRows& rows, Row row)
 {
     const Vec3& s = rows.semi_axes[row];
     if (!(s.x > 0 && s.y > 0 && s.z > 0)) return reason("semi_axes must be above 0");
-    if (rows.parallel[row] && !on_cylinder(rows, row)) return reason("parallel is for what rolls on a cylinder");
+    if (rows.parallel[row] && !on_cylinder(rows, row)) return reason("parallel requires rolling on a cylinder");
     if (on_plane(rows, row)) return {};
-    if (!(s.x == s.y && s.y == s.z)) return reason("on a " + rows.on[row] + " only a ball rolls: semi_axes must be three times its radius");
-    if (!(rows.radius[row] > 0)) return reason("on a " + rows.on[row] + " it needs that one's radius, above 0");
+    if (!(s.x == s.y && s.y == s.z))
+        return reason("on a " + rows.on[row] + " only a ball can roll: semi_axes must be three times its radius");
+    if (!(rows.radius[row] > 0)) return reason("on a " + rows.on[row] + " the parameter radius must be above 0");
     if (rows.inside[row] && !(rows.radius[row] > s.x)) return reason("to roll inside, the ball must be smaller than radius");
     return {};
 }
@@ -94,39 +95,38 @@ Result<void> check_rolling(const RollingRows& rows, Row row)
 
 void RollingRows::describe(Schema& s)
 {
-    s.role(a, "a", {Facet::Body}, "whose plane it is; none: the world").optional().writes();
+    s.role(a, "a", {Facet::Body}, "the body with the surface; none: the world").optional().writes();
     s.role(b, "b", {Facet::Body}, "who rolls").writes();
     s.param(semi_axes, "semi_axes", unit::metre, "half lengths of the ellipsoid; a ball: three times its radius").at_least(kLeastGiven);
     s.param(centre, "centre", unit::metre, "of the ellipsoid, in the frame of b").or_else({});
     s.param(axes, "axes", unit::one, "attitude of the ellipsoid's axes in b").or_else(Quat{});
-    s.param(on, "on", unit::one, "what of a it rolls on; on a sphere or a cylinder only a ball does")
+    s.param(on, "on", unit::one, "kind of surface of a; on a sphere or a cylinder only a ball can roll")
         .or_else("plane")
         .one_of({"plane", "sphere", "cylinder"});
     s.param(radius, "radius", unit::metre, "of that sphere or cylinder").or_else(0).not_negative();
-    s.param(inside, "inside", unit::one, "it rolls inside of the sphere or cylinder, not outside").or_else(false);
+    s.param(inside, "inside", unit::one, "whether it rolls inside the sphere or cylinder instead of outside").or_else(false);
     s.param(point, "point", unit::metre,
-            "of the plane, the centre of the sphere, or on the axis of the cylinder, in the world as things are now; infinite: not given, "
-            "then such that b touches, with `normal`")
+            "a point of the plane, the centre of the sphere, or a point on the axis of the cylinder, in the "
+            "world at the present poses; infinite: not given, then placed such that b touches it with `normal`")
         .or_else(kNotGiven)
         .may_be_infinite();
     s.param(normal, "normal", unit::one,
-            "from the surface to b where they touch, in the world as it is now; with a sphere's or cylinder's "
-            "point it does not count")
+            "from the surface to b where they touch, in the world at the present poses; ignored if the point of "
+            "a sphere or cylinder is given")
         .or_else({0, 0, 1})
         .unit_length();
-    s.param(axis, "axis", unit::one, "of the cylinder, in the world as it is now").or_else({0, 1, 0}).unit_length();
-    s.param(parallel, "parallel", unit::one,
-            "b is a cylinder that touches along a line: it stays parallel to the cylinder's axis as it is now")
+    s.param(axis, "axis", unit::one, "of the cylinder, in the world at the present poses").or_else({0, 1, 0}).unit_length();
+    s.param(parallel, "parallel", unit::one, "b is a cylinder that touches along a line: it stays parallel to the cylinder's present axis")
         .or_else(false);
     s.state(plane_point, "plane_point", unit::metre, "the point in the frame of a, or of the world");
     s.state(plane_normal, "plane_normal", unit::one, "the plane's normal there, or the cylinder's axis");
-    s.state(placed_axis, "placed_axis", unit::one, "the axis that it was taken from").initially({});
+    s.state(placed_axis, "placed_axis", unit::one, "the axis parameter from which it was taken").initially({});
     s.state(axis_b, "axis_b", unit::one, "the cylinder's axis in the frame of b");
-    s.state(placed_point, "placed_point", unit::metre, "the point that it was taken from").initially({}).may_be_infinite();
-    s.state(placed_normal, "placed_normal", unit::one, "the normal that it was taken from").initially({});
+    s.state(placed_point, "placed_point", unit::metre, "the point parameter from which it was taken").initially({}).may_be_infinite();
+    s.state(placed_normal, "placed_normal", unit::one, "the normal parameter from which it was taken").initially({});
     s.state(placed, "placed", unit::one, "the plane has been taken").initially(false);
     s.output(contact, "contact", unit::metre, "where it touches, in the world");
-    s.output(normal_force, "normal_force", unit::newton, "on b along the normal; below 0 a real plane would let go");
+    s.output(normal_force, "normal_force", unit::newton, "on b along the normal; below 0 a real contact would separate");
     describe_reaction(s, "b");
 }
 

@@ -18,11 +18,12 @@
 /// Of both, with r_a, r_b from the centres of mass to the point of contact:
 ///
 ///   V  = (v_b + w_b x r_b) - (v_a + w_a x r_a) = 0         m/s; J = [ -e, -r_a x e | e, r_b x e ] for e = n, t1, t2
-///   bias = -e . (w_b x r_b' - w_a x r_a') - e' . V         m/s^2; r_b' = w_b x (r_b - s) + s', r_a' = v_b + r_b' - v_a; e' = W x e, W the
-///   spin of n, t1, t2 phi' = n . V                                           phi is held along n only
+///   bias = -e . (w_b x r_b' - w_a x r_a') - e' . V         m/s^2; r_b' = w_b x (r_b - s) + s', r_a' = v_b + r_b' - v_a,
+///                                                          e' = W x e, W: angular velocity of the triad n, t1, t2
+///   phi' = n . V                                           phi is held along n only
 ///
-/// (On the plane s turns with b: s' there is w_b x s + R_F s'.) With `parallel`, b is a cylinder that touches along a line: its axis
-/// stays along u, two rows more (sides.h, turn). Then the ball is its cross-section.
+/// (On the plane, s turns with b: s' there is w_b x s + R_F s'.) With `parallel`, b is a cylinder that touches along a line, and
+/// the ball is its cross-section: two further rows keep its axis parallel to u (sides.h, turn).
 ///
 /// Source: M. Kane, D. Levinson, "Realistic mathematical modeling of the rattleback", Int. J. Non-Linear Mech. 17 (1982);
 /// J. Neimark, N. Fufaev, Dynamics of nonholonomic systems (1972), on the ball in a sphere and in a cylinder.
@@ -42,8 +43,8 @@ struct RollingRows : ReactionColumns
     Column<double> radius;  // R, m
     Column<bool> inside, parallel;
     Column<Vec3> point, normal, axis;                                     // as given, in W
-    Column<Vec3> plane_point, plane_normal, placed_point, placed_normal;  // frame of a; as given when they were taken
-    Column<Vec3> placed_axis, axis_b;                                     // as given; u in the frame of b
+    Column<Vec3> plane_point, plane_normal, placed_point, placed_normal;  // in the frame of a; the parameters from which they were taken
+    Column<Vec3> placed_axis, axis_b;                                     // parameter from which axis_b was taken; u in the frame of b
     Column<bool> placed;
     Column<Vec3> contact;         // m
     Column<double> normal_force;  // N
@@ -51,13 +52,13 @@ struct RollingRows : ReactionColumns
     void describe(Schema& s);
 };
 
-/// Where and how the surfaces meet, at one state.
+/// The geometry of the contact at one state.
 struct RollingContact
 {
     Side a, b;       ///< r: to the contact point
     Vec3 n;          ///< from the surface to b, in W
-    Vec3 t1, t2;     ///< square to it
-    Vec3 turn;       ///< rad/s: how n, t1, t2 turn
+    Vec3 t1, t2;     ///< perpendicular to n
+    Vec3 turn;       ///< rad/s: angular velocity of n, t1, t2
     Vec3 u;          ///< axis of the cylinder, in W
     double gap = 0;  ///< phi, m, along n
     Vec3 slip;       ///< V, m/s

@@ -13,7 +13,7 @@ Side side_of(const Bodies& bodies, Ref who, const Vec3& point_B)
 
 Sides sides_of(const Side& a, const Side& b)
 {
-    // Centres first: far from the origin they agree in most of their digits.
+    // Subtracts the centres first: far from the origin they agree in most of their digits.
     const Vec3 d = (b.c - a.c) + (b.r - a.r);
     return {a, b, d, (b.v + cross(b.w, b.r)) - (a.v + cross(a.w, a.r)), b.w - a.w};
 }
@@ -72,7 +72,7 @@ void add_axis_rows(const Sides& s, const Vec3& n_a, const Vec3& n_b, const Vec3&
 {
     const Vec3 c = cross(n_a, n_b);
     const double sine = length(c), cosine = dot(n_a, n_b);
-    // The rotation vector that takes n_a to n_b. Turned right round, any direction square to n_a will do.
+    // The rotation vector that takes n_a to n_b. If they are opposite, any direction perpendicular to n_a will do.
     Vec3 turned = c;
     if (sine > 1e-8)
         turned = c * (std::atan2(sine, cosine) / sine);
@@ -84,7 +84,7 @@ void add_axis_rows(const Sides& s, const Vec3& n_a, const Vec3& n_b, const Vec3&
 
 Quat frame_of_axis(const Vec3& n)
 {
-    // Half way between z and n.
+    // The direction half way between z and n.
     if (n.z < -0.999999) return normalized(Quat{-n.y, 1 - n.z, 0, n.x});
     return normalized(Quat{1 + n.z, -n.y, n.x, 0});
 }

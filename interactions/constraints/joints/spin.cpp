@@ -28,13 +28,13 @@ void add_spin(const Spin& spin, double factor, ConstraintRow& row)
 
 void SpinColumns::describe_spin(Schema& s, const std::string& prefix, const std::string& whose)
 {
-    s.param(axis, prefix + "axis", unit::one, "of a body: axle of " + whose + ", in the world as it is now")
+    s.param(axis, prefix + "axis", unit::one, "of a body: axle of " + whose + ", in the world at the present poses")
         .or_else({0, 0, 1})
         .unit_length();
-    s.state(frame_a, prefix + "frame_base", unit::one, "the axle's frame (z along it) in what it turns against");
+    s.state(frame_a, prefix + "frame_base", unit::one, "the axle's frame (z along it) in the base");
     s.state(frame_b, prefix + "frame", unit::one, "the axle's frame in the body");
-    s.state(placed_axis, prefix + "placed_axis", unit::one, "the axis that the frames were taken from").initially({});
-    describe_meter(s, prefix, "how far " + whose + " has turned");
+    s.state(placed_axis, prefix + "placed_axis", unit::one, "the axis parameter from which the frames were taken").initially({});
+    describe_meter(s, prefix, "rotation angle of " + whose);
 }
 
 Result<void> SpinColumns::place(Row row, Ref who, Ref base, const Bodies& bodies)

@@ -1,5 +1,5 @@
-/// How far a body or shaft has turned about an axle of its own, against a base (a body, a shaft or the world), over many
-/// turns, and the terms that its speed contributes to rows.
+/// The rotation of a body or shaft about an axle of its own, relative to a base (a body, a shaft or the world), over many turns;
+/// and the terms that its speed contributes to rows.
 ///
 ///   speed = n . (w - w_base),  n fixed in the body          d(speed)/dt = n . (w' - w_base') - (w x n) . w_base
 /// Shafts turn about their own axles: n . w is their speed.
@@ -10,27 +10,26 @@
 namespace plab::constraints
 {
 
-/// One participant's turning at the present state.
+/// The rotation of one participant at the present state.
 struct Spin
 {
     Ref who, base;
-    Vec3 n;              ///< in W; a shaft: x
-    double twist = 0;    ///< rad; of bodies within half a turn
+    Vec3 n;              ///< in W; for a shaft only x is used
+    double twist = 0;    ///< rad; for bodies within half a turn
     double speed = 0;    ///< rad/s
     double extra = 0;    ///< (w x n) . w_base, rad/s^2
-    bool wraps = false;  ///< twist shows no whole turns
+    bool wraps = false;  ///< `twist` does not include whole turns
 };
 
-/// Adds `factor` times the spin's speed to a row: blocks, and the bias that goes with them. Blocks of one participant
-/// become one.
+/// Adds `factor` times this speed to a row: its blocks, and the corresponding bias. Blocks of the same participant are merged.
 void add_spin(const Spin& spin, double factor, ConstraintRow& row);
 
-/// An axle, and the angle about it. Angles are kept as state, so that they are exact over any number of turns.
+/// An axle, and the angle about it. Angles are kept as state, so that they remain exact over any number of turns.
 struct SpinColumns : AxisColumns, MeterColumns
 {
-    /// `prefix` of the fields' names: "driver_".
+    /// `prefix` of the field names, such as "driver_".
     void describe_spin(Schema& s, const std::string& prefix, const std::string& whose);
-    /// Phase::Prepare: the axle from its parameter, where it is new.
+    /// Phase::Prepare: sets the axle from its parameter, if that is new.
     Result<void> place(Row row, Ref who, Ref base, const Bodies& bodies);
     Spin look(Row row, Ref who, Ref base, const Bodies& bodies, const Shafts& shafts) const;
     /// Phase::Drive: the angle at the start of the first step.

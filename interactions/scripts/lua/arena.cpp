@@ -106,7 +106,7 @@ void* Arena::resize(void* piece, std::size_t old_size, std::size_t size)
         return moved;
     }
     if (to > from) return nullptr;
-    used_ -= size_of(from) - size_of(to);  // stays where it is; the end of the piece is lost until clear()
+    used_ -= size_of(from) - size_of(to);  // the piece is shrunk in place; its end is lost until clear()
     return piece;
 }
 

@@ -1,4 +1,4 @@
-/// Memory of one script: a block of fixed size, cut into pieces that are kept in lists by size.
+/// The memory of one script: a block of fixed size, divided into pieces that are kept in free lists by size.
 #pragma once
 
 #include <array>
@@ -8,23 +8,23 @@
 namespace plab::scripts
 {
 
-/// Never asks the system for memory after construction, so a warm call allocates nothing and the limit is exact. Pages
-/// that are never touched cost nothing. Freed pieces are not joined again: a script that keeps changing the sizes it
-/// uses gets less out of its block than its limit says.
+/// Never allocates from the system after construction, so a warm call allocates nothing and the limit is exact. Pages that are
+/// never touched cost nothing. Freed pieces are not merged: a script that keeps changing the sizes it uses can use less of its
+/// block than its limit says.
 class Arena
 {
 public:
     explicit Arena(std::size_t capacity);
 
-    /// 16-byte aligned; null when nothing fits.
+    /// 16-byte aligned; null if nothing fits.
     void* allocate(std::size_t size);
     void release(void* piece, std::size_t size);
-    /// Making a piece smaller never fails. Null leaves the piece as it was.
+    /// Shrinking a piece never fails. If it returns null, the piece is unchanged.
     void* resize(void* piece, std::size_t old_size, std::size_t size);
-    /// All pieces are free again.
+    /// Frees all pieces.
     void clear();
 
-    std::size_t used() const { return used_; }  ///< bytes, with the rounding of sizes
+    std::size_t used() const { return used_; }  ///< bytes, including the rounding of sizes
     std::size_t capacity() const { return capacity_; }
 
 private:
@@ -39,7 +39,7 @@ private:
 
     std::unique_ptr<std::byte[]> block_;
     std::size_t capacity_;
-    std::size_t fresh_ = 0;  // offset of what was never used
+    std::size_t fresh_ = 0;  // offset of the part that has never been used
     std::size_t used_ = 0;
     std::array<Piece*, kClasses> free_{};
 };

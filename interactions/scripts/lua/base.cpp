@@ -1,4 +1,5 @@
-// The basic functions: Lua's own where they are harmless, with a bound, an order and no addresses where they are not.
+// The basic functions: Lua's own where they are safe; otherwise versions with bounded cost, fixed order and no addresses in the
+// output.
 #include "lua/freeze.h"
 #include "lua/native.h"
 
@@ -25,8 +26,8 @@ int protected_call(lua_State* lua)
     return 2;
 }
 
-/// The handler runs after unwinding, not inside the error: there is no stack to look at without the debug library, and
-/// so it cannot run on in a call that is over its budget.
+/// The handler runs after unwinding, not inside the error. Without the debug library there is no stack to inspect, and this way
+/// it cannot keep running in a call that is over its budget.
 int protected_call_with_handler(lua_State* lua)
 {
     luaL_checktype(lua, 2, LUA_TFUNCTION);
@@ -98,7 +99,7 @@ int to_text(lua_State* lua)
 int to_number(lua_State* lua)
 {
     luaL_checkany(lua, 1);
-    if (lua_gettop(lua) > 1) return luaL_error(lua, "tonumber takes one value; there are no other bases");
+    if (lua_gettop(lua) > 1) return luaL_error(lua, "tonumber takes one value; other bases are not supported");
     if (lua_type(lua, 1) == LUA_TNUMBER) return lua_settop(lua, 1), 1;
     if (lua_type(lua, 1) == LUA_TSTRING)
     {
@@ -134,7 +135,7 @@ int next_in_order(lua_State* lua)
         lua_settop(lua, 0);
         lua_rawgeti(lua, lua_upvalueindex(2), at);
         lua_pushvalue(lua, -1);
-        if (lua_rawget(lua, lua_upvalueindex(1)) == LUA_TNIL) continue;  // removed meanwhile
+        if (lua_rawget(lua, lua_upvalueindex(1)) == LUA_TNIL) continue;  // removed in the meantime
         lua_pushinteger(lua, at);
         lua_replace(lua, lua_upvalueindex(4));
         return 2;
@@ -143,7 +144,7 @@ int next_in_order(lua_State* lua)
     return 1;
 }
 
-/// Lua's own order depends on clock and addresses; this one is by key.
+/// Lua's own order depends on the clock and on addresses; this one depends on the keys alone.
 int pairs_in_order(lua_State* lua)
 {
     push_content(lua, 1);
@@ -156,7 +157,7 @@ int pairs_in_order(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {
+constexpr NativeFunction kBaseFunctions[] = {
     {"assert", assert_true, "(value, message)", "the error `message` unless `value` holds"},
     {"error", raise, "(message)", "ends the call: event script.error"},
     {"ipairs", pairs_of_list, "(list)", "for i = 1, 2, ... until nil"},
@@ -170,8 +171,8 @@ constexpr NativeFunction kFunctions[] = {
 
 }  // namespace
 
-NativeGroup base_group() { return {"", kFunctions}; }
+NativeGroup base_group() { return {"", kBaseFunctions}; }
 
-void open_base(lua_State* lua) { add_functions(lua, kFunctions); }
+void open_base(lua_State* lua) { add_functions(lua, kBaseFunctions); }
 
 }  // namespace plab::scripts

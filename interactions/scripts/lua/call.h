@@ -1,4 +1,4 @@
-/// One entry of the host into a script: what it may see and change.
+/// One call from the host into a script: what the script may see and change.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct Call
     std::int64_t* random_state = nullptr;  ///< Drive only
 };
 
-/// A force that a call asks for. Applied when the call has succeeded, so a failing call adds nothing.
+/// A force requested by a call. It is applied only after the call has succeeded, so a failing call adds nothing.
 struct Action
 {
     enum class Kind : std::uint8_t
@@ -51,7 +51,7 @@ struct Action
     Ref on;
     Vec3 value;               ///< N or N m, W; ShaftTorque, Rate: x
     Vec3 at;                  ///< m, W; ForceAt
-    std::uint32_t place = 0;  ///< which value; Rate
+    std::uint32_t place = 0;  ///< index of the value; Rate
 };
 
 }  // namespace plab::scripts

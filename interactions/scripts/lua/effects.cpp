@@ -1,4 +1,4 @@
-// What a script does to the world besides forces: parameters and events.
+// The effects of a script other than forces: parameters and events.
 #include <cmath>
 
 #include "lua/native.h"
@@ -11,7 +11,7 @@ namespace
 constexpr lua_Integer kEffectCost = 50;
 constexpr int kMostFigures = 16;
 
-/// The call, if it may have effects; `what` cannot be used otherwise.
+/// The present call, if it may have effects; otherwise an error that `what` cannot be used.
 const Call& effective_call(lua_State* lua, const char* what)
 {
     charge(lua, kEffectCost);
@@ -51,7 +51,7 @@ int set_parameter(lua_State* lua)
 {
     const Call& call = effective_call(lua, "set");
     ParameterChange change{checked_string(lua, 1), checked_string(lua, 2), checked_value(lua, 3)};
-    if (!call.context->changes) return luaL_error(lua, "set cannot be used: the host takes no changes in this call");
+    if (!call.context->changes) return luaL_error(lua, "set cannot be used: the host accepts no changes in this call");
     call.context->changes->push_back(std::move(change));
     return 0;
 }
@@ -99,15 +99,15 @@ int print(lua_State* lua)
     return 0;
 }
 
-constexpr NativeFunction kFunctions[] = {
+constexpr NativeFunction kEffectFunctions[] = {
     {"set", set_parameter, "(id, name, value)", "in drive: asks for a parameter of any component to be set when the drive phase is over"},
     {"emit", emit_event, "(kind, message, numbers...)", "in drive: an event of that kind, with values"},
     {"print", print, "(...)", "in drive: the event script.print"}};
 
 }  // namespace
 
-NativeGroup effects_group() { return {"", kFunctions}; }
+NativeGroup effects_group() { return {"", kEffectFunctions}; }
 
-void open_effects(lua_State* lua) { add_functions(lua, kFunctions); }
+void open_effects(lua_State* lua) { add_functions(lua, kEffectFunctions); }
 
 }  // namespace plab::scripts

@@ -16,10 +16,10 @@ struct Key
     lua_Integer whole = 0;
     double number = 0;
     std::string_view bytes;
-    int place = 0;  // in the list of unsorted keys
+    int place = 0;  // index in the list of unsorted keys
 };
 
-/// Keys of one table differ, so this is a total order.
+/// The keys of one table differ, so this is a total order.
 bool precedes(const Key& a, const Key& b)
 {
     if (a.text != b.text) return b.text;
@@ -47,7 +47,7 @@ Key key_at(lua_State* lua, int index, int place)
     return key;
 }
 
-/// Pushes the sortable keys of the table as they come, and as many Keys into a userdata above them.
+/// Pushes the sortable keys of the table in their present order, and the same number of Keys in a userdata above them.
 int push_keys(lua_State* lua, int table, bool& others)
 {
     int count = 0;
@@ -85,8 +85,8 @@ int frozen_length(lua_State* lua)
     return 1;
 }
 
-/// Copies the entries of `table` that stand in the list `keys`, in that order: the layout of a table, and with it the
-/// length of one with holes, depends on the order of insertion.
+/// Copies the entries of `table` for the list `keys`, in that order: the internal layout of a table, and with it the length of
+/// one with holes, depends on the order of insertion.
 void copy_ordered(lua_State* lua, int table, int keys, int count, int copy)
 {
     for (int i = 1; i <= count; ++i)
@@ -194,7 +194,7 @@ void freeze_table(lua_State* lua, int index)
 namespace
 {
 
-/// A walk over what functions can reach. `queue` lists what is still to be looked at, `seen` has what ever was in it.
+/// Traverses what functions can reach. `queue` lists what is still to be visited, `seen` everything that has ever been in it.
 struct Walk
 {
     lua_State* lua;
@@ -205,13 +205,13 @@ struct Walk
     std::vector<const void*> cells{};  // locals that are watched already, by identity
 };
 
-/// Queues the value at `index` if it is something that can hold values.
+/// Queues the value at `index` if it can contain other values.
 void reach(Walk& walk, int index)
 {
     lua_State* lua = walk.lua;
     const int type = lua_type(lua, index);
     if (lua_iscfunction(lua, index) && lua_getupvalue(lua, index, 1))
-        luaL_error(lua, "what pairs returns cannot be kept: call pairs where the loop is");  // it counts
+        luaL_error(lua, "the result of pairs cannot be stored: call pairs in the loop itself");  // the iterator counts
     const bool table = type == LUA_TTABLE && !is_frozen(lua, index);
     const bool function = type == LUA_TFUNCTION && !lua_iscfunction(lua, index);
     if (!table && !function) return;
@@ -236,7 +236,7 @@ void reach_content(Walk& walk, int table)
     }
 }
 
-/// What a value is, so that two of these are equal when the values are the same.
+/// The identity of a value: two of these are equal if the values are the same.
 Watch describe(lua_State* lua, int index)
 {
     Watch w;

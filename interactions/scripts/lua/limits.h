@@ -1,4 +1,4 @@
-/// What one script may use.
+/// The resource limits of one script.
 #pragma once
 
 #include <cstddef>

@@ -11,7 +11,7 @@ namespace plab::scripts
 namespace
 {
 
-/// Notes the line that runs, so that an error for want of memory can name it: Lua's own does not.
+/// Notes the line being executed, so that an out-of-memory error can name it: Lua's own does not.
 void note_line(Session& session)
 {
     lua_Debug at;
@@ -30,12 +30,12 @@ void end_soon(Session& session)
     if (session.lua) lua_sethook(session.lua, count_hook, LUA_MASKCOUNT, 1);
 }
 
-/// Lua's allocator. On a refusal Lua collects all garbage and asks once more, which a call cannot have done for ever.
+/// Lua's allocator. On a refusal Lua collects all garbage and asks once more; the meter bounds how often that happens in a call.
 void* reallocate(void* user, void* piece, std::size_t old_size, std::size_t size)
 {
     auto& session = *static_cast<Session*>(user);
     if (size == 0) return session.arena.release(piece, old_size), nullptr;
-    // For a new object, the old size is its type.
+    // For a new object, Lua passes its type as the old size.
     constexpr std::size_t kTextHeader = 64;
     const bool long_text = !piece && old_size == LUA_TSTRING && size > kLongestText + kTextHeader;
     void* result = nullptr;
@@ -50,7 +50,7 @@ void* reallocate(void* user, void* piece, std::size_t old_size, std::size_t size
     return result;
 }
 
-/// P with __index = G and no way to write but while loading: what `_ENV` is to the script.
+/// A proxy with __index = G that can be written to only while loading; the script sees it as `_ENV`.
 int assign_global(lua_State* lua)
 {
     if (session_of(lua).call->entry == EntryPoint::Load)
@@ -81,7 +81,7 @@ void push_entry_point(lua_State* lua, int globals, const char* name)
     if (type != LUA_TFUNCTION && type != LUA_TNIL) luaL_error(lua, "%s must be a function, not a %s", name, type_name(lua, -1));
 }
 
-/// Builds the world of the script, runs its code, and leaves what StackSlot lists.
+/// Creates the environment of the script, runs its code, and leaves the values listed in StackSlot on the stack.
 int build(lua_State* lua)
 {
     Session& session = session_of(lua);
@@ -123,14 +123,14 @@ int bind_again(lua_State* lua)
     return 0;
 }
 
-/// "line 3: ..." of Lua's "code:3: ...".
+/// Turns "code:3: ..." of Lua into "line 3: ...".
 std::string as_load_error(const std::string& message)
 {
     const std::string prefix = std::string(kChunkName + 1) + ":";
     return message.starts_with(prefix) ? "line " + message.substr(prefix.size()) : message;
 }
 
-/// Gives the call that `session` runs to the natives, and takes it away again.
+/// Makes the present call known to the native functions through `session`, for the lifetime of this object.
 class Running
 {
 public:
@@ -156,7 +156,7 @@ struct Report
     std::string kind, message;
 };
 
-/// Why a call ended with `status` and the error on top of the stack.
+/// The reason for which a call ended with `status` and the error on top of the stack.
 Report explain(Session& session, int status)
 {
     lua_State* lua = session.lua;
@@ -185,7 +185,7 @@ Report explain(Session& session, int status)
 }  // namespace
 
 Machine::Machine(const Limits& limits) : session_(std::make_unique<Session>(limits)) {}
-/// Without finalizers there is nothing to close: the arena goes as a whole.
+/// Without finalizers there is nothing to close: the arena is freed as a whole.
 Machine::~Machine() = default;
 
 Result<void> Machine::load(const std::string& code, const Call& call)
@@ -246,7 +246,7 @@ bool Machine::force(const Call& call)
 
 std::span<const Action> Machine::actions() const { return session_->actions; }
 
-/// The function and its arguments are on the stack.
+/// The function and its arguments must be on the stack.
 bool Machine::run(int function, int arguments, const Call& call)
 {
     Session& s = *session_;
@@ -294,7 +294,8 @@ void Machine::fail(const Call& call, std::string kind, std::string message)
     Failure& failure = failure_.emplace();
     failure.kind = std::move(kind), failure.message = std::move(message);
     failure.tick = call.context->tick, failure.time = call.context->time;
-    // A step that is given up never was: nothing failed, and the machine, which was stopped anywhere, is built anew.
+    // An interrupted step is discarded, so this does not count as a failure; but the machine may have stopped anywhere and is
+    // built again.
     failure.reported = failure.booked = session_->meter.why() == Meter::Doom::Interrupted;
 }
 

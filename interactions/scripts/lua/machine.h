@@ -1,4 +1,4 @@
-/// A Lua state in a sandbox: the code of one script, and nothing that would have to be saved.
+/// A sandboxed Lua state: the code of one script, without any state that would have to be saved.
 #pragma once
 
 #include <memory>
@@ -13,23 +13,23 @@
 namespace plab::scripts
 {
 
-/// manual.cpp: all that a script can use, with units and limits, in Markdown.
+/// manual.cpp: everything that a script can use, with units and limits, in Markdown.
 std::string manual();
 
 struct Session;
 
-/// Why a call was ended.
+/// Why a call ended with an error.
 struct Failure
 {
     std::string kind;     ///< of the event: "script.error", "script.over_budget", "script.out_of_memory"
     std::string message;  ///< "code:3: ..."
     Tick tick = 0;
     double time = 0;        ///< s
-    bool reported = false;  ///< its event is out
-    bool booked = false;    ///< the component's quarantine says so too
+    bool reported = false;  ///< its event has been emitted
+    bool booked = false;    ///< the component has been marked as quarantined
 };
 
-/// Runs on one thread at a time; two machines share nothing. After a failure it does nothing until loaded again.
+/// Used by one thread at a time; two machines share nothing. After a failure it refuses all calls until it is loaded again.
 class Machine
 {
 public:
@@ -38,14 +38,14 @@ public:
     Machine(const Machine&) = delete;
     Machine& operator=(const Machine&) = delete;
 
-    /// Forgets everything, runs `code` once and freezes what it made. The error reads "line 3: ...".
+    /// Discards everything, runs `code` once and freezes what it created. The error reads "line 3: ...".
     Result<void> load(const std::string& code, const Call& call);
     bool has_drive() const;
     bool has_force() const;
 
-    /// Calls drive(step). False: see failure(); state, random numbers and queued changes are then as before.
+    /// Calls drive(step). Returns false on an error, see failure(); state, random numbers and queued changes are then as before.
     bool drive(const Call& call);
-    /// Calls force(t, state). False: see failure(); there are no actions then.
+    /// Calls force(t, state). Returns false on an error, see failure(); there are no actions then.
     bool force(const Call& call);
     std::span<const Action> actions() const;
 
@@ -54,7 +54,7 @@ public:
     void mark_reported() { failure_->reported = true; }
     void mark_booked() { failure_->booked = true; }
 
-    /// The most instructions that one call took since this was last asked.
+    /// The largest number of instructions in one call since this was last called.
     std::int64_t take_instructions();
     std::size_t memory_used() const;
 

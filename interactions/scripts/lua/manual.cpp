@@ -1,4 +1,4 @@
-// What a script can use, for the reference of component types: from the tables that register it.
+// The description of what a script can use, for the reference of component types; generated from the tables that register it.
 #include "lua/native.h"
 
 namespace plab::scripts
@@ -11,7 +11,7 @@ std::string row(const std::string& name, const std::string& unit, const std::str
     return "| `" + name + "` | " + unit + " | " + meaning + " |\n";
 }
 
-/// "math.sin(angle)", "vector:dot(other)": methods stand behind what they belong to.
+/// "math.sin(angle)", "vector:dot(other)": methods follow the name of what they belong to.
 std::string rows_of(const NativeGroup& group)
 {
     const std::string prefix = group.prefix;

@@ -1,4 +1,4 @@
-// The library `math`. Functions are the host's own libm; random numbers come from the script's declared state.
+// The library `math`. Functions are those of the host's libm; random numbers come from the declared state of the script.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -31,7 +31,7 @@ int absolute(lua_State* lua)
     return 1;
 }
 
-/// An integer where it fits, as in Lua.
+/// Pushes an integer if the value fits, as in Lua.
 int push_whole(lua_State* lua, double whole)
 {
     lua_Integer n = 0;
@@ -51,7 +51,7 @@ int round_up(lua_State* lua)
     return lua_isinteger(lua, 1) ? (lua_settop(lua, 1), 1) : push_whole(lua, std::ceil(luaL_checknumber(lua, 1)));
 }
 
-/// math.atan(y), math.atan(y, x): the angle of the point (x, y), x = 1 unless given.
+/// math.atan(y), math.atan(y, x): the angle of the point (x, y), where x is 1 unless given.
 int arc_tangent(lua_State* lua)
 {
     const double y = luaL_checknumber(lua, 1);
@@ -111,7 +111,7 @@ int number_type(lua_State* lua)
     return 1;
 }
 
-/// The generator's state; a stream of its own per seed and component where the scene gave none.
+/// The state of the generator; if the scene gave none, it is seeded from the scene's seed and the component.
 std::uint64_t random_state(const Call& call)
 {
     if (*call.random_state != 0) return static_cast<std::uint64_t>(*call.random_state);
@@ -145,7 +145,7 @@ int random_number(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {
+constexpr NativeFunction kMathFunctions[] = {
     {"abs", absolute, "(x)", "|x|"},
     {"acos", apply<std::acos>, "(x)", "rad"},
     {"asin", apply<std::asin>, "(x)", "rad"},
@@ -168,12 +168,12 @@ constexpr NativeValue kValues[] = {{"pi", "rad", "half a turn"}, {"huge", "", "i
 
 }  // namespace
 
-NativeGroup math_group() { return {"math.", kFunctions, {std::begin(kValues), std::end(kValues)}}; }
+NativeGroup math_group() { return {"math.", kMathFunctions, {std::begin(kValues), std::end(kValues)}}; }
 
 void open_math(lua_State* lua)
 {
     lua_newtable(lua);
-    add_functions(lua, kFunctions);
+    add_functions(lua, kMathFunctions);
     lua_pushnumber(lua, std::numbers::pi);
     lua_setfield(lua, -2, "pi");
     lua_pushnumber(lua, std::numeric_limits<double>::infinity());

@@ -1,4 +1,4 @@
-/// What a call may spend, and why it was ended.
+/// The limits of one call, and why it was ended.
 #pragma once
 
 #include <algorithm>
@@ -7,25 +7,25 @@
 namespace plab::scripts
 {
 
-/// Counts instructions exactly against a budget, in strides that grow, and the bytes that a call asks for against a
-/// limit far above what honest code reaches. Once a call is doomed it stays so until the next one starts.
+/// Counts instructions exactly against a budget, in strides of growing length, and the bytes that a call requests against a
+/// limit far above what normal code reaches. Once a call has exceeded a limit, it stays in error until the next one starts.
 ///
-/// Only the instructions decide on honest code: how many bytes Lua asks for depends on hash seeds, which differ from
-/// run to run.
+/// Only the number of instructions can stop normal code: how many bytes Lua requests depends on its hash seeds, which differ
+/// from run to run.
 class Meter
 {
 public:
-    /// That a call may ask for, of its budget.
+    /// Bytes that a call may request per instruction of its budget.
     static constexpr std::uint64_t kBytesPerInstruction = 512;
 
     enum class Doom : std::uint8_t
     {
         None,
         Instructions,
-        Traffic,      ///< bytes asked for in one call
-        Memory,       ///< bytes held at a time
-        Text,         ///< one text too long
-        Interrupted,  ///< the step is given up: nobody will see how the call ended
+        Traffic,      ///< bytes requested in one call
+        Memory,       ///< bytes held at one time
+        Text,         ///< a string that is too long
+        Interrupted,  ///< the step was interrupted, so the outcome of the call is irrelevant
     };
 
     void start(std::int64_t budget)
@@ -33,23 +33,23 @@ public:
         budget_ = budget, used_ = 0, traffic_ = 0, doom_ = Doom::None;
         stride_ = std::clamp<std::int64_t>(budget, 1, kFirstStride);
     }
-    /// Another stride of instructions is done. False: over budget.
+    /// Another stride of instructions is done. Returns false if the call is over its budget.
     bool count_stride() { return spend(stride_); }
-    /// The next stride: growing, so that a small call sees no hook at all and a large one few.
+    /// The next stride: growing, so that a short call triggers no hook at all, and a long one few.
     int next_stride()
     {
         stride_ = std::clamp<std::int64_t>(budget_ - used_, 1, std::min<std::int64_t>(stride_ * 2, kLongestStride));
         return static_cast<int>(stride_);
     }
     int stride() const { return static_cast<int>(stride_); }
-    /// False: over budget.
+    /// Returns false if the call is over its budget.
     bool spend(std::int64_t instructions)
     {
         used_ += std::min(instructions, budget_ + 1);
         if (used_ >= budget_) doom(Doom::Instructions);
         return !doomed();
     }
-    /// False: the call moves too much memory.
+    /// Returns false if the call requests too much memory.
     bool move(std::size_t bytes)
     {
         traffic_ += bytes;
@@ -62,7 +62,7 @@ public:
     }
     bool doomed() const { return doom_ != Doom::None; }
     Doom why() const { return doom_; }
-    /// At most the true count; at least half of it, or 64 less.
+    /// Never more than the true count; at least half of it, or 64 less.
     std::int64_t used() const { return used_; }
     std::int64_t budget() const { return budget_; }
 

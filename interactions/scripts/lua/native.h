@@ -12,7 +12,7 @@
 namespace plab::scripts
 {
 
-/// A function as it is registered and as the reference manual lists it.
+/// A function, as it is registered and as the reference manual lists it.
 struct NativeFunction
 {
     const char* name;
@@ -35,7 +35,7 @@ void add_functions(lua_State* lua, std::span<const NativeFunction> functions);
 void open_base(lua_State* lua);
 /// effects.cpp: set, emit, print
 void open_effects(lua_State* lua);
-/// math_library.cpp, string_library.cpp, table_library.cpp: each leaves its library as one read-only field.
+/// math_library.cpp, string_library.cpp, table_library.cpp: each adds its library as one read-only field.
 void open_math(lua_State* lua);
 void open_string(lua_State* lua);
 void open_table(lua_State* lua);
@@ -46,7 +46,7 @@ void open_participants(lua_State* lua);
 /// records.cpp: state, parameters, and step in the registry
 void open_records(lua_State* lua);
 
-/// What these files register, by what it stands behind in a script ("math.", "body:", ...; "" for globals): manual.cpp prints it.
+/// What these files register, by prefix in a script ("math.", "body:", ...; "" for globals); manual.cpp prints it.
 struct NativeGroup
 {
     const char* prefix;
@@ -62,7 +62,7 @@ std::vector<NativeGroup> vector_groups();
 std::vector<NativeGroup> participant_groups();
 NativeGroup step_group();
 
-// Objects: every userdata of a machine starts with its tag, so that a wrong argument is noticed at no cost.
+// Objects: every userdata of a machine starts with a tag, so that wrong arguments are detected at almost no cost.
 
 enum class Tag : std::uint32_t
 {
@@ -79,7 +79,7 @@ struct Object
     Tag tag;
 };
 
-/// Pushes a new object without metatable.
+/// Pushes a new object without a metatable.
 template <class T>
 T& push_object(lua_State* lua, Tag tag)
 {
@@ -87,7 +87,7 @@ T& push_object(lua_State* lua, Tag tag)
     object->tag = tag;
     return *object;
 }
-/// The object at `index`, or null if there is none of that tag.
+/// The object at `index`, or null if it does not have that tag.
 template <class T>
 T* to_object(lua_State* lua, int index, Tag tag)
 {
@@ -100,18 +100,18 @@ const Vec3* to_vector(lua_State* lua, int index);
 const Vec3& check_vector(lua_State* lua, int argument);
 void push_rotation(lua_State* lua, const Quat& q);
 
-/// Makes driver, driven and between those of the call. Needs some stack; raises an error when out of memory.
+/// Sets driver, driven and between to those of the call. Needs some stack; raises an error when out of memory.
 void bind_participants(lua_State* lua, const Call& call);
 
-/// Like luaL_typename, with the names of our own objects.
+/// Like luaL_typename, but with the names of pLab's own objects.
 const char* type_name(lua_State* lua, int index);
 
-/// Pushes a text; raises an error where it would be too long.
+/// Pushes a string; raises an error if it is too long.
 void push_text(lua_State* lua, std::string_view text);
-/// The text at `argument`, which is charged for.
+/// The string at `argument`; its length is charged to the budget.
 std::string_view check_text(lua_State* lua, int argument);
 
-/// A text in the making, on the C++ stack: no call allocates for it.
+/// A string under construction, on the C++ stack, so that no call allocates for it.
 class Text
 {
 public:
@@ -126,17 +126,17 @@ public:
     std::string_view view() const { return {bytes_, fits() ? wanted_ : 0}; }
 
 private:
-    std::size_t wanted_ = 0;  // bytes, whether they fitted or not
+    std::size_t wanted_ = 0;  // bytes, whether they fit or not
     char bytes_[kLongestText];
 };
 
-/// Pushes the text and charges for it; raises an error where it is too long.
+/// Pushes the string and charges for it; raises an error if it is too long.
 void push_text(lua_State* lua, const Text& text);
 
-/// Appends what tostring() shows; no addresses.
+/// Appends what tostring() shows; never an address.
 void append_shown(lua_State* lua, int index, Text& out);
 
-/// Whether the bytes are UTF-8: what goes out as JSON or on the bus must be.
+/// Whether the bytes are valid UTF-8, as required for everything that leaves as JSON or on the bus.
 bool is_utf8(std::string_view text);
 
 }  // namespace plab::scripts

@@ -1,4 +1,4 @@
-// driver, driven and between[i]: what a script reads of the host tables, and the forces that it adds.
+// driver, driven and between[i]: what a script reads from the host tables, and the forces that it adds.
 #include <cmath>
 #include <cstdio>
 #include <new>
@@ -12,7 +12,7 @@ namespace plab::scripts
 namespace
 {
 
-/// The same object for as long as the machine lives; only `ref` follows the role.
+/// One object for the lifetime of the machine; only `ref` follows the role.
 struct ParticipantObject : Object
 {
     int place = 0;  // 0: driver, -1: driven, i: between[i]
@@ -39,8 +39,8 @@ std::size_t rows_of(const Call& call, Facet facet)
     return facet == Facet::Body ? call.bodies->size() : call.shafts->size();
 }
 
-/// Where the participant can be read. Host tables only grow while a script lives, so a bad index is a host's mistake
-/// or a participant that is gone.
+/// The row from which the participant is read. Host tables only grow while a script lives, so an invalid index is an error of
+/// the host, or the participant has been removed.
 const Call& readable(lua_State* lua, const ParticipantObject& p)
 {
     const Call& call = running_call(lua, "participants");
@@ -48,7 +48,7 @@ const Call& readable(lua_State* lua, const ParticipantObject& p)
     return call;
 }
 
-/// What can be read of a participant of one kind, from its host table.
+/// The values that can be read from one kind of participant, in its host table.
 template <class Host>
 struct Reading
 {
@@ -111,7 +111,7 @@ int participant_index(lua_State* lua)
                       RoleName(p.place).text, lua_type(lua, 2) == LUA_TSTRING ? lua_tostring(lua, 2) : type_name(lua, 2));
 }
 
-int refuse_assignment(lua_State* lua)
+int refuse_participant_assignment(lua_State* lua)
 {
     return luaL_error(lua, "participants are read-only: add forces in force(t, state), or change parameters by set()");
 }
@@ -177,7 +177,7 @@ int add_torque(lua_State* lua)
     return act(lua, {Action::Kind::ShaftTorque, p.ref, {torque, 0, 0}, {}, 0});
 }
 
-/// The place, from 0, that argument 2 names, from 1, among the values of quantities.
+/// The index (from 0) of the value of quantities that argument 2 names (from 1).
 std::uint32_t check_place(lua_State* lua, const Call& call, const ParticipantObject& p)
 {
     if (p.ref.facet != Facet::Quantities) luaL_error(lua, "%s has no numbered values: those are quantities", RoleName(p.place).text);
@@ -223,7 +223,7 @@ std::vector<NativeValue> values_of(std::span<const Reading<Host>> readings)
     return out;
 }
 
-/// The global `name` is the object in `slot`, or nil without participant.
+/// Sets the global `name` to the object in `slot`, or to nil if there is no participant.
 void bind_one(lua_State* lua, int slot, const char* name, Ref ref)
 {
     lua_rawgeti(lua, LUA_REGISTRYINDEX, kGlobals);
@@ -299,7 +299,7 @@ void open_participants(lua_State* lua)
     add_functions(lua, kMethods);
     lua_pushcclosure(lua, participant_index, 1);
     lua_setfield(lua, -2, "__index");
-    lua_pushcfunction(lua, refuse_assignment);
+    lua_pushcfunction(lua, refuse_participant_assignment);
     lua_setfield(lua, -2, "__newindex");
     lua_pushliteral(lua, "participant");
     lua_setfield(lua, -2, "__name");

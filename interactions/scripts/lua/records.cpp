@@ -1,5 +1,5 @@
-// state, parameters and step: windows onto what the host keeps. Nothing is copied, so a restored memento is in force at
-// once.
+// state, parameters and step: views of data that the host owns. Nothing is copied, so a restored memento takes effect
+// immediately.
 #include <algorithm>
 #include <cmath>
 #include <new>
@@ -100,7 +100,7 @@ int step_get(lua_State* lua)
     else if (name == kStepValues[2].name)
         lua_pushinteger(lua, call.context->tick);
     else
-        return luaL_error(lua, "step has time, dt and tick, nothing else");
+        return luaL_error(lua, "step has only time, dt and tick");
     return 1;
 }
 

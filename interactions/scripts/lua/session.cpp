@@ -5,10 +5,10 @@ namespace plab::scripts
 namespace
 {
 
-/// Passing n of them on takes the time of n instructions and counts as one.
+/// Passing on n of them takes the time of n instructions but counts as one.
 constexpr int kMostArguments = 250;
 
-/// Raises the error that ends a doomed call, with the place of level `level` in front.
+/// Raises the error that ends the call, prefixed with the source position of stack level `level`.
 int end_call(lua_State* lua, int level)
 {
     const Session& session = session_of(lua);
@@ -16,7 +16,7 @@ int end_call(lua_State* lua, int level)
     if (session.meter.why() == Meter::Doom::Interrupted)
         lua_pushliteral(lua, "the step is given up");
     else if (session.meter.why() == Meter::Doom::Traffic)
-        lua_pushliteral(lua, "too much memory is asked for in one call");
+        lua_pushliteral(lua, "too much memory is requested in one call");
     else
         lua_pushfstring(lua, "over the budget of %I instructions", static_cast<lua_Integer>(session.meter.budget()));
     lua_concat(lua, 2);

@@ -1,4 +1,4 @@
-/// What the functions that a script can call see of their machine. For the files of this folder that know Lua.
+/// The part of a machine that the functions callable by a script can see. Only for the files of this folder that use Lua.
 #pragma once
 
 #include <string_view>
@@ -14,15 +14,15 @@
 namespace plab::scripts
 {
 
-/// The longest text that a script can make. Lua compares, hashes and converts texts in single instructions, so their
-/// length must be bounded for an instruction to have a bounded cost.
+/// The longest string that a script can create. Lua compares, hashes and converts strings in single instructions, so their
+/// length must be bounded for instructions to have a bounded cost.
 inline constexpr std::size_t kLongestText = 4096;
-/// Loading may take so many budgets: it may build tables for the calls to come.
+/// Loading may use this many budgets, as it may build tables for later calls.
 inline constexpr std::int64_t kLoadFactor = 10;
-/// What Lua calls the code in its messages: "code:3: ...".
+/// The name of the code in Lua's messages: "code:3: ...".
 inline constexpr const char* kChunkName = "=code";
 
-/// A value of a local that functions share, as it was after loading.
+/// The value of a shared local after loading.
 struct Watch
 {
     int function = 0;  ///< stack index of a function that holds the local
@@ -32,7 +32,7 @@ struct Watch
     std::uint64_t bits = 0;
 };
 
-/// Where things stand on the machine's stack between calls.
+/// The layout of the machine's stack between calls.
 enum StackSlot : int
 {
     kDriveSlot = 1,
@@ -42,7 +42,7 @@ enum StackSlot : int
     kFirstWatchedSlot,
 };
 
-/// Where things stand in Lua's registry.
+/// The layout of Lua's registry.
 enum RegistrySlot : int
 {
     kVectorMeta = LUA_RIDX_LAST + 1,
@@ -51,11 +51,11 @@ enum RegistrySlot : int
     kEntriesMeta,
     kStepMeta,
     kStep,
-    kGlobals,  ///< what the script sees as globals, behind a proxy
+    kGlobals,  ///< the script's globals, behind a proxy
     kDriver,
     kDriven,
     kBetween,  ///< the list behind `between`
-    kPinned,   ///< watched values: kept, so that no other can take their address
+    kPinned,   ///< watched values: kept alive, so that no other value can take their address
     kStringLibrary,
 };
 
@@ -68,27 +68,27 @@ struct Session
     Meter meter;
     lua_State* lua = nullptr;
     const Call* call = nullptr;  ///< null between calls
-    int refused_at = -1;         ///< line at which memory was refused last
-    bool text_refused = false;   ///< ... because one text was too long
+    int refused_at = -1;         ///< line at which memory was last refused
+    bool text_refused = false;   ///< whether that was because a string was too long
     std::vector<Action> actions;
     std::vector<Watch> watches;
-    Ref driver, driven;  ///< participants as the script's objects know them
+    Ref driver, driven;  ///< participants, as the objects of the script refer to them
     RefList between;
     std::string_view code;  ///< while loading
 };
 
 inline Session& session_of(lua_State* lua) { return **static_cast<Session**>(lua_getextraspace(lua)); }
 
-/// The count hook: ends a call that is over its budget, again and again until it is left.
+/// The count hook: ends a call that is over its budget, repeatedly until the call returns.
 void count_hook(lua_State* lua, lua_Debug* at);
 
-/// Books work that Lua's own counting does not see. Raises an error when the call is doomed.
+/// Charges work that Lua's own counting does not see. Raises an error if the call exceeds its budget.
 void charge(lua_State* lua, std::int64_t instructions);
 
-/// Lets no pcall keep a doomed call alive. `status` and the error on top of the stack come from lua_pcall.
+/// Rethrows errors that no pcall may catch. `status` and the error on top of the stack come from lua_pcall.
 void rethrow_if_doomed(lua_State* lua, int status);
 
-/// The call that runs; raises an error when `what` cannot be used while loading.
+/// The present call; raises an error if `what` cannot be used while loading.
 const Call& running_call(lua_State* lua, const char* what);
 
 }  // namespace plab::scripts

@@ -1,4 +1,4 @@
-// The library `string`, bounded: no patterns (their matching time has no bound that the budget would see).
+// The library `string`, with bounded cost: no patterns, as the budget could not bound the time for matching them.
 #include <algorithm>
 #include <cstdio>
 
@@ -12,7 +12,7 @@ namespace
 
 constexpr lua_Integer kMostBytes = 200;  // results of string.byte, arguments of string.char
 
-/// A position as Lua counts: from 1, or from the end if negative.
+/// A position as in Lua: counted from 1, or from the end if negative.
 lua_Integer start_of(lua_Integer position, lua_Integer length)
 {
     if (position > 0) return position;
@@ -41,7 +41,7 @@ int length_of(lua_State* lua)
     return 1;
 }
 
-/// ASCII only: no locale changes a result.
+/// ASCII only, so that results do not depend on a locale.
 int change_case(lua_State* lua, char first, char last, int shift)
 {
     Text out;
@@ -59,7 +59,7 @@ int repeat(lua_State* lua)
     const std::string_view between = lua_isnoneornil(lua, 3) ? std::string_view() : check_text(lua, 3);
     Text out;
     if (s.empty() && between.empty()) return push_text(lua, out), 1;
-    // The last piece has nothing behind it, hence the one more; what is still too long, `out` notices.
+    // The last piece has no separator after it, hence the addition; `out` detects a string that is still too long.
     const auto most = static_cast<lua_Integer>(kLongestText / (s.size() + between.size())) + 1;
     for (lua_Integer i = 0; i < times && times <= most; ++i)
     {
@@ -100,7 +100,7 @@ int text_of_bytes(lua_State* lua)
     return 1;
 }
 
-/// "%-5.3f" and the like; width and precision have at most two digits, so no conversion is long.
+/// Conversions like "%-5.3f"; width and precision have at most two digits, so no conversion is long.
 struct Conversion
 {
     char spec[16];
@@ -125,7 +125,7 @@ bool read_digits(std::string_view form, std::size_t& at, Conversion& out)
     return true;
 }
 
-/// `at` stands behind the %.
+/// `at` points behind the %.
 bool read_conversion(std::string_view form, std::size_t& at, Conversion& out)
 {
     out.add('%');
@@ -144,7 +144,7 @@ bool read_conversion(std::string_view form, std::size_t& at, Conversion& out)
 
 void append_number(lua_State* lua, Conversion& c, int argument, Text& out)
 {
-    char buffer[512];  // 309 digits and 99 decimals of the largest number
+    char buffer[512];  // enough for 309 digits and 99 decimals of the largest number
     int n = 0;
     if (std::string_view("dixXo").find(c.letter) != std::string_view::npos)
     {
@@ -161,7 +161,7 @@ void append_number(lua_State* lua, Conversion& c, int argument, Text& out)
     out.append({buffer, static_cast<std::size_t>(std::clamp(n, 0, static_cast<int>(sizeof buffer) - 1))});
 }
 
-/// %s, with a precision that cuts and a width that fills.
+/// %s, with a precision that truncates and a width that pads.
 void append_padded(lua_State* lua, const Conversion& c, int argument, Text& out)
 {
     luaL_checkany(lua, argument);
@@ -212,24 +212,24 @@ int format(lua_State* lua)
     return 1;
 }
 
-constexpr NativeFunction kFunctions[] = {{"byte", bytes_of, "(text, from, to)", "codes of the bytes"},
-                                         {"char", text_of_bytes, "(code, ...)", "the text of these bytes"},
-                                         {"format", format, "(form, ...)", "as printf does; no patterns"},
-                                         {"len", length_of, "(text)", "bytes"},
-                                         {"lower", lower, "(text)", "in small letters"},
-                                         {"rep", repeat, "(text, n, between)", "n times"},
-                                         {"sub", part, "(text, from, to)", "the part; negative places count from the end"},
-                                         {"upper", upper, "(text)", "in capitals"}};
+constexpr NativeFunction kStringFunctions[] = {{"byte", bytes_of, "(text, from, to)", "codes of the bytes"},
+                                               {"char", text_of_bytes, "(code, ...)", "the text of these bytes"},
+                                               {"format", format, "(form, ...)", "as printf does; no patterns"},
+                                               {"len", length_of, "(text)", "bytes"},
+                                               {"lower", lower, "(text)", "in small letters"},
+                                               {"rep", repeat, "(text, n, between)", "n times"},
+                                               {"sub", part, "(text, from, to)", "the substring; negative positions count from the end"},
+                                               {"upper", upper, "(text)", "in capitals"}};
 
 }  // namespace
 
-NativeGroup string_group() { return {"string.", kFunctions}; }
+NativeGroup string_group() { return {"string.", kStringFunctions}; }
 
-/// Texts find their methods in the same read-only library; their metatable is out of reach.
+/// Strings find their methods in the same read-only library; scripts cannot reach their metatable.
 void open_string(lua_State* lua)
 {
     lua_newtable(lua);
-    add_functions(lua, kFunctions);
+    add_functions(lua, kStringFunctions);
     freeze_table(lua, -1);
     lua_pushliteral(lua, "");
     lua_createtable(lua, 0, 1);

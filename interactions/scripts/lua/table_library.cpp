@@ -1,4 +1,4 @@
-// The library `table`: lists, with bounds on what one call can cost, and a sort that is stable.
+// The library `table`: lists, with bounds on the cost of a call, and a stable sort.
 #include <algorithm>
 #include <bit>
 
@@ -13,7 +13,7 @@ namespace
 constexpr lua_Integer kMostUnpacked = 200;
 constexpr lua_Integer kLongestSort = 10000;
 
-/// Length of the list at argument 1, which is charged for moving `share` of it.
+/// Length of the list at argument 1; charges for moving `share` of it.
 lua_Integer changeable_length(lua_State* lua)
 {
     check_changeable(lua, 1);
@@ -94,7 +94,7 @@ int unpack(lua_State* lua)
     return static_cast<int>(count + 1);
 }
 
-/// Texts by bytes: no locale changes an order.
+/// Strings by bytes, so that no locale changes an order.
 bool less_by_default(lua_State* lua, int a, int b)
 {
     const int type = lua_type(lua, a);
@@ -105,7 +105,7 @@ bool less_by_default(lua_State* lua, int a, int b)
     return std::string_view(lua_tostring(lua, a), lua_rawlen(lua, a)) < std::string_view(lua_tostring(lua, b), lua_rawlen(lua, b));
 }
 
-/// Whether list[i] comes before list[j].
+/// Whether list[i] is ordered before list[j].
 bool comes_before(lua_State* lua, int list, lua_Integer i, lua_Integer j)
 {
     charge(lua, 2);
@@ -132,7 +132,7 @@ void copy_element(lua_State* lua, int from, lua_Integer i, int to, lua_Integer j
     lua_rawseti(lua, to, j);
 }
 
-/// Merges from[low, middle) and from[middle, high) to to[low, high). Of equals, the left comes first.
+/// Merges from[low, middle) and from[middle, high) into to[low, high). Of equal elements, the left one comes first.
 void merge(lua_State* lua, int from, int to, lua_Integer low, lua_Integer middle, lua_Integer high)
 {
     lua_Integer left = low, right = middle;
@@ -143,7 +143,7 @@ void merge(lua_State* lua, int from, int to, lua_Integer low, lua_Integer middle
     }
 }
 
-/// Bottom-up merge sort between two copies; the list itself changes only once the order is known.
+/// Bottom-up merge sort between two copies; the list itself changes only after the order is known.
 int sort(lua_State* lua)
 {
     const lua_Integer n = changeable_length(lua);
@@ -165,20 +165,20 @@ int sort(lua_State* lua)
     return 0;
 }
 
-constexpr NativeFunction kFunctions[] = {{"concat", concatenate, "(list, between, from, to)", "the elements as one text"},
-                                         {"insert", insert, "(list, place, value)", "at the end without a place"},
-                                         {"remove", remove, "(list, place)", "the last one without a place"},
-                                         {"sort", sort, "(list, less)", "stable: what is equal keeps its order"},
-                                         {"unpack", unpack, "(list, from, to)", "the elements as several values"}};
+constexpr NativeFunction kTableFunctions[] = {{"concat", concatenate, "(list, between, from, to)", "the elements as one text"},
+                                              {"insert", insert, "(list, place, value)", "at the end without a place"},
+                                              {"remove", remove, "(list, place)", "the last one without a place"},
+                                              {"sort", sort, "(list, less)", "stable: equal elements keep their order"},
+                                              {"unpack", unpack, "(list, from, to)", "the elements as several values"}};
 
 }  // namespace
 
-NativeGroup table_group() { return {"table.", kFunctions}; }
+NativeGroup table_group() { return {"table.", kTableFunctions}; }
 
 void open_table(lua_State* lua)
 {
     lua_newtable(lua);
-    add_functions(lua, kFunctions);
+    add_functions(lua, kTableFunctions);
     freeze_table(lua, -1);
     lua_setfield(lua, -2, "table");
 }

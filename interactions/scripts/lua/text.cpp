@@ -1,4 +1,4 @@
-// Texts in bounds, and values as people read them.
+// Bounded strings, and readable representations of values.
 #include <cstdio>
 
 #include "lua/native.h"
@@ -107,7 +107,7 @@ void append_shown(lua_State* lua, int index, Text& out)
 namespace
 {
 
-/// Bytes that follow a lead byte, and the smallest code point that may be written so; -1: no lead byte.
+/// The number of bytes that follow a lead byte, and the smallest code point that may be encoded this way; -1: not a lead byte.
 int follow_bytes(unsigned char lead, std::uint32_t& smallest)
 {
     if (lead < 0x80) return smallest = 0, 0;

@@ -1,4 +1,4 @@
-// Vectors and rotations: values that never change, so that keeping one across calls carries nothing.
+// Vectors and rotations: immutable values, so that keeping one across calls carries no state.
 #include <cstdio>
 #include <new>
 
@@ -25,7 +25,7 @@ int make_vector(lua_State* lua)
     return 1;
 }
 
-/// Both arguments; the first is looked at first, whatever the compiler does with argument lists.
+/// Both arguments; the first is always checked first, whatever the evaluation order of arguments.
 struct Operands
 {
     explicit Operands(lua_State* lua) : a(check_vector(lua, 1)), b(check_vector(lua, 2)) {}
@@ -84,7 +84,7 @@ int rotation_rotate(lua_State* lua, Vec3 (*turn)(const Quat&, const Vec3&))
 int rotation_forth(lua_State* lua) { return rotation_rotate(lua, rotate); }
 int rotation_back(lua_State* lua) { return rotation_rotate(lua, rotate_back); }
 
-/// A method out of the table that is this function's upvalue.
+/// A method from the table that is this function's upvalue.
 int find_method(lua_State* lua, const char* what)
 {
     lua_pushvalue(lua, 2);
@@ -134,7 +134,7 @@ int rotation_index(lua_State* lua)
     }
 }
 
-int refuse_assignment(lua_State* lua) { return luaL_error(lua, "a %s does not change: make a new one", type_name(lua, 1)); }
+int refuse_vector_assignment(lua_State* lua) { return luaL_error(lua, "a %s does not change: make a new one", type_name(lua, 1)); }
 
 constexpr NativeFunction kMakers[] = {{"vec", make_vector, "(x, y, z)", "a vector; `+ - ==`, `-v`, `*` and `/` with a number"}};
 constexpr NativeFunction kVectorMethods[] = {{"dot", vector_dot, "(other)", "scalar product"},
@@ -142,14 +142,18 @@ constexpr NativeFunction kVectorMethods[] = {{"dot", vector_dot, "(other)", "sca
                                              {"length", vector_length, "()", "as the vector's unit"},
                                              {"normalized", vector_normalized, "()", "of length 1"}};
 constexpr NativeValue kVectorValues[] = {{"x", "", "component"}, {"y", "", "component"}, {"z", "", "component"}};
-constexpr NativeFunction kVectorOperators[] = {
-    {"__add", vector_add},    {"__sub", vector_subtract}, {"__mul", vector_multiply},       {"__div", vector_divide},
-    {"__unm", vector_negate}, {"__eq", vector_equal},     {"__newindex", refuse_assignment}};
+constexpr NativeFunction kVectorOperators[] = {{"__add", vector_add},
+                                               {"__sub", vector_subtract},
+                                               {"__mul", vector_multiply},
+                                               {"__div", vector_divide},
+                                               {"__unm", vector_negate},
+                                               {"__eq", vector_equal},
+                                               {"__newindex", refuse_vector_assignment}};
 constexpr NativeFunction kRotationMethods[] = {{"rotate", rotation_forth, "(vector)", "from the body's axes to the world's"},
                                                {"rotate_back", rotation_back, "(vector)", "from the world's axes to the body's"}};
 constexpr NativeValue kRotationValues[] = {
     {"w", "", "scalar part"}, {"x", "", "component"}, {"y", "", "component"}, {"z", "", "component"}};
-constexpr NativeFunction kRotationOperators[] = {{"__newindex", refuse_assignment}};
+constexpr NativeFunction kRotationOperators[] = {{"__newindex", refuse_vector_assignment}};
 
 void make_metatable(lua_State* lua, int slot, const char* name, std::span<const NativeFunction> operators,
                     std::span<const NativeFunction> methods, lua_CFunction index)

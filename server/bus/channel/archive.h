@@ -1,5 +1,5 @@
-/// Records as bytes and back: their fields in order, numbers as they lie in memory, text and sequences with their length
-/// before them. Both programs are of one build and on one machine, so nothing says what it is.
+/// Records as bytes and back: the fields in order, numbers with their memory layout, text and sequences with their length in
+/// front. Both programs belong to one build and run on one machine, so the bytes carry no type information.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@
 namespace plab::bus
 {
 
-/// Copied as it lies in memory.
+/// Types whose memory is copied directly.
 template <class T>
 inline constexpr bool kIsFlat = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <>
-inline constexpr bool kIsFlat<bool> = false;  // not every byte is one
+inline constexpr bool kIsFlat<bool> = false;  // not every byte is a valid bool
 template <>
 inline constexpr bool kIsFlat<Vec3> = true;
 template <>
@@ -36,7 +36,7 @@ inline constexpr bool kIsFlat<publish::ShaftState> = true;
 template <class T, std::size_t N>
 inline constexpr bool kIsFlat<std::array<T, N>> = kIsFlat<T>;
 
-/// Writes into a span. What does not fit is only counted: size() is what it would take.
+/// Writes into a span. Bytes that do not fit are only counted: size() is the size that the whole would need.
 class Encoder
 {
 public:
@@ -94,18 +94,19 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Reads what anybody may have written: nothing beyond the span, and no more memory than a multiple of it.
+/// Reads bytes that may come from an untrusted process: it never reads beyond the span, and allocates at most a multiple of its
+/// size.
 class Decoder
 {
 public:
-    /// `words` keeps the text behind `const char*` fields, which are few words; without it such a field is an error.
+    /// `words` holds the text for `const char*` fields, which have few different values; without it, such a field is an error.
     explicit Decoder(std::span<const std::byte> source, std::set<std::string, std::less<>>* words = nullptr) : rest_(source), words_(words)
     {
     }
 
-    /// Everything was there, and nothing is left.
+    /// Every field was complete, and no bytes are left over.
     bool whole() const { return fine_ && rest_.empty(); }
-    /// What was there, so far.
+    /// Every field so far was complete.
     bool fine() const { return fine_; }
 
     template <class T>
@@ -145,7 +146,7 @@ public:
         }
         else
         {
-            // Not resized at once: each element takes some of the span, so that there are no more than it has bytes.
+            // Not resized at once: each element consumes bytes of the span, so there cannot be more elements than bytes.
             std::size_t count = length(1);
             values.clear();
             while (fine_ && count-- > 0) get(values.emplace_back());

@@ -1,4 +1,4 @@
-/// Wakes the thread that sleeps at the other end, in this process or another.
+/// Wakes the thread that sleeps at the other end, in this process or in another one.
 #pragma once
 
 #include <sys/eventfd.h>
@@ -14,7 +14,7 @@ namespace plab::bus
 class Bell
 {
 public:
-    /// Takes the descriptor of an eventfd that does not block; -1: it rings nobody.
+    /// Takes the descriptor of a non-blocking eventfd; -1: ring() does nothing.
     explicit Bell(int descriptor = -1) : descriptor_(descriptor) {}
     static Bell make() { return Bell(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)); }
     Bell(Bell&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
@@ -31,18 +31,18 @@ public:
     }
 
     int descriptor() const { return descriptor_; }
-    /// Never waits: a full counter is a ring that nobody has heard yet.
+    /// Never waits: if the counter is full, the sleeper has not read an earlier ring yet.
     void ring() const
     {
         const std::uint64_t one = 1;
         [[maybe_unused]] const auto written = ::write(descriptor_, &one, sizeof one);
     }
-    /// As ring(), for the process that sleeps on it: a system call only for the first one since it woke.
+    /// Like ring(), for the process that sleeps on it: it makes a system call only for the first ring since the sleeper woke.
     void ring_once()
     {
         if (!algorithm_.exchange(true, std::memory_order_acq_rel)) ring();
     }
-    /// The sleeper is awake: what was algorithm for before is seen by what follows.
+    /// Called when the sleeper has woken: whatever was written before a ring is visible to what follows.
     void heard()
     {
         std::uint64_t count = 0;

@@ -1,4 +1,4 @@
-/// The fields of a plain struct, one after the other, without a list of them that somebody would have to keep.
+/// Visits the fields of a plain struct one after the other, so that no separate list of fields has to be maintained.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ constexpr bool takes(std::index_sequence<I...>)
 
 }  // namespace detail
 
-/// How many fields an aggregate has: the most values that it can be made of.
+/// The number of fields of an aggregate: the largest number of values that can initialize it.
 template <class T, std::size_t Most = 24>
 constexpr std::size_t field_count()
 {
@@ -38,7 +38,7 @@ constexpr std::size_t field_count()
         return field_count<T, Most - 1>();
 }
 
-/// Calls `f` with each field, in the order of their declaration. T is an aggregate, const or not.
+/// Calls `f` with each field, in order of declaration. T is an aggregate, const or not.
 template <class T, class F>
 constexpr void for_each_field(T& t, F&& f)
 {

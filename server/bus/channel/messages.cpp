@@ -8,7 +8,7 @@ namespace plab::bus
 bool MessageWriter::flush()
 {
     if (rest_.empty()) return true;
-    // Asked before the look: room that is made after the look rings.
+    // Announce the need for room before checking: room that appears after the check then rings the bell.
     pipe_.ask_for_room();
     const auto room = pipe_.room();
     if (!room) return false;
@@ -37,7 +37,7 @@ MessageReader::State MessageReader::next(Message& message)
             message = {head.kind, waiting->subspan(sizeof head, static_cast<std::size_t>(head.bytes))};
             return State::Whole;
         }
-        // The rest of a message that fits may still be on its way; one that does not never comes whole.
+        // The rest of a message that fits may still be on its way; a message larger than the limit is an error.
         if (!copies_ && head.bytes <= PipeMemory::kDown / 2) return State::Nothing;
         head_ = head;
         buffer_.clear();

@@ -1,4 +1,4 @@
-/// What plabd and plab-bus say to each other, and messages as they go through a pipe.
+/// The messages between plabd and plab-bus, and how they pass through a pipe.
 #pragma once
 
 #include <array>
@@ -23,34 +23,34 @@ enum class Down : std::uint32_t
     Catalogue,  ///< publish::CatalogueChange
     Status,     ///< StatusMessage
     Answer,     ///< AnswerMessage
-    End,        ///< nothing; plab-bus says goodbye and ends
-    Stream,     ///< Stream + s: a record of the stream s
+    End,        ///< no content; plab-bus announces the end of the server and ends
+    Stream,     ///< Stream + s: one record of stream s
 };
 
-/// From plab-bus to plabd, which believes none of it.
+/// From plab-bus to plabd, which validates all of it.
 enum class Up : std::uint32_t
 {
-    Joined,   ///< nothing
+    Joined,   ///< no content
     Failed,   ///< std::string: why it could not join; then it ends
     Wants,    ///< WantsMessage, on change
     Request,  ///< RequestMessage
     Lost,     ///< std::string: why this server must end
     Log,      ///< std::string
-    Alive,    ///< nothing; once a second
+    Alive,    ///< no content; sent once per second
 };
 
 struct StartMessage
 {
     std::string name, version, network_interface;
     std::uint32_t domain = 0;
-    std::int32_t process = 0;     ///< plabd's
-    std::int64_t started_ns = 0;  ///< plabd was, since 1970
+    std::int32_t process = 0;     ///< process id of plabd
+    std::int64_t started_ns = 0;  ///< start time of plabd, ns since 1970
 };
 
 struct StatusMessage
 {
     publish::Status status;
-    std::array<std::uint64_t, kStreams> dropped{};  ///< records that rings gave up, by stream
+    std::array<std::uint64_t, kStreams> dropped{};  ///< records that the rings dropped, by stream
 };
 
 struct AnswerMessage
@@ -61,17 +61,17 @@ struct AnswerMessage
 
 struct WantsMessage
 {
-    std::array<std::uint8_t, kStreams> wanted{};  ///< by stream; 0: nobody reads it
-    std::array<std::uint64_t, kStreams> joins{};  ///< readers that came, ever
+    std::array<std::uint8_t, kStreams> wanted{};  ///< by stream; 0: it has no reader
+    std::array<std::uint64_t, kStreams> joins{};  ///< number of readers that have joined since the start
 };
 
 struct RequestMessage
 {
     publish::RequestText request;
-    std::string wrong;  ///< "", or why it was not copied in full
+    std::string wrong;  ///< "", or why the request was not copied completely
 };
 
-/// Before each message.
+/// Precedes each message.
 struct MessageHead
 {
     std::uint32_t kind = 0;
@@ -79,15 +79,15 @@ struct MessageHead
     std::uint64_t bytes = 0;
 };
 
-/// Messages into a pipe. One that finds too little room goes in pieces.
+/// Writes messages into a pipe. A message that finds too little room is sent in pieces.
 class MessageWriter
 {
 public:
     explicit MessageWriter(PipeWriter pipe) : pipe_(pipe) {}
 
-    /// All that was sent is in the pipe: the next one may be sent.
+    /// Whether everything sent so far is in the pipe, so that the next message may be sent.
     bool ready() const { return rest_.empty(); }
-    /// Only when ready(). False if the other end's counter cannot be true.
+    /// Call only when ready(). False if the other end's counter is invalid.
     template <class Kind, class... Record>
     bool send(Kind kind, const Record&... record)
     {
@@ -110,9 +110,9 @@ public:
         rest_ = buffer_;
         return flush();
     }
-    /// Goes on with what did not fit. False as above.
+    /// Continues with the data that did not fit. The result is as above.
     bool flush();
-    /// Something was put into the pipe: the other end must be woken. Asked once.
+    /// Whether something was put into the pipe since the last call, so that the other end must be woken.
     bool committed() { return std::exchange(committed_, false); }
 
 private:
@@ -122,27 +122,27 @@ private:
     std::span<const std::byte> rest_;  ///< of buffer_
 };
 
-/// Messages out of a pipe.
+/// Reads messages from a pipe.
 class MessageReader
 {
 public:
-    /// `most`: bytes of a message; more is no message. `copies`: each is copied before it is looked at, so that nobody
-    /// changes it meanwhile.
+    /// `most`: largest valid size of a message, in bytes. `copies`: copy each message before decoding it, so that the other
+    /// process cannot change it meanwhile.
     MessageReader(PipeReader pipe, std::uint64_t most, bool copies) : pipe_(pipe), most_(most), copies_(copies) {}
 
     struct Message
     {
         std::uint32_t kind = 0;
-        std::span<const std::byte> bytes;  ///< until the next call
+        std::span<const std::byte> bytes;  ///< valid until the next call
     };
     enum class State : std::uint8_t
     {
         Nothing,
         Whole,
-        Broken,  ///< what is there can be no message
+        Broken,  ///< the bytes cannot be a message
     };
     State next(Message& message);
-    /// The producer waited for room, and now there is some: it must be woken. Asked once.
+    /// Whether the producer waited for room and there is some now since the last call, so that it must be woken.
     bool made_room() { return std::exchange(made_room_, false); }
 
 private:
@@ -152,8 +152,8 @@ private:
     std::uint64_t most_;
     bool copies_;
     bool made_room_ = false;
-    std::size_t held_ = 0;             ///< bytes of the pipe that the last message lies in
-    std::optional<MessageHead> head_;  ///< of the message that comes in pieces
+    std::size_t held_ = 0;             ///< bytes of the pipe that the last message occupies
+    std::optional<MessageHead> head_;  ///< header of a message that arrives in pieces
     std::vector<std::byte> buffer_;
 };
 

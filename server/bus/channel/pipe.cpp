@@ -14,14 +14,14 @@ namespace plab::bus
 namespace
 {
 
-constexpr std::size_t kHead = 4096;  ///< a page, for the counters
+constexpr std::size_t kHead = 4096;  ///< one page for the counters
 constexpr std::size_t kAll = kHead + PipeMemory::kDown + PipeMemory::kUp;
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
 static_assert(2 * sizeof(PipeState) <= kHead);
 
 Error failed(const char* what) { return reason(std::string("cannot share memory with plab-bus: ") + what + ": " + std::strerror(errno)); }
 
-/// The same `bytes` of the file twice in a row; null if that fails.
+/// Maps the same `bytes` of the file twice in a row; null if that fails.
 std::byte* map_twice(int descriptor, std::size_t offset, std::size_t bytes)
 {
     void* const place = mmap(nullptr, 2 * bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -44,7 +44,7 @@ Result<PipeMemory> PipeMemory::make()
     memory.descriptor_ = memfd_create("plab-bus", MFD_CLOEXEC | MFD_ALLOW_SEALING);
     if (memory.descriptor_ < 0) return failed("memfd_create");
     if (ftruncate(memory.descriptor_, static_cast<off_t>(kAll)) != 0) return failed("ftruncate");
-    // Whoever cut it off would end the other process at its next access.
+    // Truncating the file would crash the other process at its next access, so the size is sealed.
     if (fcntl(memory.descriptor_, F_ADD_SEALS, kSeals) != 0) return failed("seals");
     if (auto mapped = memory.map(memory.descriptor_); !mapped) return mapped.errors();
     new (memory.states_) PipeState[2];
@@ -54,7 +54,7 @@ Result<PipeMemory> PipeMemory::make()
 Result<PipeMemory> PipeMemory::attach(int descriptor)
 {
     PipeMemory memory;
-    // Only memory that make() made has this size for good.
+    // Only memory made by make() has this size permanently.
     struct stat found
     {
     };

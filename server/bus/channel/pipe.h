@@ -1,6 +1,6 @@
-/// Bytes from one process to another through shared memory, in one direction each. Neither end waits for the other, and
-/// neither believes what the other may write: the two counters are all that is shared beside the bytes, and each end keeps
-/// its own one to itself.
+/// Moves bytes between two processes through shared memory, one pipe per direction. Neither end waits for the other, and
+/// neither trusts what the other may write: apart from the bytes, only the two counters are shared, and each end keeps a
+/// private copy of its own counter.
 #pragma once
 
 #include <atomic>
@@ -15,24 +15,25 @@
 namespace plab::bus
 {
 
-/// What both ends see of one direction.
+/// What both ends share for one direction.
 struct PipeState
 {
-    alignas(64) std::atomic<std::uint64_t> written{0};  ///< bytes, ever; the producer's
-    alignas(64) std::atomic<std::uint64_t> read{0};     ///< bytes, ever; the consumer's
-    std::atomic<std::uint32_t> wants_room{0};           ///< the producer has more: ring when there is room
+    alignas(64) std::atomic<std::uint64_t> written{0};  ///< total bytes written; owned by the producer
+    alignas(64) std::atomic<std::uint64_t> read{0};     ///< total bytes read; owned by the consumer
+    std::atomic<std::uint32_t> wants_room{0};           ///< the producer has more data: ring when there is room
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free);
 
-/// The shared memory of both directions. The bytes of each are mapped twice in a row: whatever lies in a ring lies in one piece.
+/// The shared memory of both directions. Each ring is mapped twice in a row, so that any range of a ring is contiguous in
+/// memory.
 class PipeMemory
 {
 public:
     static constexpr std::size_t kDown = 4u << 20, kUp = 1u << 20;  ///< bytes from plabd to plab-bus, and back
 
-    /// A new one; its size can be changed by nobody any more.
+    /// Makes new shared memory; its size is sealed and cannot be changed afterwards.
     static Result<PipeMemory> make();
-    /// The one behind a descriptor, which stays the caller's.
+    /// Maps the memory behind a descriptor, which stays the caller's.
     static Result<PipeMemory> attach(int descriptor);
     PipeMemory(PipeMemory&& other) noexcept;
     PipeMemory& operator=(PipeMemory&& other) = delete;
@@ -60,9 +61,9 @@ class PipeWriter
 public:
     PipeWriter(PipeState& state, std::span<std::byte> bytes) : state_(&state), bytes_(bytes) {}
 
-    /// Where to write next, as much as there is room for; nothing if the other end's counter cannot be true.
+    /// The free part of the ring, where to write next; empty if the other end's counter is invalid.
     std::optional<std::span<std::byte>> room();
-    /// `bytes` of room() were filled.
+    /// Reports that `bytes` of room() were filled.
     void commit(std::size_t bytes);
     void ask_for_room() { state_->wants_room.store(1, std::memory_order_seq_cst); }
 
@@ -77,9 +78,9 @@ class PipeReader
 public:
     PipeReader(PipeState& state, std::span<const std::byte> bytes) : state_(&state), bytes_(bytes) {}
 
-    /// What there is to read; nothing if the other end's counter cannot be true.
+    /// The bytes to read; empty if the other end's counter is invalid.
     std::optional<std::span<const std::byte>> waiting();
-    /// `bytes` of waiting() are done with. True if the producer waits for room.
+    /// Releases `bytes` of waiting(). True if the producer waits for room.
     bool release(std::size_t bytes);
 
 private:

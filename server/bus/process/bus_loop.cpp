@@ -14,9 +14,9 @@ namespace
 
 constexpr std::chrono::seconds kSecond(1);
 constexpr std::chrono::milliseconds kRetry(10), kGoodbye(200);
-constexpr int kMostMessages = 256;  ///< of plabd, before requests have their turn
+constexpr int kMostMessages = 256;  ///< messages of plabd before requests get their turn
 
-/// A listener of DDS sets a mark and rings.
+/// A DDS listener, which sets a flag and rings the bell.
 struct Mark
 {
     std::atomic<bool>* mark;
@@ -52,7 +52,8 @@ BusLoop::BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const B
 {
 }
 
-/// What finds no room is left out: none of it is more than a word, but requests, which wait at the reader until there is.
+/// A message that finds no room is dropped: each is only a notice, except requests, which wait in the DDS reader until there is
+/// room.
 template <class... Record>
 void BusLoop::tell(Up kind, const Record&... record)
 {
@@ -84,7 +85,8 @@ Result<void> BusLoop::enter()
     auto participant = wire::join({start_.domain, start_.network_interface});
     if (!participant) return participant.errors();
     participant_ = participant.take();
-    // What is created from the participant inherits its listener: no match and no sample comes before it.
+    // Entities created from the participant inherit its listener, so no match and no sample can arrive before the listener is
+    // set.
     const std::unique_ptr<dds_listener_t, ListenerDeleter> listener(dds_create_listener(this));
     (void)dds_lset_publication_matched_arg(
         listener.get(),
@@ -115,7 +117,8 @@ Result<void> BusLoop::enter()
     };
     each(be);
     if (!all) return all;
-    // The writer first: who has found the reader and asks at once has a writer to hear from.
+    // Create the writer first: a client that finds the reader and sends a request at once then has a writer to get its reply
+    // from.
     auto replies = wire::Writer<plab_v2_Reply>::make(participant_, publisher_);
     if (!replies) return replies.errors();
     auto requests = wire::Reader<plab_v2_Request>::make(participant_, subscriber_);
@@ -171,13 +174,13 @@ void BusLoop::each_second(Clock::time_point now)
     tell(Up::Alive);
 }
 
-/// One line a second, however many packets there are that nobody should send. What finds no room waits.
+/// One line per second, however many invalid packets arrive. A line that finds no room waits.
 void BusLoop::report_dds()
 {
     if (!writer_.ready()) return;
     const DdsLog::Said said = dds_log_.take();
     if (said.lines == 0) return;
-    trouble_.say("DDS complains: " + said.last + (said.lines > 1 ? " (and " + std::to_string(said.lines - 1) + " more)" : ""));
+    trouble_.say("DDS reports: " + said.last + (said.lines > 1 ? " (and " + std::to_string(said.lines - 1) + " more)" : ""));
 }
 
 bool BusLoop::receive()
@@ -188,7 +191,7 @@ bool BusLoop::receive()
         const auto state = reader_.next(message);
         if (reader_.made_room()) server_->ring();
         if (state == MessageReader::State::Nothing) return false;
-        // plabd is the same build: what it says is right, or this process cannot go on.
+        // plabd is of the same build: a message that cannot be decoded means that this process cannot continue.
         if (state == MessageReader::State::Broken || !handle(message)) std::abort();
     }
     return !is_over_;
@@ -211,7 +214,7 @@ bool BusLoop::handle(const MessageReader::Message& message)
         decoder.get(status);
         ring_dropped_ = status.dropped;
         presence_.set(std::move(status.status));
-        // At once: what follows may rely on it.
+        // Handle this at once: the messages that follow may depend on it.
         presence_.send(Clock::now(), dropped(), trouble_);
     }
     else if (kind == Down::Answer)
@@ -238,7 +241,7 @@ bool BusLoop::stream(std::uint32_t stream, std::span<const std::byte> bytes)
     return fine;
 }
 
-/// True if there are more. While plabd has no room for them they wait at the reader, which keeps all.
+/// True if there are more. While plabd has no room for them, they wait in the reader, which keeps all samples.
 bool BusLoop::read_requests()
 {
     pass_on();
@@ -299,7 +302,7 @@ void BusLoop::follow_scene()
     };
     follow(collisions_, "CDetection/");
     follow(images_, "Camera/");
-    // A writer that is gone has no readers any more, and nobody else says so.
+    // A deleted writer has no readers any more, and nothing else reports that.
     look_at_readers();
 }
 
@@ -325,7 +328,7 @@ void BusLoop::say_goodbye()
     const auto flush = [&](dds_entity_t writer)
     {
         const std::chrono::nanoseconds left = end - Clock::now();
-        // A reader that does not answer must not hold the end up: what has not arrived by then is lost to it.
+        // A reader that does not acknowledge must not delay the end: samples that have not arrived by then are lost for it.
         if (writer > 0 && left.count() > 0) (void)dds_wait_for_acks(writer, left.count());
     };
     flush(replies_.entity().get()), flush(events_.writer().get()), flush(collisions_.writer().get());

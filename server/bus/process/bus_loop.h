@@ -1,4 +1,4 @@
-/// What plab-bus does: records that plabd sends become samples, requests of clients go to plabd.
+/// The main loop of plab-bus: records from plabd become DDS samples, requests of clients go to plabd.
 #pragma once
 
 #include <array>
@@ -21,15 +21,16 @@
 namespace plab::bus
 {
 
-/// One thread; DDS has its own, whose listeners set a mark and ring.
+/// Uses one thread; DDS has its own threads, whose listeners set a flag and ring the bell.
 class BusLoop
 {
 public:
-    /// The descriptors of channel/inherited.h.
+    /// Uses the descriptors of channel/inherited.h.
     BusLoop(MessageReader reader, MessageWriter writer, Bell& bell, const Bell& server, int lifeline, const StartMessage& start);
-    /// False if it cannot join; plabd is told why.
+    /// False if it cannot join the domain; plabd is told why.
     bool join();
-    /// Until plabd says that this is the end. False if it has ended without a word: then nobody says goodbye.
+    /// Runs until plabd announces the end. False if plabd has ended without an announcement: then no farewell is sent to
+    /// clients.
     bool run();
 
 private:
@@ -63,11 +64,11 @@ private:
     MessageWriter writer_;
     std::set<std::string, std::less<>> words_;
     Trouble trouble_;
-    std::atomic<bool> matched_{true}, arrived_{true};  ///< set by listeners of DDS, on its threads
+    std::atomic<bool> matched_{true}, arrived_{true};  ///< set by DDS listeners, on threads of DDS
     bool is_over_ = false;
 
     DdsLog dds_log_;
-    // Before all that is made of them; and the listeners ring until the participant is gone.
+    // Declared before all entities that depend on it; listeners ring until the participant is deleted.
     wire::Participant participant_;
     wire::Entity publisher_, subscriber_;
     Stream<plab_v2_Frame, wire::FrameSample, publish::Frame> states_;
@@ -81,7 +82,7 @@ private:
     CatalogueWriter catalogue_;
     Presence presence_;
     wire::Reader<plab_v2_Request> requests_;
-    std::deque<RequestMessage> waiting_;  ///< taken, and not passed on yet; what one look at the reader brought
+    std::deque<RequestMessage> waiting_;  ///< taken from the reader in one pass, and not passed on yet
     wire::Writer<plab_v2_Reply> replies_;
     wire::ReplySample reply_sample_;
     Outbox outbox_;

@@ -77,7 +77,7 @@ Result<void> CatalogueWriter::open(const wire::Entity& participant, const wire::
 void CatalogueWriter::apply(const publish::CatalogueChange& change, Trouble& trouble)
 {
     dispose_what_is_gone(change, trouble);
-    // An id belongs to one component: one that comes back as another kind leaves its old shelf.
+    // An id belongs to one component: if it comes back as another kind, its entry in the former topic is disposed.
     for (const publish::ShapeEntry& shape : change.shapes)
     {
         objects_.dispose(shape.component, trouble), interactions_.dispose(shape.component, trouble);
@@ -94,7 +94,7 @@ void CatalogueWriter::apply(const publish::CatalogueChange& change, Trouble& tro
         interactions_.put(interaction.component, interaction.type, interaction, trouble);
     }
     for (const model::TypeSummary& type : change.types) types_.put(type.name, type.name, type, trouble);
-    // Last: who waits for a new run finds its parts there.
+    // Last, so that a client that waits for a new run finds the run's parts there.
     (void)trouble.check(wire::topic_of<plab_v2_Scene>().name, scene_.write(scene_sample_.of(server_, change.scene)));
 }
 

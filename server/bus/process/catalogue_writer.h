@@ -14,7 +14,7 @@
 namespace plab::bus
 {
 
-/// One topic: an instance for each component. Key: the member of T that names it.
+/// One keyed topic: one instance per component. Key: the member of T that names it.
 template <class T, char* T::*Key, class Sample>
 class KeyedTopic
 {
@@ -23,7 +23,7 @@ public:
     template <class Record>
     void put(const std::string& id, const std::string& type, const Record& record, Trouble& trouble);
     void dispose(const std::string& id, Trouble& trouble);
-    /// Disposes of what is in none of `records`; id_of gives a record's id.
+    /// Disposes of every instance that is not in `records`; id_of returns a record's id.
     template <class Record, class IdOf>
     void dispose_all_but(const std::vector<Record>& records, IdOf&& id_of, Trouble& trouble);
     bool has_type_below(std::string_view prefix) const;
@@ -34,7 +34,7 @@ private:
 
     wire::Writer<T> writer_;
     Sample sample_;
-    std::map<std::string, std::string> type_of_;  // id -> type, of what is there
+    std::map<std::string, std::string> type_of_;  // id -> type, of the existing interactions
 };
 
 class CatalogueWriter

@@ -11,13 +11,13 @@ namespace plab::bus
 namespace
 {
 
-constexpr std::size_t kLongest = 200;  ///< of a line, bytes
+constexpr std::size_t kLongest = 200;  ///< longest line, bytes
 
 }  // namespace
 
 DdsLog::DdsLog()
 {
-    // One line to each call. It comes from any thread of DDS.
+    // One line per call. It may come from any thread of DDS.
     const auto hear = [](void* self, const dds_log_data_t* data)
     {
         auto& log = *static_cast<DdsLog*>(self);
@@ -41,7 +41,7 @@ void DdsLog::add(const char* text, std::size_t size)
     const std::lock_guard guard(mutex_);
     ++said_.lines;
     said_.last.assign(text, std::min(size, kLongest));
-    // It may name what came with a broken packet.
+    // The text may contain data of a malformed packet.
     for (char& c : said_.last)
         if (static_cast<unsigned char>(c) >= 0x80) c = '?';
 }

@@ -1,4 +1,4 @@
-/// What DDS says, gathered and counted, so that packets which nobody should send fill no log.
+/// Collects and counts the log output of DDS, so that malformed packets cannot flood the log.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 namespace plab::bus
 {
 
-/// Hears all that Cyclone says in this process.
+/// Receives everything that Cyclone DDS logs in this process.
 class DdsLog
 {
 public:
@@ -18,9 +18,9 @@ public:
     DdsLog(const DdsLog&) = delete;
     DdsLog& operator=(const DdsLog&) = delete;
 
-    /// From now on only what is fatal goes to standard error, too.
+    /// From now on, only fatal errors also go to standard error.
     void gather() { gathers_.store(true, std::memory_order_relaxed); }
-    /// Since the last time: how many lines, and the last of them.
+    /// Since the last call: the number of lines, and the last of them.
     struct Said
     {
         std::uint64_t lines = 0;

@@ -1,4 +1,4 @@
-// plab-bus: the one process of a server that maps DDS. plabd starts it, and starts it again when it ends; nobody else does.
+// plab-bus: the only process of a server that maps DDS. Only plabd starts it, and restarts it when it ends.
 #include <fcntl.h>
 #include <pthread.h>
 #include <sys/prctl.h>
@@ -17,7 +17,7 @@ using namespace plab::bus;
 
 int run(const PipeMemory& memory, Bell& bell, const Bell& server)
 {
-    // Written by plabd before it started this process.
+    // plabd wrote this before it started this process.
     MessageReader reader(PipeReader(memory.down_state(), memory.down()), ~std::uint64_t{0}, false);
     MessageReader::Message message;
     StartMessage start;
@@ -27,7 +27,8 @@ int run(const PipeMemory& memory, Bell& bell, const Bell& server)
     if (!decoder.whole()) return 1;
     BusLoop loop(reader, MessageWriter(PipeWriter(memory.up_state(), memory.up())), bell, server, kInheritedLifeline, start);
     if (!loop.join()) return 1;
-    // After those of DDS, which are to be woken at once. Batch: it does not push the step thread aside when it is woken on the same core.
+    // Set after the threads of DDS exist, which must be scheduled at once. Batch: waking this thread does not preempt the step
+    // thread on the same core.
     const sched_param priority{};
     (void)pthread_setschedparam(pthread_self(), SCHED_BATCH, &priority);
     if (!loop.run()) _exit(1);
@@ -38,7 +39,8 @@ int run(const PipeMemory& memory, Bell& bell, const Bell& server)
 
 int main(int argc, char**)
 {
-    // plabd ends it: a signal to the whole group must not take the bus away before clients have heard the end.
+    // plabd ends this process: a signal to the whole process group must not close the bus before clients have been told about
+    // the end.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) (void)std::signal(signal, SIG_IGN);
     (void)std::signal(SIGPIPE, SIG_IGN);
     (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -46,7 +48,7 @@ int main(int argc, char**)
     if (argc != 1 || !memory)
     {
         const std::string why = memory ? "" : " (" + memory.error().text() + ")";
-        return std::fprintf(stderr, "plab-bus is started by plabd, and by nobody else%s\n", why.c_str()), 2;
+        return std::fprintf(stderr, "plab-bus is started by plabd only%s\n", why.c_str()), 2;
     }
     for (int fd = kInheritedFirst; fd < kInheritedEnd; ++fd) (void)fcntl(fd, F_SETFD, FD_CLOEXEC);
     Bell bell(kInheritedBell);

@@ -1,4 +1,4 @@
-/// Replies on their way out. Written at once; one that cannot be written is tried again for a while.
+/// Outgoing replies. A reply is written at once; if that fails, it is retried for a while.
 #pragma once
 
 #include <chrono>
@@ -17,12 +17,12 @@ public:
     using Clock = std::chrono::steady_clock;
     using Write = std::function<dds_return_t(const publish::Answer& answer, bool repeated)>;
     static constexpr std::chrono::seconds kPatience{2};
-    static constexpr std::size_t kMost = 1024;  ///< that are tried again
+    static constexpr std::size_t kMost = 1024;  ///< largest number of replies that are retried
 
     Outbox(Write write, Trouble& trouble) : write_(std::move(write)), trouble_(&trouble) {}
 
     void send(const publish::Answer& answer, bool repeated, Clock::time_point now);
-    /// Tries those that failed once more; gives up on the ones that failed for too long. Their clients may ask again.
+    /// Retries the replies that failed, and drops those that have failed for too long. Their clients may ask again.
     void retry(Clock::time_point now);
     bool empty() const { return failed_.empty(); }
 

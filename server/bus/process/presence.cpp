@@ -42,7 +42,7 @@ std::optional<std::string> Presence::look_for_rival()
     const auto compare = [&](const plab_v2_Server& other, const dds_sample_info_t& info)
     {
         if (why || !info.valid_data || info.instance_state != DDS_IST_ALIVE || !wire::keeps_the_name(other, identity_)) return;
-        why = "a server '" + identity_.name + "' runs already on host " + other.host + " (process " + std::to_string(other.process) +
+        why = "a server '" + identity_.name + "' is already running on host " + other.host + " (process " + std::to_string(other.process) +
               ") and started earlier: give this one another name";
     };
     (void)reader_.take(compare, 256);

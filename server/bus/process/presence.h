@@ -1,4 +1,4 @@
-/// The server's own topic: what it says of itself, and whether another one has its name.
+/// The server's own topic: its status, and whether another server has its name.
 #pragma once
 
 #include <chrono>
@@ -19,11 +19,11 @@ public:
 
     Result<void> open(const wire::Entity& participant, const wire::Entity& publisher, const wire::Entity& subscriber);
     void set(publish::Status&& status) { status_ = std::move(status), is_new_ = true; }
-    /// The status if it is new, and again when nobody heard of it for a second.
+    /// Writes the status if it has changed, and repeats it when none was written for one second.
     void send(Clock::time_point now, std::span<const wire::Dropped> dropped, Trouble& trouble);
-    /// Until send() is due without a new status.
+    /// Time until send() is due if the status does not change.
     Clock::duration due_in(Clock::time_point now) const;
-    /// Why this server has to go, if it has: the first one keeps the name.
+    /// Why this server has to end, if it must: the server that started first keeps the name.
     std::optional<std::string> look_for_rival();
     void dispose(Trouble& trouble);
     dds_entity_t writer() const { return writer_.entity().get(); }

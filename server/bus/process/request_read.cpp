@@ -10,7 +10,7 @@ namespace plab::bus
 namespace
 {
 
-/// Copies text until the request's limit is used up or one is not UTF-8.
+/// Copies text until the request's limit is used up, or a text is not UTF-8.
 class TextReader
 {
 public:

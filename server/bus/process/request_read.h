@@ -1,4 +1,4 @@
-/// A request as DDS gives it, copied.
+/// Copies a request out of a DDS sample.
 #pragma once
 
 #include "idl/plab.h"
@@ -8,11 +8,10 @@
 namespace plab::bus
 {
 
-/// Who asks.
+/// Identifies the client.
 publish::ClientId client_of(const plab_v2_Request& request);
 
-/// The request with its text copied, or the first thing that is wrong with it. Reads no more of an oversized request
-/// than the limit.
+/// The request with its text copied, or the first error in it. Reads no more of an oversized request than the limit.
 Result<publish::RequestText> read_request(const plab_v2_Request& request);
 
 }  // namespace plab::bus

@@ -1,4 +1,4 @@
-/// One topic without keys or history for late joiners: a writer for the records of one stream.
+/// One topic without keys or history for late joiners: writes the records of one stream.
 #pragma once
 
 #include <set>
@@ -11,12 +11,12 @@
 namespace plab::bus
 {
 
-/// T: type of the wire. Sample: makes one of a Record.
+/// T: type on the wire. Sample: converts a Record to it.
 template <class T, class Sample, class Record>
 class Stream
 {
 public:
-    /// The writer is there while the scene has something to write with it.
+    /// The writer exists while the scene has something to write with it.
     Result<void> be(bool there, const wire::Entity& participant, const wire::Entity& publisher)
     {
         if (there == writer_.entity().valid()) return {};
@@ -27,7 +27,7 @@ public:
         writer_ = writer.take();
         return {};
     }
-    /// Looks for readers. True if something is not as it was at the last look.
+    /// Checks for readers. True if anything changed since the last check.
     bool look()
     {
         const wire::Matched readers = writer_.entity().valid() ? writer_.matched() : wire::Matched{};
@@ -38,7 +38,7 @@ public:
     }
     bool wanted() const { return is_wanted_; }
     std::uint64_t joins() const { return joins_; }
-    /// False if that is no record.
+    /// False if the bytes are not a record.
     bool write(std::span<const std::byte> bytes, std::set<std::string, std::less<>>& words, Trouble& trouble)
     {
         if (!is_wanted_ || !writer_.entity().valid()) return true;
@@ -51,12 +51,12 @@ public:
     const wire::Entity& writer() const { return writer_.entity(); }
 
 private:
-    Record record_;  ///< filled again each time, with the memory of the last one
+    Record record_;  ///< refilled each time, reusing its memory
     Sample sample_;
     wire::Writer<T> writer_;
     bool is_wanted_ = false;
     std::uint64_t joins_ = 0;
-    std::uint32_t seen_ = 0;  ///< readers of this writer, ever, at the last look
+    std::uint32_t seen_ = 0;  ///< total number of readers of this writer, at the last check
 };
 
 }  // namespace plab::bus

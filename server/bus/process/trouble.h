@@ -1,4 +1,4 @@
-/// What could not be written, gathered: one line a second at most for each topic, however often it happens.
+/// Collects write errors: at most one log line per second and topic, however often the error occurs.
 #pragma once
 
 #include <dds/dds.h>
@@ -16,11 +16,11 @@ public:
     using Log = void (*)(void* argument, const char* line);
     Trouble(Log log, void* argument) : log_(log), argument_(argument) {}
 
-    /// Counts `code` if it is an error. True if it is none.
+    /// Counts `code` if it is an error. True if it is not an error.
     bool check(const char* topic, dds_return_t code);
-    /// Since the start.
+    /// Total since the start.
     std::uint64_t lost(const char* topic) const;
-    /// Says what was counted since the last time.
+    /// Logs what was counted since the last call.
     void report();
     void say(const std::string& line) const;
 

@@ -9,7 +9,7 @@ void BodyColumns::describe(Schema& schema)
     schema.state(orientation, "orientation", unit::one, "turns the body's axes into the world's").hosted();
     schema.param(material, "material", unit::one, "name that Material/Pair refers to").or_else("");
     describe_color(color, schema);
-    schema.role(shape, "shape", {Facet::Shape}, "what it looks like, collides as and is integrated over").optional();
+    schema.role(shape, "shape", {Facet::Shape}, "shapes for drawing, collision and mass properties").optional();
 }
 
 void VelocityColumns::describe(Schema& schema)
@@ -28,7 +28,7 @@ void describe_color(Column<Vec3>& color, Schema& schema)
 
 void describe_solver(Column<Ref>& solver, Schema& schema)
 {
-    schema.role(solver, "solver", {Facet::Component}, "who advances it; the scene's solver where none is named")
+    schema.role(solver, "solver", {Facet::Component}, "the solver that advances it; the scene's solver if none is named")
         .family("Solver/")
         .optional();
 }

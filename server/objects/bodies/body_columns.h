@@ -1,6 +1,6 @@
-/// What bodies have in common: where they are, what they look like and are made of, how fast they move.
+/// Columns that all bodies have: pose, appearance, material and velocity.
 ///
-/// Pose and velocities are hosted: these columns carry the initial values, Bodies the live ones.
+/// Pose and velocities are hosted: these columns hold the initial values, Bodies the live ones.
 #pragma once
 
 #include <string>
@@ -31,10 +31,10 @@ struct VelocityColumns
 
 /// `color`, for bodies and shafts alike.
 void describe_color(Column<Vec3>& color, Schema& schema);
-/// `solver`: who advances it.
+/// The role `solver`: the solver that advances the object.
 void describe_solver(Column<Ref>& solver, Schema& schema);
 
-/// The host row of a body that forces do not move: no mass, no inverse mass, centre at B's origin.
+/// Fills the host row of a body that is not dynamic: no mass, no inverse mass, centre at B's origin.
 void fill_unpushed(std::uint32_t index, Motion motion, Row row, const BodyColumns& body, Bodies& bodies, Materials& materials);
 
 }  // namespace plab::bodies

@@ -1,4 +1,4 @@
-/// The message that most refused masses and inertias end in.
+/// A check for masses and inertias.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace plab::bodies
 {
 
-/// Refuses what is not positive, or too small or large to compute with: the step divides by masses and inertias.
+/// Refuses values that are not positive, or too small or large to compute with: the step divides by masses and inertias.
 inline Result<void> check_positive(const std::string& name, double value)
 {
     if (!(value > 0)) return reason(name + " must be positive, not " + number_text(value));

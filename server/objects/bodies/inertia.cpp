@@ -10,7 +10,7 @@ namespace
 {
 
 constexpr double kTriangleTolerance = 1e-9;
-/// Beyond this ratio of moments the smallest one of a matrix with products of inertia is rounding error.
+/// Beyond this ratio of moments, the smallest moment of a matrix with products of inertia is only rounding error.
 constexpr double kMostCondition = 1e15;
 
 bool is_finite(const Mat3& a)
@@ -49,8 +49,8 @@ std::string moments_text(const std::array<double, 3>& moments)
 
 std::array<double, 3> principal_moments(const Mat3& inertia)
 {
-    // Cyclic Jacobi: small eigenvalues keep their relative digits (Demmel, Veselic 1992), which a rod needs.
-    // Convergence is quadratic; 3x3 matrices are done after about five sweeps.
+    // Cyclic Jacobi method: small eigenvalues keep their relative accuracy (Demmel, Veselic 1992), which a rod needs. It converges
+    // quadratically; 3x3 matrices take about five sweeps.
     Mat3 a = inertia;
     for (int sweep = 0; sweep < 30 && !is_diagonal(a); ++sweep)
     {
@@ -72,7 +72,7 @@ Result<void> check_inertia(const Mat3& inertia)
     if (!(moments[0] > 0)) return reason("inertia must be positive" + text);
     if (moments[0] + moments[1] < moments[2] * (1 - kTriangleTolerance))
         return reason(
-            "inertia breaks the triangle inequality: the two smaller moments must add up to the largest or "
+            "inertia violates the triangle inequality: the two smaller moments must add up to the largest or "
             "more" +
             text);
     if (!is_diagonal(inertia) && moments[2] > kMostCondition * moments[0])

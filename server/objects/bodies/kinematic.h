@@ -1,4 +1,4 @@
-/// State/Kinematic: a body that moves with the velocity it is given, whatever pushes it: x' = v, q' = w q / 2.
+/// State/Kinematic: a body that moves with its prescribed velocity, whatever forces act on it: x' = v, q' = w q / 2.
 #pragma once
 
 #include "body_columns.h"

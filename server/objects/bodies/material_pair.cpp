@@ -6,9 +6,9 @@ namespace plab::bodies
 void MaterialPairRows::describe(Schema& schema)
 {
     schema.param(a, "a", unit::one, "a material's name; empty: bodies without material");
-    schema.param(b, "b", unit::one, "the other's; may be the same");
+    schema.param(b, "b", unit::one, "the other material's name; may be the same");
     schema.param(friction, "friction", unit::one, "Coulomb's coefficient").not_negative();
-    schema.param(restitution, "restitution", unit::one, "share of the normal speed that comes back").not_negative().at_most(1);
+    schema.param(restitution, "restitution", unit::one, "ratio of the normal speeds after and before an impact").not_negative().at_most(1);
 }
 
 Result<void> connect_material_pair(Row row, const MaterialPairRows& pairs, Materials& materials)

@@ -1,4 +1,4 @@
-/// Material/Pair: how two materials meet. Friction: |f_t| <= friction f_n; restitution: v_n' = -restitution v_n.
+/// Material/Pair: the contact law of two materials. Friction: |f_t| <= friction f_n; restitution: v_n' = -restitution v_n.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct MaterialPairRows
     void describe(Schema& schema);
 };
 
-/// Refuses a pair that has a law already, in either order.
+/// Refuses a pair for which a law exists already, in either order.
 Result<void> connect_material_pair(Row row, const MaterialPairRows& pairs, Materials& materials);
 
 }  // namespace plab::bodies

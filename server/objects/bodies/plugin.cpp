@@ -28,7 +28,7 @@ PLAB_PLUGIN("bodies", registrar)
     using plab::Facet;
     add_state<prepare_static, StaticRows>(registrar, "State/Static", Facet::Body, "State/Body", "a body that never moves");
     add_state<prepare_kinematic, KinematicRows>(registrar, "State/Kinematic", Facet::Body, "State/Body",
-                                                "a body that moves with the velocity it is given");
+                                                "a body that moves with a prescribed velocity");
     add_state<prepare_rigid_body, RigidBodyRows>(registrar, "State/RigidBody", Facet::Body, "State/Body", "a body that moves by forces");
     add_state<prepare_shaft, ShaftRows>(registrar, "State/Shaft", Facet::Shaft, "State/Shaft",
                                         "one degree of freedom about an axle: a gear, a motor, a fan");
@@ -36,5 +36,5 @@ PLAB_PLUGIN("bodies", registrar)
                                                   "numbers that change at the rates that interactions add");
     registrar.component<MaterialPairRows>("Material/Pair", "friction and restitution between two materials")
         .family("Material/Pair")
-        .command<connect_material_pair>(plab::Phase::Connect, "Material/Connect", "tells the host the law of the pair");
+        .command<connect_material_pair>(plab::Phase::Connect, "Material/Connect", "registers the law of the pair with the host");
 }

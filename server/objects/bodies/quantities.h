@@ -1,5 +1,5 @@
-/// State/Quantities: numbers that are no place in space and change at rates that interactions add: z' = r(t, z, ...).
-/// Temperatures, concentrations, currents. Its solver advances them with whatever they are coupled to.
+/// State/Quantities: numbers without a place in space that change at rates added by interactions: z' = r(t, z, ...). Temperatures,
+/// concentrations, currents. The solver advances them together with the objects to which they are coupled.
 #pragma once
 
 #include "plab/registrar.h"
@@ -15,7 +15,7 @@ struct QuantitiesRows
     void describe(Schema& schema);
 };
 
-/// Checks the values; they are the host's from here on.
+/// Checks the initial values; from then on the host has the live ones.
 Result<void> prepare_quantities(Row row, const QuantitiesRows& rows);
 
 }  // namespace plab::bodies

@@ -12,7 +12,7 @@ namespace
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Vec3 kNotGiven{kInfinity, kInfinity, kInfinity};
 
-/// Which of the parameters the author gave.
+/// Which of the parameters the author of the scene gave.
 struct Given
 {
     bool mass, density, inertia, center, shapes;
@@ -38,7 +38,7 @@ Result<void> check_given(Row row, const RigidBodyRows& rigid, const Given& given
     return {};
 }
 
-/// The sum of the shapes' solids at density 1, in B.
+/// The sum of the shapes' mass properties at density 1, in B.
 Result<MassProperties> solid_of(const RefList& parts, const Shapes& shapes)
 {
     MassProperties sum;
@@ -51,7 +51,7 @@ Result<MassProperties> solid_of(const RefList& parts, const Shapes& shapes)
     return sum;
 }
 
-/// Surfaces have no thickness to be pushed at, and do not meet one another or planes.
+/// Surfaces have no thickness for a collision response to act on, and do not collide with one another or with planes.
 bool has_surface(const RefList& parts, const Shapes& shapes)
 {
     for (const Ref part : parts)
@@ -110,7 +110,7 @@ Result<void> prepare_rigid_body(const StepContext& context, Row row, const Rigid
 
     if (has_surface(rigid.body.shape[row], shapes))
         return reason(
-            "a shape that collides as a surface (bowl, bore, height field, mesh) is for bodies that forces do not move: State/Static, "
+            "a shape that collides as a surface (bowl, bore, height field, mesh) is for bodies that are not dynamic: State/Static, "
             "State/Kinematic");
 
     const std::uint32_t index = context.facet_of_row[row];

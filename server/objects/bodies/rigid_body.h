@@ -1,12 +1,12 @@
-/// State/RigidBody: a body that moves by forces. Newton and Euler about the centre of mass C:
+/// State/RigidBody: a dynamic body. Newton-Euler equations about the centre of mass C:
 ///   m v_WC' = F,   L' = T,   w_WB = R I_B^-1 R^T L,   q' = w q / 2.
 ///
 /// Mass properties come from one of:
 ///   mass and inertia             about C, which is center_of_mass, or B's origin where that is not given;
 ///   mass and shapes              the shapes' inertia, scaled to that mass;
 ///   density and shapes           both integrated over the shapes.
-/// The last two take the shapes' common centre unless center_of_mass is given; their inertia about their own centre
-/// then counts as the one about C.
+/// The last two use the shapes' common centre, unless center_of_mass is given; the shapes' inertia about their own centre is then taken
+/// as the one about C.
 #pragma once
 
 #include "body_columns.h"
@@ -27,7 +27,7 @@ struct RigidBodyRows
     void describe(Schema& schema);
 };
 
-/// Fills all of the host row but pose and velocities.
+/// Fills the host row except pose and velocities.
 Result<void> prepare_rigid_body(const StepContext& context, Row row, const RigidBodyRows& rigid, Bodies& bodies, const Shapes& shapes,
                                 Materials& materials);
 

@@ -7,20 +7,20 @@ namespace plab::bodies
 
 void ShaftRows::describe(Schema& schema)
 {
-    schema.state(angle, "angle", unit::radian, "turned since its zero; never wrapped").hosted();
+    schema.state(angle, "angle", unit::radian, "angle from its zero position; never wrapped").hosted();
     schema.state(angular_velocity, "angular_velocity", unit::radian_per_second, "about the axis").hosted();
     schema.param(inertia, "inertia", unit::kilogram_metre2, "about the axle; not needed where the speed is prescribed").or_else(0);
     schema.param(position, "position", unit::metre, "a point of the axle, in the world; the shapes' origin").or_else({});
     schema.param(axis, "axis", unit::one, "direction of the axle, in the world").or_else({0, 0, 1}).unit_length();
     schema.param(prescribed, "prescribed", unit::one, "turns at its angular_velocity, whatever torque acts on it").or_else(false);
     describe_color(color, schema);
-    schema.role(shape, "shape", {Facet::Shape}, "what it looks like; its frame has z along the axle").optional();
+    schema.role(shape, "shape", {Facet::Shape}, "shape for drawing; its frame has z along the axle").optional();
     describe_solver(solver, schema);
 }
 
 Quat rotation_from_z(const Vec3& axis)
 {
-    // Half-angle formulas, the cosine's or the sine's, whichever does not cancel.
+    // Half-angle formulas with the cosine or the sine, whichever avoids cancellation.
     if (axis.z >= 0)
     {
         const double w = std::sqrt(0.5 * (1 + axis.z));

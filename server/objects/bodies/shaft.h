@@ -1,5 +1,5 @@
-/// State/Shaft: one degree of freedom about an axle that stands in the world: J w' = T, angle' = w.
-/// A prescribed shaft turns at the speed it is given, whatever torque acts on it.
+/// State/Shaft: one degree of freedom about an axle that is fixed in the world: J w' = T, angle' = w. A prescribed shaft keeps its
+/// angular velocity, whatever torque acts on it.
 #pragma once
 
 #include "body_columns.h"
@@ -22,7 +22,7 @@ struct ShaftRows
     void describe(Schema& schema);
 };
 
-/// Fills all of the host row but angle and speed.
+/// Fills the host row except angle and speed.
 Result<void> prepare_shaft(const StepContext& context, Row row, const ShaftRows& rows, Shafts& shafts);
 
 /// The shortest rotation that turns z into `axis` (unit); about x where that is -z.

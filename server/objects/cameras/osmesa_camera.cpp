@@ -16,13 +16,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Unit kHertz{"Hz", {{0, 0, -1, 0}}};
 constexpr Vec3 kNotGiven{kInfinity, kInfinity, kInfinity};
 
-/// The number of the picture that shows `time`. A time that is meant to be a multiple of the interval counts as one.
+/// The number of the picture that shows `time`. A time that differs from a multiple of the interval only by rounding counts as one.
 std::int64_t picture_at(double time, double frames_per_second)
 {
     return static_cast<std::int64_t>(std::floor(time * frames_per_second * (1 + 1e-12) + 1e-9));
 }
 
-/// A compound shows the triangles of all its parts.
+/// A compound is drawn by the triangles of all its parts.
 bool is_mesh(const Geometry& geometry) { return geometry.kind == GeometryKind::Mesh || geometry.kind == GeometryKind::Compound; }
 
 void keep_meshes(const Sight& sight, Studio& studio)
@@ -97,12 +97,12 @@ Result<render::View> view_of(Row row, const CameraRows& cameras, const Sight& si
     if (!cameras.view[row].empty()) return named_view(cameras.view[row], sight);
     if (cameras.position[row] != kNotGiven)
         return render::View{cameras.position[row], cameras.look_at[row], cameras.up[row], cameras.field_of_view[row]};
-    // Who looks at everything stands still until something comes or goes.
+    // The overview keeps its place until objects are added or removed.
     if (!studio.overview) studio.overview = render::view_of_everything(studio.drawing);
     return *studio.overview;
 }
 
-/// A line for each interaction; its parts ("contact.response") stand in the line of their owner.
+/// One line per interaction; its parts ("contact.response") are on the line of their owner.
 std::vector<render::Caption> captions_of(double time, const Sight& sight)
 {
     char text[48];
@@ -122,7 +122,7 @@ std::vector<render::Caption> captions_of(double time, const Sight& sight)
     return out;
 }
 
-/// A renderer of the size that is asked for now; one that could not be made is not tried again.
+/// Keeps a renderer of the size that is requested now; one that could not be created is not tried again.
 Result<void> keep_renderer(Row row, const CameraRows& cameras, Studio& studio)
 {
     const std::int64_t width = cameras.width[row], height = cameras.height[row];
@@ -139,7 +139,7 @@ Result<void> draw_now(const StepContext& context, Row row, CameraRows& cameras, 
 {
     Studio& studio = cameras.studio[row];
     if (auto done = keep_renderer(row, cameras, studio); !done) return done;
-    if (!studio.renderer) return {};  // said before
+    if (!studio.renderer) return {};  // reported before
     keep_meshes(sight, studio);
     place_items(sight, studio);
     const auto view = view_of(row, cameras, sight, studio);
@@ -159,11 +159,12 @@ Result<void> draw_now(const StepContext& context, Row row, CameraRows& cameras, 
 void CameraRows::describe(Schema& s)
 {
     s.param(view, "view", unit::one, "name of a camera of the scene; empty: the place below").or_else("");
-    s.param(position, "position", unit::metre, "of the eye, in the world; infinite: not given, then where it sees everything")
+    s.param(position, "position", unit::metre,
+            "of the camera, in the world; infinite: not given, then a place from which it sees everything")
         .or_else(kNotGiven)
         .may_be_infinite();
     s.param(look_at, "look_at", unit::metre, "the point in the picture's middle, in the world").or_else({});
-    s.param(up, "up", unit::one, "what is up in the picture, in the world").or_else({0, 0, 1}).unit_length();
+    s.param(up, "up", unit::one, "the upward direction of the picture, in the world").or_else({0, 0, 1}).unit_length();
     s.param(field_of_view, "field_of_view", unit::radian, "between the picture's lower and upper edge").or_else(0.7).positive().at_most(3);
     s.param(width, "width", unit::one, "pixels").or_else(800).at_least(16).at_most(8192);
     s.param(height, "height", unit::one, "pixels").or_else(600).at_least(16).at_most(8192);
@@ -178,7 +179,7 @@ void draw(const StepContext& context, Row row, CameraRows& cameras, const Sight&
 {
     Studio& studio = cameras.studio[row];
     const std::int64_t number = picture_at(context.time, cameras.frames_per_second[row]);
-    // After a reset the numbers are smaller; they are due all the same.
+    // After a reset the numbers start again from 0, so any change of the number makes a picture due.
     if (number == studio.last_picture || !images.wanted()) return;
     studio.last_picture = number;
     const auto done = draw_now(context, row, cameras, sight, images);

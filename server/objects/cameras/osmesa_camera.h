@@ -1,4 +1,4 @@
-/// Camera/OSMesa: draws what can be seen at the end of a step, off-screen.
+/// Camera/OSMesa: draws off-screen what is visible at the end of a step.
 #pragma once
 
 #include <map>
@@ -12,17 +12,17 @@
 namespace plab::cameras
 {
 
-/// What a camera keeps from picture to picture. Not state: it is made anew when it is lost.
+/// What a camera keeps from picture to picture. It is not state, and is rebuilt if it is lost.
 struct Studio
 {
     std::unique_ptr<render::Renderer> renderer;
-    std::int64_t width = 0, height = 0;  ///< of the renderer, or of the one that could not be made
+    std::int64_t width = 0, height = 0;  ///< of the renderer, or of the one that could not be created
     render::Drawing drawing;
     std::map<std::uint32_t, std::uint32_t> mesh_of_shape;
     bool meshes_known = false;
     std::optional<render::View> overview;
-    std::int64_t last_picture = -1;  ///< number of the last one drawn
-    std::string complaint;           ///< the last one, so that it is not repeated
+    std::int64_t last_picture = -1;  ///< number of the last picture drawn
+    std::string complaint;           ///< the last error, so that it is not reported again
 };
 
 struct CameraRows
@@ -38,7 +38,7 @@ struct CameraRows
     void describe(Schema& schema);
 };
 
-/// Draws if a picture is due and wanted.
+/// Draws if a picture is due and some client wants it.
 void draw(const StepContext& context, Row row, CameraRows& cameras, const Sight& sight, ImageSink& images);
 
 }  // namespace plab::cameras

@@ -10,29 +10,29 @@ namespace plab::shapes
 namespace
 {
 
-constexpr std::uint32_t kSides = 64;
-/// Thickness that is drawn, as a share of the radius.
-constexpr double kDrawnWall = 0.02;
+constexpr std::uint32_t kBoreSides = 64;
+/// Thickness of the drawn wall relative to the radius.
+constexpr double kDrawnBoreWall = 0.02;
 
-/// Inside, outside and both ends of the wall.
+/// The inside, the outside and both ends of the wall.
 BuiltMesh picture_of_bore(double radius, double half)
 {
     BuiltMesh out;
     const auto ring = [&](double r, double z)
     {
         std::vector<Vec3> points;
-        for (std::uint32_t i = 0; i < kSides; ++i)
+        for (std::uint32_t i = 0; i < kBoreSides; ++i)
         {
-            const double angle = 2 * std::numbers::pi * i / kSides;
+            const double angle = 2 * std::numbers::pi * i / kBoreSides;
             points.push_back({r * std::cos(angle), r * std::sin(angle), z});
         }
         return out.add_ring(points);
     };
-    const double outer = radius * (1 + kDrawnWall);
+    const double outer = radius * (1 + kDrawnBoreWall);
     const std::uint32_t outer_low = ring(outer, -half), outer_high = ring(outer, half);
     const std::uint32_t inner_high = ring(radius, half), inner_low = ring(radius, -half);
-    out.add_band(outer_low, outer_high, kSides), out.add_band(outer_high, inner_high, kSides);
-    out.add_band(inner_high, inner_low, kSides), out.add_band(inner_low, outer_low, kSides);
+    out.add_band(outer_low, outer_high, kBoreSides), out.add_band(outer_high, inner_high, kBoreSides);
+    out.add_band(inner_high, inner_low, kBoreSides), out.add_band(inner_low, outer_low, kBoreSides);
     return out;
 }
 

@@ -12,11 +12,11 @@ namespace plab::shapes
 namespace
 {
 
-constexpr std::uint32_t kSides = 64, kRings = 24;
-/// Thickness that is drawn, as a share of the radius.
-constexpr double kDrawnWall = 0.02;
+constexpr std::uint32_t kBowlSides = 64, kRings = 24;
+/// Thickness of the drawn wall relative to the radius.
+constexpr double kDrawnBowlWall = 0.02;
 
-/// From the rim down to the bottom, or back.
+/// Adds the quarter of the profile from the rim down to the bottom, or back.
 void add_quarter(std::vector<ProfilePoint>& profile, double radius, double rim, bool down)
 {
     for (std::uint32_t i = 0; i <= kRings; ++i)
@@ -26,14 +26,14 @@ void add_quarter(std::vector<ProfilePoint>& profile, double radius, double rim, 
     }
 }
 
-/// Outside, rim and inside; of a closed shell the inside alone, so that one sees into it.
+/// Outside, rim and inside; of a closed shell only the inside, so that one can look into it.
 BuiltMesh picture_of_bowl(double radius, double opening)
 {
     const double rim = std::acos(opening / radius);
     std::vector<ProfilePoint> profile;
-    if (opening < radius) add_quarter(profile, radius * (1 + kDrawnWall), rim, false);
+    if (opening < radius) add_quarter(profile, radius * (1 + kDrawnBowlWall), rim, false);
     add_quarter(profile, radius, rim, true);
-    return turned_profile(profile, kSides);
+    return turned_profile(profile, kBowlSides);
 }
 
 }  // namespace

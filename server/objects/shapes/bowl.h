@@ -14,7 +14,7 @@ struct BowlRows
     void describe(Schema& schema);
 };
 
-/// Refuses an opening that leaves no surface.
+/// Refuses an opening for which no surface remains.
 Result<void> prepare_bowl(const StepContext& context, Row row, const BowlRows& bowls, Shapes& shapes);
 /// Always refuses: a surface has no mass.
 Result<void> measure_bowl(Row row, const BowlRows& bowls, MassProperties& solid);

@@ -26,7 +26,7 @@ std::vector<Vec3> lifted(std::span<const Vec3> outline, double z)
     return out;
 }
 
-/// The points at distance `radius` from the axis in the directions of the outline's.
+/// Points at distance `radius` from the axis, in the directions of the outline's points.
 std::vector<Vec3> hole(std::span<const Vec3> outline, double radius, double z)
 {
     std::vector<Vec3> out;

@@ -21,9 +21,9 @@ Result<void> prepare_compound(const StepContext& context, Row row, const Compoun
     for (const Ref part : compounds.parts[row])
     {
         const Geometry& g = shapes.geometry[part.index];
-        if (g.kind == GeometryKind::None) return reason("a part has no geometry; it must not be made of this compound in turn");
+        if (g.kind == GeometryKind::None) return reason("a part has no geometry; it must not refer back to this compound");
         if (g.kind == GeometryKind::Plane)
-            return reason("a plane has no end and cannot be a part; give it to the body as a shape of its own");
+            return reason("a plane is unbounded and cannot be a part; give it to the body as a shape of its own");
         if (g.kind == GeometryKind::Compound) return reason("a compound cannot be a part of another; name its parts instead");
         geometry.parts.push_back(part.index);
         picture.append(picture_of(g));

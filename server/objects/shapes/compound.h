@@ -1,5 +1,4 @@
-/// Shape/Compound: several shapes that are one, each at the pose that it has by itself, moved as a whole by that of the
-/// compound: X_BP = X_BC X_CP.
+/// Shape/Compound: several shapes as one. Each part keeps its own pose, and the compound's pose moves them as a whole: X_BP = X_BC X_CP.
 #pragma once
 
 #include "shape_columns.h"
@@ -15,7 +14,7 @@ struct CompoundRows
     void describe(Schema& schema);
 };
 
-/// Both read what the host knows of the parts: they must have been prepared and measured before.
+/// Both read the parts' rows of the host: the parts must have been prepared and measured before.
 Result<void> prepare_compound(const StepContext& context, Row row, const CompoundRows& compounds, Shapes& shapes);
 Result<void> measure_compound(Row row, const CompoundRows& compounds, const Shapes& shapes, MassProperties& solid);
 

@@ -8,7 +8,7 @@ namespace plab::shapes
 namespace
 {
 
-/// All points, in S: those of a mesh stand where its own pose puts them.
+/// All points in S; those of a mesh at the place given by the mesh's own pose.
 Result<std::vector<Vec3>> points_of(Row row, const ConvexHullRows& hulls, const Shapes& shapes)
 {
     const Reals& numbers = hulls.points[row];
@@ -26,7 +26,7 @@ Result<ConvexHull> hull_of(Row row, const ConvexHullRows& hulls, const Shapes& s
 {
     const auto points = points_of(row, hulls, shapes);
     if (!points) return points.error();
-    if (points->empty()) return reason("it needs `points`, or a mesh `of` which it is the hull");
+    if (points->empty()) return reason("it needs `points`, or a mesh in the role `of`");
     return make_convex_hull(*points);
 }
 
@@ -44,7 +44,7 @@ void ConvexHullRows::describe(Schema& schema)
     shape.describe(schema);
     schema.param(points, "points", unit::metre, "x y z of each point, in the shape's frame; those inside the others do not matter")
         .or_else({});
-    schema.role(of, "of", {Facet::Shape}, "a mesh whose vertices are points too").optional();
+    schema.role(of, "of", {Facet::Shape}, "a mesh whose vertices are added to the points").optional();
 }
 
 Result<void> prepare_convex_hull(const StepContext& context, Row row, const ConvexHullRows& hulls, Shapes& shapes)

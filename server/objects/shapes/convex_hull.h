@@ -1,4 +1,4 @@
-/// Shape/ConvexHull: the smallest convex solid that holds some points, given here or by a mesh.
+/// Shape/ConvexHull: the smallest convex solid that contains given points or the vertices of a mesh.
 #pragma once
 
 #include "shape_columns.h"
@@ -10,7 +10,7 @@ struct ConvexHullRows
 {
     ShapeColumns shape;
     Column<Reals> points;  ///< x y z of each, in S, m
-    Column<Ref> of;        ///< a shape with vertices, whose points join them
+    Column<Ref> of;        ///< a shape with vertices, which are added to the points
 
     void describe(Schema& schema);
 };

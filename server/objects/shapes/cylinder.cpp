@@ -23,7 +23,7 @@ void prepare_cylinder(const StepContext& context, Row row, const CylinderRows& c
     geometry.size = {cylinders.radius[row], 0, 0.5 * cylinders.height[row]};
     if (!cylinders.hull_collides[row])
     {
-        // What is only drawn is a mesh that does not collide.
+        // A cylinder that is only drawn is represented by a mesh that does not collide.
         geometry.pose = {};
         geometry = picture_of(geometry).geometry(cylinders.shape.pose(row), false);
     }

@@ -1,4 +1,4 @@
-/// Shape/Cylinder: x^2 + y^2 <= radius^2, |z| <= height / 2 in S. Collides and is integrated as the true solid.
+/// Shape/Cylinder: x^2 + y^2 <= radius^2, |z| <= height / 2 in S. Collision and mass properties use the exact solid.
 #pragma once
 
 #include "shape_columns.h"

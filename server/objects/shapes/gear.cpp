@@ -13,20 +13,20 @@ namespace
 
 constexpr double kFlank = 20 * std::numbers::pi / 180;  ///< rad, from the tooth's middle line
 constexpr double kDedendum = 1.25;                      ///< of the module
-/// A tooth is this much of half a pitch: straight flanks need more room than involutes to pass one another.
+/// Width of a tooth relative to half the pitch: straight flanks need more clearance than involutes to pass one another.
 constexpr double kPlay = 0.88;
 
 double module_of(double pitch_radius, std::int64_t teeth) { return 2 * pitch_radius / static_cast<double>(teeth); }
 
-/// Half the angle, seen from the axle, that a tooth takes at a distance `radius` from it.
+/// Half of the angle, seen from the axle, of a tooth at distance `radius` from the axle.
 double half_angle(double radius, double pitch_radius, std::int64_t teeth)
 {
     const double half = kPlay * std::numbers::pi / 4 * module_of(pitch_radius, teeth) - (radius - pitch_radius) * std::tan(kFlank);
-    // Few teeth grow together at their roots, which leaves them a little gap.
+    // With few teeth, neighbours would merge at their roots; this limit leaves a small gap.
     return std::min(half / radius, 0.97 * std::numbers::pi / static_cast<double>(teeth));
 }
 
-/// Four points for each tooth.
+/// Four points per tooth.
 std::vector<Vec3> outline_of(double pitch_radius, std::int64_t teeth)
 {
     const double m = module_of(pitch_radius, teeth), tip = pitch_radius + m, root = pitch_radius - kDedendum * m;
@@ -44,7 +44,7 @@ std::vector<Vec3> outline_of(double pitch_radius, std::int64_t teeth)
 Result<BuiltMesh> mesh_of(Row row, const GearRows& gears)
 {
     const double r = gears.pitch_radius[row], root = r - kDedendum * module_of(r, gears.teeth[row]);
-    // The gap between two teeth is a chord, which lies deeper than the roots' circle.
+    // The gap between two teeth is a chord, so its middle is closer to the axle than the root circle.
     const double gap = root * std::cos(std::numbers::pi / static_cast<double>(gears.teeth[row]));
     if (!(gears.bore[row] < gap)) return reason("bore must be less than the radius at the teeth's roots, " + rounded_text(gap, 6) + " m");
     return bored_prism(outline_of(r, gears.teeth[row]), gears.bore[row], 0.5 * gears.width[row]);
@@ -59,7 +59,9 @@ void GearRows::describe(Schema& schema)
     schema.param(teeth, "teeth", unit::one, "number of teeth; one of them points along x").at_least(6).at_most(1000);
     schema.param(width, "width", unit::metre, "along z, half of it on either side").positive();
     schema.param(bore, "bore", unit::metre, "radius of the hole for the axle; 0: none").or_else(0).not_negative();
-    schema.param(hull_collides, "hull_collides", unit::one, "it collides as its convex hull, teeth grown together, or not at all")
+    schema
+        .param(hull_collides, "hull_collides", unit::one,
+               "it collides as its convex hull, which fills the gaps between the teeth, or not at all")
         .or_else(false);
 }
 

@@ -1,7 +1,7 @@
 /// Shape/Gear: a spur wheel about z with straight-flanked (trapezoid) teeth, one of them in the direction of x.
 ///
-/// With pitch radius r and z teeth the module is m = 2 r / z; tips are at r + m, roots at r - 1.25 m, flanks lean by 20
-/// degrees. Two gears mesh if their modules are equal and their axles r1 + r2 apart.
+/// With pitch radius r and z teeth the module is m = 2 r / z. Tips are at r + m and roots at r - 1.25 m; flanks are inclined by 20
+/// degrees. Two gears mesh if their modules are equal and the distance of their axles is r1 + r2.
 #pragma once
 
 #include "built_mesh.h"
@@ -21,7 +21,7 @@ struct GearRows
     void describe(Schema& schema);
 };
 
-/// Refuses a bore that does not leave a ring below the teeth.
+/// Refuses a bore that leaves no ring of material below the teeth.
 Result<void> prepare_gear(const StepContext& context, Row row, const GearRows& gears, Shapes& shapes);
 Result<void> measure_gear(Row row, const GearRows& gears, MassProperties& solid);
 

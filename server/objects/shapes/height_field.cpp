@@ -10,7 +10,7 @@ namespace plab::shapes
 namespace
 {
 
-constexpr double kMostLines = 1024;  ///< of the grid, each way: two million triangles
+constexpr double kMostLines = 1024;  ///< grid lines in each direction: two million triangles
 
 std::vector<Vec3> points_of(Row row, const HeightFieldRows& fields)
 {

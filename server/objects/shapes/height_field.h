@@ -1,9 +1,10 @@
-/// Shape/HeightField: ground given by its heights over a grid of squares.
+/// Shape/HeightField: ground given by heights on a square grid.
 ///
 ///   z(i, k) = heights[k * columns + i] + wave_height sin(2 pi x / wave_length) sin(2 pi y / wave_length) + roughness u,
 ///   x = (i - (columns - 1) / 2) spacing,  y = (k - (rows - 1) / 2) spacing,  u uniform in [-1, 1)
 ///
-/// Each square is cut into two triangles from (i, k) to (i + 1, k + 1). Below them is solid; beyond the border is nothing.
+/// Each square is divided into two triangles from (i, k) to (i + 1, k + 1). The space below them is solid; there is nothing beyond the
+/// border.
 #pragma once
 
 #include "shape_columns.h"
@@ -23,7 +24,7 @@ struct HeightFieldRows
     void describe(Schema& schema);
 };
 
-/// Refuses heights that are not columns * rows numbers.
+/// Refuses heights whose number is not columns * rows.
 Result<void> prepare_height_field(const StepContext& context, Row row, const HeightFieldRows& fields, Shapes& shapes);
 /// Always refuses: a surface has no mass.
 Result<void> measure_height_field(Row row, const HeightFieldRows& fields, MassProperties& solid);

@@ -51,8 +51,8 @@ void MeshRows::describe(Schema& schema)
         .or_else(true);
     schema
         .param(surface_collides, "surface_collides", unit::one,
-               "it collides as the surface that it is, from the side from which its triangles are counter-clockwise, concave or not; "
-               "of bodies that do not move by forces only. Then hull_collides does not count")
+               "it collides as a surface, from the side from which its triangles are counter-clockwise, concave or not; "
+               "for bodies that are not dynamic. hull_collides is then ignored")
         .or_else(false);
 }
 

@@ -1,4 +1,4 @@
-/// Shape/Mesh: triangles, drawn and integrated as given; collides as its convex hull, as the surface that it is, or not at all.
+/// Shape/Mesh: triangles, drawn and integrated as given; collides as its convex hull, as a surface, or not at all.
 #pragma once
 
 #include "shape_columns.h"
@@ -16,7 +16,7 @@ struct MeshRows
     void describe(Schema& schema);
 };
 
-/// Open meshes pass: they can be drawn.
+/// Accepts open meshes, because they can be drawn.
 Result<void> prepare_mesh(const StepContext& context, Row row, const MeshRows& meshes, Shapes& shapes);
 Result<void> measure_mesh(Row row, const MeshRows& meshes, MassProperties& solid);
 

@@ -9,14 +9,14 @@ namespace plab::shapes
 namespace
 {
 
-/// One side of a triangle; forward: it runs from low to high.
+/// One side of a triangle; forward: it runs from the lower to the higher vertex number.
 struct Side
 {
     std::uint32_t low, high;
     bool forward;
 };
 
-/// The sides of all triangles with three different corners, sorted so that equal edges stand together.
+/// The sides of all triangles with three different corners, sorted so that equal edges are adjacent.
 std::vector<Side> sorted_sides(std::span<const std::uint32_t> triangles)
 {
     std::vector<Side> sides;
@@ -24,7 +24,7 @@ std::vector<Side> sorted_sides(std::span<const std::uint32_t> triangles)
     for (std::size_t i = 0; i + 2 < triangles.size(); i += 3)
     {
         const std::uint32_t corner[] = {triangles[i], triangles[i + 1], triangles[i + 2]};
-        // Two corners at one vertex: the triangle is a line whose two sides cancel.
+        // Two corners at the same vertex: the triangle is a line whose two sides cancel.
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
         for (int k = 0; k < 3; ++k)
         {
@@ -65,7 +65,7 @@ Result<void> check_edges(std::span<const std::uint32_t> triangles)
     return {};
 }
 
-/// The triangles with each vertex replaced by the first one at the same place.
+/// The triangles with each vertex replaced by the first one at the same position.
 std::vector<std::uint32_t> welded(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles)
 {
     std::vector<std::uint32_t> order(vertices.size());

@@ -1,4 +1,4 @@
-/// Whether triangles close a volume: every edge is shared by two triangles that run along it in opposite directions.
+/// Whether triangles enclose a volume: every edge must be shared by two triangles that run along it in opposite directions.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace plab::shapes
 {
 
-/// The first edge, in order of its vertex numbers, that breaks the rule is named. Vertices at the very same place count
-/// as one where the numbers alone leave the mesh open (files that repeat a vertex per face).
+/// Reports the first edge, in order of its vertex numbers, that violates the rule. Vertices at identical positions are merged if the mesh
+/// is open by its numbers alone (files that repeat vertices for each face).
 Result<void> check_closed(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles);
 
 }  // namespace plab::shapes

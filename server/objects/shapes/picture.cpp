@@ -9,7 +9,7 @@ namespace
 constexpr std::uint32_t kSides = 64;
 constexpr int kQuarter = 12;  ///< rings from the equator of a ball to its pole
 
-/// A ball of `radius` that is pulled apart by 2 `half` along z.
+/// A ball of `radius` that is stretched by a straight part of length 2 `half` along z.
 BuiltMesh long_ball(double radius, double half)
 {
     std::vector<ProfilePoint> profile{{0, -half - radius}};

@@ -1,4 +1,4 @@
-/// Geometry as triangles, for pictures of what has no form of its own there.
+/// Triangle meshes for drawing shapes that have no mesh of their own.
 #pragma once
 
 #include "built_mesh.h"
@@ -6,7 +6,7 @@
 namespace plab::shapes
 {
 
-/// In the frame that geometry.pose is given in. Round parts have 64 sides. Nothing for planes and compounds.
+/// In the frame in which geometry.pose is given. Round parts have 64 sides. Empty for planes and compounds.
 BuiltMesh picture_of(const Geometry& geometry);
 
 }  // namespace plab::shapes

@@ -8,14 +8,13 @@ namespace plab::shapes
 void PlacedRows::describe(Schema& schema)
 {
     shape.describe(schema);
-    schema.role(of, "of", {Facet::Shape}, "the shape that stands here once more");
+    schema.role(of, "of", {Facet::Shape}, "the shape to be placed");
 }
 
 Result<void> prepare_placed(const StepContext& context, Row row, const PlacedRows& placed, Shapes& shapes)
 {
     Geometry geometry = shapes.geometry[placed.of[row].index];
-    if (geometry.kind == GeometryKind::None)
-        return reason("the shape that it places has no geometry; it must not be placed by this one in turn");
+    if (geometry.kind == GeometryKind::None) return reason("the placed shape has no geometry; it must not refer back to this one");
     geometry.pose = placed.shape.pose(row) * geometry.pose;
     shapes.geometry[context.facet_of_row[row]] = std::move(geometry);
     return {};

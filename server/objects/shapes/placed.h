@@ -1,5 +1,4 @@
-/// Shape/Placed: another shape, moved as a whole: X_BS = X_BP X_PS, with P this shape's own pose and X_PS the pose
-/// that the referred shape has by itself.
+/// Shape/Placed: another shape at another place: X_BS = X_BP X_PS, with P the pose of this shape and X_PS the pose of the referred shape.
 #pragma once
 
 #include "shape_columns.h"
@@ -15,7 +14,7 @@ struct PlacedRows
     void describe(Schema& schema);
 };
 
-/// Both read what the host knows of the referred shape: it must have been prepared and measured before.
+/// Both read the referred shape's row of the host: it must have been prepared and measured before.
 Result<void> prepare_placed(const StepContext& context, Row row, const PlacedRows& placed, Shapes& shapes);
 Result<void> measure_placed(Row row, const PlacedRows& placed, const Shapes& shapes, MassProperties& solid);
 

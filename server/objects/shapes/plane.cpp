@@ -11,6 +11,6 @@ void prepare_plane(const StepContext& context, Row row, const PlaneRows& planes,
     shapes.geometry[context.facet_of_row[row]] = geometry;
 }
 
-Result<void> measure_plane(Row, const PlaneRows&, MassProperties&) { return reason("a plane has no end and so no volume"); }
+Result<void> measure_plane(Row, const PlaneRows&, MassProperties&) { return reason("a plane is unbounded and has no volume"); }
 
 }  // namespace plab::shapes

@@ -59,7 +59,7 @@ PLAB_PLUGIN("shapes", registrar)
                                                     "volume, centre and inertia, exact for the wheel as drawn");
     add_shape<prepare_rotor, measure_rotor, RotorRows>(registrar, "Shape/Rotor", "a fan's wheel: hub and twisted blades, about z",
                                                        "volume, centre and inertia, exact for the wheel as drawn");
-    add_shape<prepare_bowl, measure_bowl, BowlRows>(registrar, "Shape/Bowl", "the inside of a sphere, open above a rim; what lies in it",
+    add_shape<prepare_bowl, measure_bowl, BowlRows>(registrar, "Shape/Bowl", "the inside of a sphere, open above a rim; bodies lie in it",
                                                     "refused: a surface has no volume");
     add_shape<prepare_bore, measure_bore, BoreRows>(registrar, "Shape/Bore", "the inside of a cylinder along z, open at both ends",
                                                     "refused: a surface has no volume");

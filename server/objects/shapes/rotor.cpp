@@ -12,16 +12,16 @@ namespace
 
 constexpr std::uint32_t kHubSides = 48;
 constexpr int kStations = 8;         ///< sections of a blade, from root to tip
-constexpr double kThickness = 0.1;   ///< of the width, where a section is thickest
-constexpr double kCamber = 0.06;     ///< its middle line rises by this, of the width
-constexpr double kSlopeLimit = 1.2;  ///< rad, of a section to the plane of rotation
+constexpr double kThickness = 0.1;   ///< maximum thickness of a section relative to its width
+constexpr double kCamber = 0.06;     ///< height of the mean line relative to the width
+constexpr double kSlopeLimit = 1.2;  ///< rad, largest inclination of a section to the plane of rotation
 
 struct Blade
 {
     double hub_radius, radius, pitch_angle, width;
 };
 
-/// A section of a blade, unrolled: x along it from -1/2 to 1/2, y across; of the width 1. Counter-clockwise.
+/// A section of a blade, developed into a plane: x along it from -1/2 to 1/2, y across; width 1. Counter-clockwise.
 constexpr std::array<std::array<double, 2>, 8> kSection = {{{0.5, 0},
                                                             {0.25, 0.75 * kCamber + 0.35 * kThickness},
                                                             {0, kCamber + 0.5 * kThickness},
@@ -31,12 +31,12 @@ constexpr std::array<std::array<double, 2>, 8> kSection = {{{0.5, 0},
                                                             {0, kCamber - 0.5 * kThickness},
                                                             {0.25, 0.75 * kCamber - 0.35 * kThickness}}};
 
-/// Narrow at the hub, widest at two thirds, rounded at the tip; `s` from 0 to 1.
+/// Relative width: narrow at the hub, widest at two thirds of the blade, rounded at the tip; `s` from 0 to 1.
 double relative_width(double s) { return (0.62 + 0.76 * s - 0.38 * s * s) * std::sqrt(1 - 0.72 * s * s * s * s * s * s); }
 
 double slope_at(const Blade& blade, double r) { return std::fmin(std::atan(blade.radius * std::tan(blade.pitch_angle) / r), kSlopeLimit); }
 
-/// Each section lies on the cylinder of its distance from the axle: the root so lies on the hub.
+/// Each section lies on a cylinder about the axle, so the root section lies on the hub.
 std::vector<Vec3> section(const Blade& blade, double s)
 {
     const double r = blade.hub_radius + (blade.radius - blade.hub_radius) * s;
@@ -63,7 +63,7 @@ BuiltMesh blade_mesh(const Blade& blade)
         if (i == 0) root = ring;
         below = ring;
     }
-    // Sections are not far from flat: fans over their first vertex close the ends.
+    // Sections are nearly flat, so fans around their first vertex close the ends.
     for (std::uint32_t i = 1; i + 1 < kCount; ++i)
     {
         out.add_triangle(root, root + i + 1, root + i);
@@ -97,13 +97,12 @@ BuiltMesh turned(const BuiltMesh& mesh, double angle)
 Result<BuiltMesh> mesh_of(Row row, const RotorRows& rotors)
 {
     const Blade blade{rotors.hub_radius[row], rotors.radius[row], rotors.pitch_angle[row], rotors.width[row]};
-    if (!(blade.radius > blade.hub_radius)) return reason("radius must be more than hub_radius: the blades stand out of the hub");
+    if (!(blade.radius > blade.hub_radius)) return reason("radius must be more than hub_radius, so that the blades extend beyond the hub");
     if (!(blade.pitch_angle < kSlopeLimit)) return reason("pitch_angle must be less than 1.2 rad");
     const double count = static_cast<double>(rotors.blades[row]);
     const double room = 2 * std::numbers::pi * blade.hub_radius / count;
     const double taken = blade.width * relative_width(0) * std::cos(slope_at(blade, blade.hub_radius));
-    if (!(taken < room))
-        return reason("the blades must have room on the hub: fewer of them, a smaller width or a larger hub_radius would do");
+    if (!(taken < room)) return reason("the blades do not fit on the hub; use fewer blades, a smaller width or a larger hub_radius");
     BuiltMesh out = hub_mesh(blade);
     const BuiltMesh one = blade_mesh(blade);
     for (std::int64_t i = 0; i < rotors.blades[row]; ++i) out.append(turned(one, 2 * std::numbers::pi * static_cast<double>(i) / count));

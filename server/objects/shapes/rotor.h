@@ -1,8 +1,8 @@
-/// Shape/Rotor: a fan's wheel about z: a hub with a rounded nose towards z, and twisted blades.
+/// Shape/Rotor: the wheel of a fan about z: a hub with a rounded nose towards z, and twisted blades.
 ///
-/// The blades are right-handed, like a ship's screw: turning positively about z it drives the air towards -z. At the
-/// distance r from the axle they stand at atan(R tan(pitch) / r) to the plane of rotation: all parts of a blade would
-/// screw themselves equally far in a turn.
+/// The blades are right-handed like a ship's propeller: turning positively about z, the rotor drives air towards -z. At distance r from
+/// the axle a blade is inclined to the plane of rotation by atan(R tan(pitch) / r), so all its parts have the same pitch, the advance per
+/// turn.
 #pragma once
 
 #include "built_mesh.h"
@@ -23,7 +23,7 @@ struct RotorRows
     void describe(Schema& schema);
 };
 
-/// Refuses blades that are wider than the hub can carry, or do not stand out of it.
+/// Refuses blades that are wider than the hub can carry, or that do not extend beyond it.
 Result<void> prepare_rotor(const StepContext& context, Row row, const RotorRows& rotors, Shapes& shapes);
 Result<void> measure_rotor(Row row, const RotorRows& rotors, MassProperties& solid);
 

@@ -1,4 +1,4 @@
-/// What every shape has: a pose in its body and a colour.
+/// Columns that every shape has: the pose in its body, and a colour.
 #pragma once
 
 #include "plab/registrar.h"

@@ -9,7 +9,7 @@ namespace plab::shapes
 namespace
 {
 
-/// A solid flatter than this share of its extent has no volume that rounding errors leave meaningful.
+/// If the volume relative to the extent is below this, it is not meaningful because of rounding errors.
 constexpr double kFlat = 1e-12;
 
 struct Moments
@@ -103,7 +103,7 @@ MassProperties joined(std::span<const MassProperties> parts)
 {
     MassProperties out;
     if (parts.empty()) return out;
-    // From the first centre: far from the origin the differences keep their digits.
+    // Relative to the first centre, so that differences keep their digits far from the origin.
     const Vec3 origin = parts.front().center;
     Vec3 first;
     for (const MassProperties& p : parts) out.mass += p.mass, first += p.mass * (p.center - origin);
@@ -121,8 +121,8 @@ Result<MassProperties> solid_mesh(std::span<const Vec3> vertices, std::span<cons
 {
     if (auto closed = check_closed(vertices, triangles); !closed) return closed.error();
 
-    // From the mesh's own mean point, then from its centre of mass: far from the origin, or with its vertices crowded
-    // at one end, the differences that remain are small and keep their digits.
+    // First relative to the mesh's own mean point, then to its centre of mass. The remaining differences are small and keep their digits,
+    // even far from the origin or with vertices concentrated at one end.
     const Vec3 mean = mean_of(vertices);
     const Moments rough = moments_about(mean, vertices, triangles);
     if (std::fabs(rough.volume) <= kFlat * rough.area * extent_of(vertices, mean))

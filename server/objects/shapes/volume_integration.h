@@ -21,21 +21,21 @@ MassProperties solid_box(const Vec3& half_extents);
 /// m = pi r^2 h, I_zz = m r^2 / 2, I_xx = I_yy = m (3 r^2 + h^2) / 12; about z, lengths in m.
 MassProperties solid_cylinder(double radius, double height);
 
-/// A cylinder between two half balls; `length` between their centres, along z, m:
+/// A cylinder with half balls at its ends; `length` is the distance between their centres, along z, m:
 ///   m_c = pi r^2 l,  m_s = 4/3 pi r^3,  I_zz = m_c r^2/2 + 2/5 m_s r^2,
 ///   I_xx = I_yy = m_c (3 r^2 + l^2)/12 + m_s (2/5 r^2 + l^2/4 + 3/8 l r)
 MassProperties solid_capsule(double radius, double length);
 
-/// Several solids as one, in their common frame (parallel axes): m = sum m_i, c = sum m_i c_i / m,
-/// I = sum I_i + m_i (|d|^2 1 - d d^T), d = c_i - c. Where they overlap, mass counts twice.
+/// Several solids as one, in their common frame (parallel-axis theorem): m = sum m_i, c = sum m_i c_i / m, I = sum I_i + m_i (|d|^2 1 - d
+/// d^T), d = c_i - c. Where they overlap, mass counts twice.
 MassProperties joined(std::span<const MassProperties> parts);
 
-/// The solid inside closed triangles (index triples, counter-clockwise seen from outside). Refuses what encloses no
-/// definite volume: an open, non-manifold, inconsistently wound, inside-out or flat mesh. Does not look for
-/// self-intersection: parts that overlap count twice.
+/// The solid inside closed triangles (index triples, counter-clockwise seen from outside). Refuses meshes that enclose no definite
+/// volume: open, non-manifold, inconsistently wound, inside-out or flat ones. Self-intersections are not detected: overlapping parts
+/// count twice.
 Result<MassProperties> solid_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles);
 
-/// The same solid, seen from B: centre X_BS c, inertia R I R^T.
+/// The same solid expressed in B: centre X_BS c, inertia R I R^T.
 MassProperties posed(const MassProperties& solid_S, const Pose& X_BS);
 
 }  // namespace plab::shapes

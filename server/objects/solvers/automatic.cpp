@@ -21,7 +21,7 @@ constexpr std::size_t kExponentialSize = 60, kRadauSize = 200;
 constexpr Tolerance kTolerance{1e-9, 1e-12};
 constexpr std::int64_t kMaxSubsteps = 20000;
 
-/// In order of demand.
+/// In order of increasing cost.
 enum class Method : std::size_t
 {
     Exact,
@@ -70,7 +70,7 @@ public:
         if (!at_once) advance_by_runge_kutta4(h_, system_);
     }
 
-    /// False if some group may need another method; then everything is as it was.
+    /// Returns false if some group may need another method; then everything is unchanged.
     bool advance_together()
     {
         begin_turn();
@@ -109,13 +109,13 @@ private:
         rows_.step[row_] = start_.tick, m_.before = rows_.last_methods[row_], rows_.last_methods[row_] = 0, m_.call = 0;
     }
 
-    /// Whether the group that was advanced as this one's turn came in the last step was not stiff. That changes no result: then
-    /// the step of RungeKutta4 is booked at once; else it is looked at first, for what is booked along a step that blows up
-    /// is taken back with rounding errors as large as that.
+    /// Whether the group that was advanced at this position in the last step was not stiff. This influences only the bookkeeping: if so,
+    /// the step of RungeKutta4 is booked at once; otherwise it is checked first, because undoing the bookings of a diverging step would
+    /// leave rounding errors of their size.
     bool expects_soft() const
     {
         const Integers& soft = rows_.soft_turns[row_];
-        if (trial_) return std::find(soft.begin(), soft.end(), 0) == soft.end();  // turns are not counted
+        if (trial_) return std::find(soft.begin(), soft.end(), 0) == soft.end();  // calls are not counted
         return m_.call < soft.size() && soft[m_.call] != 0;
     }
     void remember(bool soft)
@@ -165,7 +165,7 @@ private:
             case Method::RotationSplitting:
                 return "h |w| = " + number(spin_) + " is above 0.05";
             default:
-                if (system_.is_undersampled()) return "contacts ask for more sub-steps than they may have, whatever the method";
+                if (system_.is_undersampled()) return "contacts need more substeps than are allowed, whatever the method";
                 return "h |w| = " + number(spin_) + " and |h lambda| = " + number(stiffness_) + " are small";
         }
     }
@@ -207,15 +207,15 @@ private:
 
 void AutomaticRows::describe(Schema& schema)
 {
-    schema.output(resolved, "resolved", unit::one, "the methods that groups were advanced by in the last steps");
-    schema.output(reason, "reason", unit::one, "why the method that came last was chosen");
+    schema.output(resolved, "resolved", unit::one, "the methods with which groups were advanced in the last steps");
+    schema.output(reason, "reason", unit::one, "the reason for choosing the latest method");
     schema.output(spin, "spin", unit::one, "largest h |w| of the bodies, h the step, of the last group that forces act on");
-    schema.output(stiffness, "stiffness", unit::one, "its |h lambda|, lambda the largest eigenvalue that its motion shows");
+    schema.output(stiffness, "stiffness", unit::one, "|h lambda| of that group, lambda the largest eigenvalue that its motion excites");
     schema.output(
         methods, "methods", unit::one,
         "used since the run began, a sum: 1 Exact, 2 RungeKutta4, 4 RotationSplitting, 8 Exponential, 16 Radau5, 32 DormandPrince54");
     schema.output(last_methods, "last_methods", unit::one, "used in the last step, as the same sum");
-    schema.output(step, "step", unit::one, "the step that these are of; -1: none yet").or_else(-1);
+    schema.output(step, "step", unit::one, "the step to which these outputs belong; -1: none yet").or_else(-1);
     schema.output(soft_turns, "soft_turns", unit::one,
                   "group by group in the order of the last steps, 1: was not stiff, so its next step is booked at once");
     schema.scratch(memory, "memory", "working vectors and matrices");
@@ -223,14 +223,14 @@ void AutomaticRows::describe(Schema& schema)
 
 Result<void> advance_together(const StepContext& context, Row row, AutomaticRows& rows, DynamicSystem& system)
 {
-    const StepContext start = context;  // evaluations change the host's
+    const StepContext start = context;  // evaluations change the host's context
     if (Choice(start, row, rows, system).advance_together()) return {};
-    return reason("some of them may need another method");
+    return reason("some of the groups may need another method");
 }
 
 void advance_automatic(const StepContext& context, Row row, AutomaticRows& rows, DynamicSystem& system)
 {
-    const StepContext start = context;  // evaluations change the host's
+    const StepContext start = context;  // evaluations change the host's context
     Choice(start, row, rows, system).advance();
 }
 

@@ -1,4 +1,4 @@
-/// Solver/Automatic: picks a method for each group and each step by a rule, from facts that it measures, and says which and why.
+/// Solver/Automatic: selects a method for each group and each step by a rule, from measured properties, and reports which and why.
 ///
 ///   uniform forces, no joints            Exact                (machine precision at any step)
 ///   stiff, linear, few numbers that move Exponential          (exact at any step)
@@ -7,12 +7,13 @@
 ///   fast spin, no joints                 RotationSplitting 4
 ///   else                                 RungeKutta4          (the same bits as Solver/RungeKutta4)
 ///
-/// Stiff: |h lambda| > 0.5 and > 4 |w| h of some member, as the step of RungeKutta4 itself shows (facts.h): if it does, the step is
-/// taken back and made anew, so nothing blows up first, and what is not stiff pays nothing. Fast: h |w| > 0.05.
-/// The choice depends on the start of the advance and its length alone: rewinds, trials and replays choose the same, groups
-/// that share the component do not see one another, and nothing has to be saved.
-/// The output `resolved` names the methods of the last steps, `reason` says why the last new one was taken; the event
-/// solver.chosen tells of each method once, but of RungeKutta4 and Exact, which are no surprise.
+/// Stiff: |h lambda| > 0.5 and > 4 |w| h for some member, as measured from the slopes of a step of RungeKutta4 (facts.h). If the step
+/// turns out stiff, it is undone and repeated with another method. So nothing diverges before stiffness is noticed, and groups that are
+/// not stiff pay nothing. Fast: h |w| > 0.05.
+/// The choice depends only on the state at the start of the advance and on its length. Rewinds, trials and replays therefore choose the
+/// same method, groups that share the component do not influence one another, and nothing has to be saved. The output `resolved` names
+/// the methods of the last steps, and `reason` states why the last new one was chosen. The event solver.chosen reports each method once,
+/// except RungeKutta4 and Exact.
 /// Sources: Hairer, Wanner, Solving ordinary differential equations II, section IV.2 (stiffness detection); the bounds:
 /// tests/unit/solvers/automatic_test.cpp.
 #pragma once
@@ -27,25 +28,25 @@ namespace plab::solvers
 
 struct AutomaticMemory
 {
-    ExponentialMemory exponential;  ///< Radau5's too
+    ExponentialMemory exponential;  ///< also used by Radau5
     DormandPrinceMemory dormand;
-    std::int64_t before = 0, shown = 0;  ///< methods of the step before, and those that `resolved` names, as bits
-    std::size_t call = 0;                ///< turns in this step
+    std::int64_t before = 0, shown = 0;  ///< methods of the previous step, and those that `resolved` names, as bits
+    std::size_t call = 0;                ///< number of calls in this step
 };
 
 struct AutomaticRows
 {
     Column<std::string> resolved, reason;
     Column<double> spin, stiffness;              ///< h |w|, |h lambda|
-    Column<std::int64_t> methods, last_methods;  ///< used since the run began; in the last step; as bits
+    Column<std::int64_t> methods, last_methods;  ///< used since the run began, and in the last step, as bits
     Column<Tick> step;                           ///< the last one
-    Column<Integers> soft_turns;                 ///< by turn in the last step: 1 where the group was not stiff
+    Column<Integers> soft_turns;                 ///< by call in the last step: 1 if the group was not stiff
     Column<AutomaticMemory> memory;
 
     void describe(Schema& schema);
 };
 
-/// Several groups in one system, if all of them would choose Exact, or all RungeKutta4; refuses otherwise, with the state at the
+/// Advances several groups as one system if all of them would choose Exact, or all RungeKutta4; otherwise refuses, with the state of the
 /// start.
 Result<void> advance_together(const StepContext& context, Row row, AutomaticRows& rows, DynamicSystem& system);
 

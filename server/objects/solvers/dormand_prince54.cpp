@@ -47,7 +47,7 @@ public:
         {
             const double left = h_ - t_;
             const bool last = size >= left * (1 - 1e-12);
-            // Two equal steps rather than a long and a tiny one.
+            // Two equal steps rather than a long one and a tiny one.
             const double step = last ? left : (2 * size > left ? 0.5 * left : size);
             first_stage(step);
             const double error = attempt(step);
@@ -75,8 +75,8 @@ public:
     }
 
 private:
-    /// The length to try first: the whole step, unless the equations look faster than that. Hairer's guess (part I, section
-    /// II.4) from the rates and how they change along an Euler step.
+    /// The length of the first trial: the whole step, unless the equations appear to be too fast for it. Hairer's estimate (part I,
+    /// section II.4) from the rates and their change along an Euler step.
     double first_size()
     {
         flat_.evaluate(0, m_.y, m_.slope[0], booked_ = kWeight[0]);
@@ -93,7 +93,7 @@ private:
         return !(h_ > 5 * guess) ? h_ : 2 * guess;
     }
 
-    /// The slope at the start of an internal step is known; its share in the ledger is that of the step's length.
+    /// The slope at the start of an internal step is known; its share in the ledger depends on the length of the step.
     void first_stage(double step)
     {
         const double share = kWeight[0] * step / h_;
@@ -101,7 +101,7 @@ private:
         booked_ = share;
     }
 
-    /// Stages 2 to 7 and the error in units of the tolerance.
+    /// Computes stages 2 to 7, and the error in units of the tolerance.
     double attempt(double step)
     {
         for (std::size_t s = 1; s < kStages; ++s)
@@ -138,7 +138,7 @@ private:
             m_.scale[i] = std::max(m_.scale[i], tolerance_.absolute * m_.units[i] + tolerance_.relative * m_.sizes[i]);
     }
 
-    /// Takes back what the stages after the first one of a refused internal step had booked. The slopes stay.
+    /// Cancels the bookings of the stages after the first one of a rejected internal step. The slopes stay valid.
     void take_back(double step)
     {
         for (std::size_t s = 1; s + 1 < kStages; ++s)
@@ -193,7 +193,7 @@ void tell_dormand_prince_gave_up(const StepContext& start, Row row, const Dorman
 
 void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince54Rows& rows, DynamicSystem& system)
 {
-    const StepContext start = context;  // evaluations change the host's
+    const StepContext start = context;  // evaluations change the host's context
     const Tolerance tolerance{rows.relative_tolerance[row], rows.absolute_tolerance[row]};
     const DormandPrinceCounts counts = advance_by_dormand_prince(start.dt, tolerance, rows.max_substeps[row], rows.memory[row], system);
     if (is_trial(start)) return;

@@ -1,15 +1,15 @@
-/// Solver/DormandPrince54: explicit Runge-Kutta method of order 5 with an embedded one of order 4, which chooses its own
-/// internal steps within the step of the scene, so that the error of each stays below the tolerance.
+/// Solver/DormandPrince54: an explicit Runge-Kutta method of order 5 with an embedded method of order 4. It chooses its own internal
+/// steps within the step of the scene, so that the error of each stays below the tolerance.
 ///
-/// - First the whole step is tried at once, unless a guess from the first rates (one more evaluation) says that it is too
-///   long; then a proportional-integral controller goes on. An
-///   advance depends on nothing but its start: replays, rewinds and trials of parts of a step see the same numbers.
-/// - The last internal step is cut to land on the end of the step. Dense output would look beyond the end, where scripts
-///   and requests may change the equations.
-/// - The last stage of an internal step is the first of the next one (FSAL): 6 evaluations per internal step, and one more
-///   that books its share in the energy ledger, which is of order 5 like the state. Trials book nothing and do without;
-///   what a refused internal step had booked is taken back.
-/// - If max_substeps internal steps do not reach the end, the group stays where it got to, with the event solver.gave_up.
+/// - The whole step is tried first, unless an estimate from the first rates (one more evaluation) shows that it is too long; then a
+/// proportional-integral controller takes over. An advance depends only on its start, so replays, rewinds and trials of parts of a step
+/// get the same numbers.
+/// - The last internal step is shortened to end exactly at the end of the step. Dense output would evaluate beyond the end, where scripts
+/// and requests may change the equations.
+/// - The last stage of an internal step is the first one of the next (FSAL): 6 evaluations per internal step, and one more that books its
+/// share in the energy ledger, which has order 5 like the state. Trials do not book and save that evaluation; bookings of a rejected
+/// internal step are cancelled.
+/// - If max_substeps internal steps do not reach the end, the group stays where the last one ended, with the event solver.gave_up.
 /// Sources: Dormand, Prince, J. Comput. Appl. Math. 6 (1980) 19; Hairer, Norsett, Wanner, Solving ordinary differential
 /// equations I, sections II.4 and II.5 (coefficients, table 5.2); Gustafsson's controller, part II, section IV.2.
 #pragma once
@@ -23,7 +23,7 @@
 namespace plab::solvers
 {
 
-/// Vectors of one advance, kept warm.
+/// Vectors of one advance; memory is kept between steps.
 struct DormandPrinceMemory
 {
     std::array<std::vector<double>, 7> slope;

@@ -23,7 +23,7 @@ void ErrorControlRows::describe_control(Schema& schema)
         .at_least(1)
         .at_most(1e7);
     schema.output(substeps, "substeps", unit::one, "internal steps in the last step");
-    schema.output(refused, "refused", unit::one, "internal steps that were tried again shorter");
+    schema.output(refused, "refused", unit::one, "internal steps that were rejected and repeated with a shorter length");
     schema.output(evaluations, "evaluations", unit::one, "force evaluations in the last step");
 }
 

@@ -1,4 +1,4 @@
-/// What solvers that choose their internal steps by an error estimate have in common: parameters, counts, giving up.
+/// Common parts of solvers that choose internal steps by an error estimate: parameters, counts, and giving up.
 #pragma once
 
 #include <string_view>
@@ -11,7 +11,7 @@ namespace plab::solvers
 struct SubstepCounts
 {
     std::int64_t accepted = 0, refused = 0, evaluations = 0;
-    double reached = 0;  ///< s, where the last accepted internal step ended
+    double reached = 0;  ///< s, the end of the last accepted internal step
 };
 
 struct ErrorControlRows
@@ -24,7 +24,7 @@ struct ErrorControlRows
     void report(Row row, const SubstepCounts& counts);
 };
 
-/// The event solver.gave_up; `advice` ends its message.
+/// Emits the event solver.gave_up; `advice` is the end of its message.
 void tell_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice);
 
 }  // namespace plab::solvers

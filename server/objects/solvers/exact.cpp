@@ -41,7 +41,7 @@ void rotate_freely(double h, DynamicSystem& system, std::size_t body)
 /// Whether speed i is the rotation of a body (its last three of six).
 bool is_rotation(const DynamicSystem& system, std::size_t i) { return i < 6 * system.body_count() && i % 6 >= 3; }
 
-/// A uniform field turns nobody: rates of momentum are 0. Those of needles hold their free rotation.
+/// A uniform field exerts no torque: the rates of angular momentum are 0. For needles the rates are those of free rotation.
 bool nobody_is_turned(const DynamicSystem& system)
 {
     const auto du = system.speed_rates();
@@ -66,8 +66,8 @@ bool advance_in_closed_form(double h, DynamicSystem& system)
     const auto u = system.speeds();
     const auto u0 = system.workspace(0), a = system.workspace(1);
     const std::size_t n = u.size(), places = n - system.quantity_count();
-    // Power is linear in time under a uniform force, so the mean of both ends is its work; and both ends agree, or the
-    // host's promise does not hold.
+    // Under a uniform force the power is linear in time, so the mean of both ends gives the work. Both ends must agree, otherwise the
+    // forces are not uniform as the host stated.
     system.evaluate(0, 0.5);
     const auto du = system.speed_rates();
     for (std::size_t i = 0; i < n; ++i) u0[i] = u[i], a[i] = du[i];
@@ -88,16 +88,15 @@ bool advance_in_closed_form(double h, DynamicSystem& system)
 
 void advance_exact(const StepContext& context, Row row, ExactRows& rows, DynamicSystem& system)
 {
-    const StepContext start = context;  // evaluations change the host's
+    const StepContext start = context;  // evaluations change the host's context
     if (system.is_constrained())
     {
-        rows.resolved.fall_back(start, row, Fallback::Constrained, "RungeKutta4",
-                                "joints hold the group together, so that no closed form is known");
+        rows.resolved.fall_back(start, row, Fallback::Constrained, "RungeKutta4", "joints constrain the group, so no closed form is known");
         return advance_runge_kutta4(start, row, {}, system);
     }
     if (system.forces_are_uniform() && advance_in_closed_form(start.dt, system)) return rows.resolved.say(start, row, "Exact");
     rows.resolved.fall_back(start, row, Fallback::NotUniform, "RotationSplitting",
-                            "forces depend on time, place or velocity, so that no closed form is known");
+                            "forces depend on time, position or velocity, so no closed form is known");
     advance_by_splitting(start.dt, 4, system);
 }
 

@@ -12,8 +12,8 @@ namespace
 
 constexpr double kNode = 0.75;
 constexpr double kCorrection = 32.0 / 9;
-constexpr double kRounding = 1e-11;  ///< a bend below it is none
-constexpr double kSlight = 1e-8;     ///< a bend below it leaves the step, corrected, as good as exact
+constexpr double kRounding = 1e-11;  ///< a smaller nonlinearity counts as none
+constexpr double kSlight = 1e-8;     ///< with a nonlinearity below this the corrected step is as good as exact
 constexpr std::size_t kHuge = 16;
 constexpr double kAlike = 10;  ///< times what the bend at the node is, in other points
 constexpr Tolerance kTolerated{1e-9, 1e-11};
@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    /// Not even the derivatives of what moves are worth their memory.
+    /// So large that even the derivatives of the numbers that move would take too much memory.
     bool is_huge() const { return flat_.size() > kHuge * most_; }
 
     bool linearise()
@@ -80,7 +80,8 @@ private:
         if (i >= flat_.places() && !flat_.is_quantity(i)) set_moving(i - flat_.places());
     }
 
-    /// Columns of J for what moves, from the one at `next` on, and for what that moves in turn; the others are not felt.
+    /// Computes the columns of J for the numbers that move, from the one at `next` on, and for those that they set in motion; the other
+    /// columns have no effect.
     bool differentiate(std::size_t next)
     {
         const JacobianPoint at{0, h_, m_.y, m_.f0, m_.sizes, m_.units, 0, m_.work, m_.slope, m_.other, m_.wide};
@@ -88,7 +89,7 @@ private:
         {
             const std::size_t fresh = next;
             next = m_.moving.size();
-            // Places first: columns of speeds ask how stiff places are.
+            // Positions first, because the columns of speeds use the stiffness of positions.
             std::sort(m_.moving.begin() + static_cast<std::ptrdiff_t>(fresh), m_.moving.end());
             for (std::size_t k = fresh; k < next; ++k) fine_column(flat_, at, m_.moving[k], m_.jacobian);
             for (std::size_t k = fresh; k < next; ++k)
@@ -100,7 +101,7 @@ private:
         return true;
     }
 
-    /// f_t: forces linear in time show the same slope over the step and over half of it; others by differences of second
+    /// f_t: forces that are linear in time show the same slope over the whole and over half of the step; others use differences of second
     /// order at the start.
     void rate_in_time()
     {
@@ -120,8 +121,8 @@ private:
         for (std::size_t i = 0; i < flat_.size(); ++i) m_.ft[i] = (4 * m_.other[i] - m_.slope[i] - 3 * m_.f0[i]) / (2 * d);
     }
 
-    /// exp of h J with the columns h f0, h^2 f_t and (with `defect`) 32/9 h D beside it, and a chain of ones below, in time
-    /// units of h, for what moves. Columns are scaled down to the size of h J, so that they cost no accuracy.
+    /// exp of h J with the columns h f0, h^2 f_t and (with `defect`) 32/9 h D appended, and a chain of ones below, in time units of h,
+    /// for the numbers that move. The columns are scaled to the size of h J, so they cost no accuracy.
     bool exponentiate(bool defect)
     {
         const std::size_t n = m_.moving.size();
@@ -151,7 +152,7 @@ private:
         m_.exponential.apply(root, m_.from, m_.to);
         std::swap(m_.from, m_.to);
     }
-    /// out = y0 + what is moved, of the vector that goes along.
+    /// out = y0 plus the displacement of the numbers that move, from the vector of the exponential.
     void place(std::span<const double> moved, std::span<double> out)
     {
         std::copy(m_.y.begin(), m_.y.end(), out.begin());
@@ -166,7 +167,7 @@ private:
         place(m_.from, out);
     }
 
-    /// defect = f(t, y) - f0 - J (y - y0) - t f_t. How large it is in relation to its largest term, beyond rounding.
+    /// defect = f(t, y) - f0 - J (y - y0) - t f_t. Returns its size relative to its largest term, beyond rounding.
     double find_defect(double t, std::span<const double> y, double weight = 0)
     {
         flat_.evaluate(t, y, m_.slope, weight);
@@ -200,7 +201,7 @@ private:
         const double bend = find_defect(kNode * h_, m_.middle);
         if (!std::isfinite(bend) || bend <= kRounding) return bend;
         along(0, 1, m_.plain);
-        // Forces that bend may move what the linear ones left where it was.
+        // Nonlinear forces may set numbers in motion that the linear ones left at rest.
         const std::size_t known = m_.moving.size();
         for (std::size_t i = 0; i < flat_.size(); ++i)
             if (m_.defect[i] != 0) set_moving(i);
@@ -210,17 +211,17 @@ private:
         return fine && exponentiate(true) ? bend : std::numeric_limits<double>::infinity();
     }
 
-    /// Forces bend so little, or with so little effect on the result, that it is as good as exact; at the node of `correct`, and
-    /// in three more points.
+    /// Whether the nonlinearity is so small, or has so little effect on the result, that the step is as good as exact; tested at the node
+    /// of `correct` and at three more points.
     bool is_as_good_as_linear(double bend)
     {
         if (bend > kSlight && !(effect() <= 1)) return false;
         return bend_along() <= std::max(kSlight, kAlike * bend);
     }
 
-    /// Whether J is what it is at the node as well: a spring that swings, and is not along an axis, pushes what is beside its line
-    /// out and in again by turns, and J at the start knows one of them only; over many turns rounding would grow without bound.
-    /// A probe by a fixed vector; J may change by what makes nothing grow: |h^2 dJ| below 0.1.
+    /// Whether J has the same effect at the node. The lateral force of an oscillating spring that is not along an axis changes its sign
+    /// periodically, but J at the start has only one of the signs, so over many oscillations rounding errors would grow without bound.
+    /// Tested with one fixed vector; J may change by as much as makes nothing grow: |h^2 dJ| below 0.1.
     bool is_steady()
     {
         const double turns = m_.exponential.size();
@@ -245,7 +246,7 @@ private:
         }
         return true;
     }
-    /// Speeds at the node that no force explains: what J makes grow has grown.
+    /// Whether speeds at the node are larger than any force explains: then an instability of J has grown.
     bool has_run_away() const
     {
         double usual = 0, found = 0;
@@ -260,7 +261,7 @@ private:
     {
         return (j % 2 == 0 ? 1 : -1) * (0.5 + 0.07 * static_cast<double>(j % 7)) * 1e-3 * std::max(m_.sizes[j], 1e-2 * m_.units[j]);
     }
-    /// Of speeds, along the step so far looked at.
+    /// The largest rate of a speed at the start of the step.
     double largest_rate() const
     {
         double most = 0;
@@ -268,7 +269,7 @@ private:
         return most;
     }
 
-    /// The correction in units of what is tolerated. It is what a method of order 2 lacks: this one errs by less.
+    /// The correction in units of the tolerance. This is what a method of order 2 would miss; this method has a smaller error.
     double effect()
     {
         along(0, 1, m_.other);
@@ -277,7 +278,7 @@ private:
         return FlatSystem::norm(m_.other, m_.wide);
     }
 
-    /// Along the step, beside the node of `correct`.
+    /// The nonlinearity along the step, at points other than the node of `correct`.
     double bend_along()
     {
         double bend = 0;
@@ -289,10 +290,10 @@ private:
         return bend;
     }
 
-    /// The work of linear forces, exact for any number of turns in the step: their power is quadratic in the state, so its mean
-    /// over the step is known from the mean mu of the state and its covariance L L^T: the sum of P(mu +- l_j) / 2 over the
-    /// columns of L, and (1 - their number) P(mu) (Julier, Uhlmann, Proc. IEEE 92 (2004) 401, for quadratic forms without an
-    /// error). False, with nothing booked, if forces are not linear as far as those points.
+    /// The work of linear forces, exact for any number of oscillations in the step. Their power is quadratic in the state, so its mean
+    /// over the step follows from the mean mu of the state and its covariance L L^T: the sum of P(mu +- l_j) / 2 over the columns of L,
+    /// plus (1 - their number) P(mu) (Julier, Uhlmann, Proc. IEEE 92 (2004) 401, exact for quadratic forms). Returns false, with nothing
+    /// booked, if forces are not linear as far as those points.
     bool book_by_moments()
     {
         const std::size_t n = m_.moving.size();
@@ -321,7 +322,7 @@ private:
         return false;
     }
 
-    /// The work of other forces by Boole's rule along the solution, with half a radian between points where that is possible.
+    /// The work of other forces by Boole's rule along the solution, with at most half a radian between points where possible.
     void book()
     {
         int root = MatrixExponential::kLeastRoots;
@@ -354,7 +355,7 @@ void ExponentialMemory::fit(std::size_t n)
 
 void ExponentialRows::describe(Schema& schema)
 {
-    schema.param(max_size, "max_size", unit::one, "places and speeds of a group that move, above which Radau5 is used")
+    schema.param(max_size, "max_size", unit::one, "largest number of positions and speeds that move in a group; above it Radau5 is used")
         .or_else(120)
         .at_least(1)
         .at_most(2000);
@@ -371,7 +372,7 @@ ExponentialCounts advance_by_exponential(double h, bool only_linear, std::size_t
 
 void advance_exponential(const StepContext& context, Row row, ExponentialRows& rows, DynamicSystem& system)
 {
-    const StepContext start = context;  // evaluations change the host's
+    const StepContext start = context;  // evaluations change the host's context
     ExponentialMemory& memory = rows.memory[row];
     const auto most = static_cast<std::size_t>(rows.max_size[row]);
     const ExponentialCounts counts = advance_by_exponential(start.dt, false, most, memory, system);
@@ -379,9 +380,9 @@ void advance_exponential(const StepContext& context, Row row, ExponentialRows& r
     if (counts.fine) return rows.resolved.say(start, row, "Exponential");
     rows.resolved.fall_back(start, row, Fallback::TooLarge, "Radau5",
                             counts.too_large
-                                ? "the group holds " + std::to_string(FlatSystem(system).size()) +
-                                      " numbers (places and speeds), of which more than max_size = " + std::to_string(most) + " move"
-                            : counts.sways ? "what stiff forces do beside their line changes within the step"
+                                ? "the group has " + std::to_string(FlatSystem(system).size()) +
+                                      " numbers (positions and speeds), of which more than max_size = " + std::to_string(most) + " move"
+                            : counts.sways ? "the lateral effect of stiff forces changes within the step"
                                            : "the exponential of this step overflows");
     const Radau5Counts done = advance_by_radau(start.dt, kRadauTolerance, kRadauSubsteps, memory.radau, system);
     if (is_trial(start)) return;

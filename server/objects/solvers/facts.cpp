@@ -11,9 +11,9 @@ namespace plab::solvers
 namespace
 {
 
-constexpr double kShare = 0.1;         ///< of the others' d1, counts as one's own
-constexpr double kNegligible = 1e-9;   ///< of the speeds: a d3 that changes less does not matter
-constexpr double kRounding = 0x1p-43;  ///< of a body's size a step, or of a rad: nor does this
+constexpr double kShare = 0.1;         ///< share of the others' d1 that is added to the member's own
+constexpr double kNegligible = 1e-9;   ///< relative to the speeds: a smaller d3 is irrelevant
+constexpr double kRounding = 0x1p-43;  ///< relative to a body's size per step, or to a rad: likewise irrelevant
 constexpr double kStiff = 0.5, kOverSpin = 4;
 
 double spin_of(DynamicSystem& system, std::size_t body, std::span<const double> u)
@@ -23,8 +23,8 @@ double spin_of(DynamicSystem& system, std::size_t body, std::span<const double> 
     return length(member.needle ? s : member.inverse_inertia_B * rotate_back(member.orientation, s));
 }
 
-/// Numbers [begin, end) that are judged together. `unit`: what the speeds of the last three of a body are divided by, so that turning
-/// counts as what moves at the radius of gyration `size` (m; 1 of what turns alone).
+/// Numbers [begin, end) that are judged together. `unit`: divisor of the last three speeds of a body, with which rotation counts as
+/// motion at the radius of gyration `size` (m; 1 for objects that only rotate).
 struct Member
 {
     std::size_t begin = 0, end = 0;
@@ -34,7 +34,7 @@ struct Member
 
 struct Norms
 {
-    double first = 0, third = 0, speed = 0;  ///< |d1|, |d3|, speeds and what they change by in the step
+    double first = 0, third = 0, speed = 0;  ///< |d1|, |d3|, and speeds plus their change in the step
 };
 
 class Judge
@@ -90,7 +90,7 @@ private:
         for (std::size_t i = m.begin; i < m.end; ++i)
         {
             double unit = i >= m.begin + 3 ? m.unit : 1;
-            // Quantities: relative to what they are and become.
+            // Quantities: relative to their values and changes.
             if (m.quantities) unit = std::fabs(u0_[i]) + std::fabs(h_ * k_.du[0][i]);
             if (!(unit > 0)) continue;
             add({of_first(k_.du, i) / unit, of_third(k_.du, i) / unit, (std::fabs(u0_[i]) + h_ * std::fabs(k_.du[0][i])) / unit}, speeds);
@@ -104,7 +104,7 @@ private:
     {
         const auto take = [](double value, double& most)
         {
-            if (!(value <= most)) most = value;  // a NaN stays
+            if (!(value <= most)) most = value;  // keeps a NaN
         };
         take(n.first, to.first), take(n.third, to.third), take(n.speed, to.speed);
     }

@@ -1,4 +1,4 @@
-/// What decides which method fits a group.
+/// The measured properties that decide which method is suitable for a group.
 #pragma once
 
 #include "flat_system.h"
@@ -10,17 +10,17 @@ namespace plab::solvers
 /// The largest angular speed of a body, rad/s.
 double fastest_spin(DynamicSystem& system);
 
-/// How stiff the equations look along a step of RungeKutta4, from its slopes alone: no evaluation more. Differences of the
-/// slopes are a power iteration, d1 = k2 - k1, d2 = k3 - k2 = (h/2) J d1, d3 = k4 - 2 k3 + k1 = h J d2, so |h lambda|^2 is
-/// about 2 |d3| / |d1| (Hairer, Wanner, Solving ordinary differential equations II, eq. (IV.2.26), does so for other
-/// methods). Each body and shaft is judged by itself, in the norm |du| + |dx| / h, for a stiff one shall not hide behind what
-/// moves more; quantities are judged together. Rates that are small against those of the others, or rounding, do not count.
+/// The stiffness along a step of RungeKutta4, estimated from its slopes without further evaluations. Differences of the slopes form a
+/// power iteration, d1 = k2 - k1, d2 = k3 - k2 = (h/2) J d1, d3 = k4 - 2 k3 + k1 = h J d2, so |h lambda|^2 is about 2 |d3| / |d1|
+/// (Hairer, Wanner, Solving ordinary differential equations II, eq. (IV.2.26), use this for other methods). Each body and shaft is judged
+/// separately, in the norm |du| + |dx| / h, so that a stiff one is not hidden by larger motions of others; quantities are judged
+/// together. Rates that are small compared with those of the others, or at rounding level, do not count.
 struct Stiffness
 {
-    double value = 0;       ///< |h lambda|, the largest found; infinite where slopes are not finite
-    bool too_much = false;  ///< of some member: above 0.5, and above 4 |w| h
+    double value = 0;       ///< |h lambda|, the largest value found; infinite if slopes are not finite
+    bool too_much = false;  ///< for some member: above 0.5, and above 4 |w| h
 };
-/// With `each_alone` members are judged as if there were no others: what passes then passes in any company.
+/// With `each_alone` each member is judged as if there were no others; what passes then also passes in any group.
 Stiffness stiffness_of(DynamicSystem& system, double h, const StageSlopes& slopes, bool each_alone = false);
 
 }  // namespace plab::solvers

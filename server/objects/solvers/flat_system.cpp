@@ -75,7 +75,7 @@ double FlatSystem::norm(std::span<const double> e, std::span<const double> scale
     for (std::size_t i = 0; i < e.size(); ++i)
     {
         const double part = std::fabs(e[i]) / scale[i];
-        if (!(part <= most)) most = part;  // a NaN stays
+        if (!(part <= most)) most = part;  // keeps a NaN
     }
     return most;
 }

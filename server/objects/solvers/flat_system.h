@@ -9,11 +9,11 @@
 namespace plab::solvers
 {
 
-/// What an error may be: per component absolute * unit + relative * size.
+/// The tolerated error of a component: absolute * unit + relative * size.
 ///
-/// `absolute` is in m, rad, m/s, rad/s or the quantity's own unit; angular momenta are weighed by the body's largest
-/// moment of inertia, so it means rad/s for them too. Sizes of vectors are their lengths. Coordinates start at 0 in each
-/// advance, so `relative` counts what a body moved within the advance: summed over a run, its path.
+/// `absolute` is in m, rad, m/s, rad/s or the quantity's own unit; angular momenta are divided by the body's largest moment of inertia,
+/// so it means rad/s for them, too. The size of a vector is its length. Coordinates start at 0 in each advance, so `relative` refers to
+/// the displacement within the advance; summed over a run, to the path.
 struct Tolerance
 {
     double relative = 0;
@@ -30,11 +30,11 @@ public:
     }
     std::size_t size() const { return places_ + speeds_; }
     std::size_t places() const { return places_; }
-    /// Evaluations of forces so far.
+    /// The number of force evaluations so far.
     int evaluations() const { return evaluations_; }
     /// Whether component i of y is a quantity.
     bool is_quantity(std::size_t i) const { return i >= size() - system_->quantity_count(); }
-    /// As DynamicSystem: the step is given up.
+    /// As in DynamicSystem: the step has been interrupted.
     bool interrupted() const { return system_->interrupted(); }
     bool uses_rotations() const { return system_->body_count() > 0; }
 
@@ -43,8 +43,8 @@ public:
     /// f(t, y); t in s from the start of the advance, weight as in DynamicSystem.
     void evaluate(double t, std::span<const double> y, std::span<double> f, double weight = 0);
 
-    /// `sizes`: how large each component of y is, in the sense of Tolerance, at y with rates f and over h seconds: at least
-    /// what it changes in that time, for coordinates and quantities. `units`: what absolute tolerances are multiplied by.
+    /// `sizes`: the magnitude of each component of y as used by Tolerance, at y with rates f over h seconds; for coordinates and
+    /// quantities at least their change in that time. `units`: the factors of absolute tolerances.
     void sizes(std::span<const double> y, std::span<const double> f, double h, std::span<double> sizes) const;
     void units(std::span<double> units) const;
     /// max |e_i| / (absolute * unit_i + relative * size_i).

@@ -14,7 +14,7 @@ namespace
 
 constexpr int kFixedPointIterations = 12, kNewtonIterations = 12, kJacobians = 3, kParts = 64;
 constexpr double kGoodContraction = 0.3;
-/// Rounding may stop the iteration above the tolerance; this much above is still an answer.
+/// Rounding may stop the iteration above the tolerance; up to this factor the result is accepted.
 constexpr double kNoise = 100;
 
 class Advance
@@ -28,7 +28,7 @@ public:
         flat_.units(m_.units);
     }
 
-    /// s, how far it came.
+    /// Returns the time reached, s.
     double run()
     {
         double part = h_, t = 0;
@@ -68,7 +68,7 @@ private:
         double relative = 1e-7;
         for (int attempt = 0; attempt < kJacobians; ++attempt, relative *= 1e2)
         {
-            const bool from_start = attempt != 1;  // the second one is made where the first got to
+            const bool from_start = attempt != 1;  // the second attempt starts from the result of the first
             if (from_start) m_.z = m_.y;
             flat_.evaluate(t + 0.5 * h, m_.z, m_.f);
             if (!all_finite(m_.f)) continue;
@@ -89,7 +89,7 @@ private:
         return m_.factors.factorise([this] { return flat_.interrupted(); });
     }
 
-    /// From z (Newton) or y (fixed point) until the updates are below the tolerance, or stay below what rounding explains.
+    /// Iterates from z (Newton) or y (fixed point) until the updates are below the tolerance, or remain at the level of rounding.
     bool iterate(double t, double h, bool newton)
     {
         if (!newton) m_.z = m_.y;
@@ -135,22 +135,23 @@ void ImplicitMidpointRows::describe(Schema& schema)
         .positive();
     schema.output(iterations, "iterations", unit::one, "iterations for the midpoint in the last step");
     schema.output(substeps, "substeps", unit::one,
-                  "parts that the last step was cut into so that the iteration converged; 1 where nothing is wrong");
+                  "parts into which the last step was divided so that the iteration converged; normally 1");
     schema.output(evaluations, "evaluations", unit::one, "force evaluations in the last step");
     schema.scratch(memory, "memory", "working vectors");
 }
 
 void advance_implicit_midpoint(const StepContext& context, Row row, ImplicitMidpointRows& rows, DynamicSystem& system)
 {
-    const StepContext start = context;  // evaluations change the host's
+    const StepContext start = context;  // evaluations change the host's context
     Advance advance(start.dt, rows.relative_tolerance[row], rows.memory[row], system);
     const double reached = advance.run();
     if (is_trial(start)) return;
     rows.iterations[row] = advance.iterations(), rows.substeps[row] = advance.substeps(), rows.evaluations[row] = advance.evaluations();
     if (reached >= start.dt) return;
     start.emit(row, "solver.failed", Severity::Warning,
-               "the midpoint was not found in parts of 1/64 of the step: the group stays where it was at " + rounded_text(reached) +
-                   " s of " + rounded_text(start.dt) + " s; forces that jump, or a step that is too long",
+               "the iteration for the midpoint did not converge in parts of 1/64 of the step: the group stays where it was at " +
+                   rounded_text(reached) + " s of " + rounded_text(start.dt) +
+                   " s; possible causes are discontinuous forces or a step that is too long",
                {reached, start.dt});
 }
 

@@ -1,9 +1,8 @@
 /// Solver/ImplicitMidpoint:  Z = y0 + h/2 f(h/2, Z),  y1 = 2 Z - y0.
-/// Order 2, symmetric, A-stable: no stiffness makes it explode, and none is damped (an oscillation that the step does not
-/// resolve stays, slower than it is). Symplectic where x' = u; keeps quadratic invariants of linear systems.
-/// Z is found by fixed-point iteration while that contracts well, else by simplified Newton steps with a Jacobian by
-/// differences. Where neither converges the step is halved, up to 64 parts; what remains is told by the event solver.failed
-/// and left undone.
+/// Order 2, symmetric, A-stable: stiffness never makes it unstable, and is not damped either (an oscillation that the step does not
+/// resolve remains, slowed down). Symplectic where x' = u; conserves quadratic invariants of linear systems. Z is found by fixed-point
+/// iteration while that contracts well, else by simplified Newton steps with a Jacobian by differences. If neither converges the step is
+/// halved, up to 64 parts; if that fails too, the event solver.failed reports it and the rest of the step is not made.
 /// Source: Hairer, Lubich, Wanner, Geometric numerical integration, eq. (II.1.5) and section VIII.6.
 #pragma once
 

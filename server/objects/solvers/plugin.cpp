@@ -17,8 +17,8 @@ namespace
 using namespace plab::solvers;
 using plab::Phase;
 
-// `uniform` of a solver: under uniform forces alone it treats each body by itself, so groups may be advanced together without
-// changing a bit; `elementwise`: under any.
+// `uniform` of a solver: under uniform forces alone it treats each body separately, so groups may be advanced together without changing a
+// bit; `elementwise`: under any forces.
 constexpr const char* kAdvance = "Solver/Advance";
 constexpr const char* kAdvanceDoc = "advances its group over the step";
 
@@ -88,11 +88,11 @@ void declare_adaptive(plab::Registrar& registrar)
         .command<advance_exact>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(4)
         .uniform()
-        .strengths("flight and spin without an error of the step, be it minutes long")
+        .strengths("free flight and spin without discretisation error, even in steps of minutes")
         .cost("2 force evaluations and about 1 us per body and step, whatever the step")
         .limits(
-            "other forces: RotationSplitting of order 4 is used, joints: RungeKutta4, and an event says so; a spin about an unstable "
-            "axis multiplies rounding errors as the motion itself does")
+            "other forces: RotationSplitting of order 4 is used, joints: RungeKutta4, and an event reports it; a spin about an unstable "
+            "axis amplifies rounding errors as the motion itself does")
         .source("Jacobi, Crelle 39 (1849); Celledoni, Fasso, Saefstroem, Zanna, SIAM J. Sci. Comput. 30 (2008) 2084");
     registrar.component<DormandPrince54Rows>("Solver/DormandPrince54", "explicit with error control: chooses internal steps; order 5")
         .family("Solver")
@@ -100,7 +100,7 @@ void declare_adaptive(plab::Registrar& registrar)
         .order(5)
         .strengths("a tolerance in place of a step: short where things change fast, long elsewhere")
         .cost("8 force evaluations per step where the whole step fits; 7 per internal step")
-        .limits("stiff forces: many internal steps, then max_substeps ends it; each step starts anew")
+        .limits("stiff forces: many internal steps, then max_substeps ends the attempt; each step starts without history")
         .source(
             "Dormand, Prince, J. Comput. Appl. Math. 6 (1980) 19; Hairer, Norsett, Wanner, Solving ordinary differential equations I, "
             "II.4");
@@ -118,24 +118,27 @@ void declare_adaptive(plab::Registrar& registrar)
         .command<advance_exponential>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(4)
         .strengths("stiff springs and drag at any step, with their oscillation")
-        .cost("2 n + 7 to 4 n + 7 force evaluations per step for n numbers that move, more where forces bend; an exponential of size n + 3")
+        .cost(
+            "2 n + 7 to 4 n + 7 force evaluations per step for n numbers that move, more if forces are nonlinear; an exponential of size n "
+            "+ 3")
         .limits(
-            "cost grows with n^3: above max_size, and where stiff forces sway (springs that are not held to a line), Radau5 is used; where "
-            "forces bend the energy ledger is sampled at most 128 times per step")
+            "cost grows with n^3: above max_size, and where stiff forces change their direction (springs not guided along a line), Radau5 "
+            "is used; where "
+            "forces are nonlinear the energy ledger is sampled at most 128 times per step")
         .source("Luan, Appl. Math. Lett. 65 (2017) 132; Hochbruck, Ostermann, Acta Numerica 19 (2010) 209");
     registrar
         .component<AutomaticRows>("Solver/Automatic",
-                                  "picks a method for each group by measured spin and stiffness, and says which and why")
+                                  "picks a method for each group by measured spin and stiffness, and reports which and why")
         .family("Solver")
         .command<advance_together>(Phase::Advance, "Solver/AdvanceTogether",
-                                   "advances several groups in one go where Exact or RungeKutta4 is right for all of them")
+                                   "advances several groups together if Exact or RungeKutta4 suits all of them")
         .command<advance_automatic>(Phase::Advance, kAdvance, kAdvanceDoc)
         .order(4)
         .uniform()
-        .strengths("a good choice for each group without anybody choosing")
+        .strengths("a suitable method for each group, selected automatically")
         .cost("that of the method; 7 evaluations more for stiff groups, 4 for fast spins")
         .limits(
-            "a stiff force that nothing has set in motion yet is not seen; stiff groups of more than 200 numbers whose forces bend: "
+            "a stiff force that no motion has excited yet is not detected; stiff groups of more than 200 numbers with nonlinear forces: "
             "short explicit steps")
         .source("Hairer, Wanner, Solving ordinary differential equations II, section IV.2");
 }

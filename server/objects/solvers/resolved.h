@@ -1,4 +1,4 @@
-/// What a solver says about the method that it really used.
+/// How a solver reports which method it has actually used.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 namespace plab::solvers
 {
 
-/// A trial advance finds out where bodies would be: it leaves no trace in states, outputs or events. In the ledger
-/// it may: what an event undoes is taken back by a trial of the same piece, so that solvers book in trials as ever.
+/// A trial advance finds out where bodies would be and leaves no trace in states, outputs or events. It does book to the ledger: what an
+/// event undoes is cancelled by a trial of the same part of the step, so solvers book in trials as usual.
 inline bool is_trial(const StepContext& context) { return context.events == nullptr; }
 
-/// Fallbacks that a row has told of already, as bits of a declared state, so that an event tells of each once.
+/// Fallbacks that a row has already reported, as bits of a declared state, so that an event reports each only once.
 enum class Fallback : std::int64_t
 {
     Constrained = 1,
@@ -28,10 +28,10 @@ struct ResolvedColumns
 
     void describe(Schema& schema)
     {
-        schema.output(resolved, "resolved", unit::one, "the method that was used for the last group that was advanced");
-        schema.state(announced, "announced", unit::one, "fallbacks that events told of: 1 joints, 2 forces, 4 size (a sum)").not_negative();
+        schema.output(resolved, "resolved", unit::one, "the method used for the group that was advanced last");
+        schema.state(announced, "announced", unit::one, "fallbacks reported by events: 1 joints, 2 forces, 4 size (a sum)").not_negative();
     }
-    /// To be called before the first evaluation: it emits with the context's own rows.
+    /// To be called before the first evaluation, because it emits with the context's own rows.
     void say(const StepContext& context, Row row, std::string_view method)
     {
         if (!is_trial(context) && resolved[row] != method) resolved[row].assign(method);

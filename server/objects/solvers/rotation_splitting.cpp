@@ -33,8 +33,8 @@ constexpr double kB1 = 0.209515106613362, kB2 = -0.143851773179818;
 constexpr double kC1 = kA1, kC2 = kB1 - kC1, kC3 = kA2 - kC2, kC4 = kB2 - kC3, kC5 = kA3 - kC4;
 constexpr std::array<double, 6> kOrder4{kC1, kC2, kC3, kC4, kC5, 0.5 - kC1 - kC2 - kC3 - kC4 - kC5};
 
-/// The whole free rotation. Turns about the axes one by one are no way for needles: the long axis spins as fast as what is left
-/// of a momentum that the other turns have moved about, over almost nothing.
+/// The whole free rotation in closed form. Splitting is not possible for needles: the rotation about the long axis would be driven by a
+/// remainder of the momentum, which the other rotations have displaced, divided by a tiny moment of inertia.
 void turn_freely(Spinning& body, double time)
 {
     PrincipalAxes principal;
@@ -45,7 +45,7 @@ void turn_freely(Spinning& body, double time)
     body.m = top.momentum(time);
 }
 
-/// sin and cos of half an angle, and from them the turn of a vector: no library call for the small angles of a step.
+/// Computes sin and cos of half an angle, and from them the rotation of a vector; small angles of a step need no library call.
 void turn_about(Spinning& body, int axis, double time)
 {
     const double angle = time * body.reciprocal[axis] * body.m[axis];
@@ -78,7 +78,7 @@ public:
         {
             fly(a(i), false);
             if (!uniform) kick(a(i) + a(i + 1));
-            // A flight of zero length where the palindrome turns over: the middle of the step.
+            // At the middle of the palindrome, where the flight has length zero: the middle of the step.
             if (uniform && half.size() == 1) kick(h_);
             fly(a(i + 1), true);
             if (uniform && half.size() > 1 && i + 2 == half.size()) kick(h_);
@@ -118,7 +118,7 @@ private:
         return out;
     }
 
-    /// A, B, C over `time`, or C, B, A.
+    /// The flows A, B, C over `time`, or C, B, A.
     void fly(double time, bool reversed)
     {
         const std::size_t bodies = system_.body_count();
@@ -137,7 +137,7 @@ private:
         time_ += time;
     }
 
-    /// Rotation vectors of the present attitudes, and spins of needles.
+    /// Writes the rotation vectors of the present attitudes, and the spins of needles.
     void place_rotations()
     {
         for (std::size_t i = 0; i < system_.body_count(); ++i)
@@ -150,7 +150,7 @@ private:
         }
     }
 
-    /// The speed rates of the kick. Those of needles hold their free rotation, which belongs to the flight.
+    /// The speed rates of the kick. Those of needles include their free rotation, which belongs to the flight and is removed.
     void forces(double weight, std::span<double> out)
     {
         system_.evaluate(time_, weight);
@@ -184,7 +184,7 @@ private:
             bool same = true;
             for (std::size_t k = 0; k < n; ++k) same = same && k1[k] == k2[k];
             if (same) return go(time, k1), take_momenta(start);
-            forces(-share, k2);  // takes back what was booked
+            forces(-share, k2);  // cancels the booking
             depends_on_speed_ = true;
             go(0, k1);
         }
@@ -201,7 +201,7 @@ private:
         take_momenta(start);
     }
 
-    /// The momenta in P after a kick from the speeds `before`.
+    /// The momenta in P after a kick that started from the speeds `before`.
     void take_momenta(std::span<const double> before)
     {
         for (std::size_t i = 0; i < system_.body_count(); ++i)

@@ -1,9 +1,9 @@
-/// Solver/StoermerVerlet: half a kick, a drift, half a kick.
+/// Solver/StoermerVerlet: half a kick, a drift, half a kick (velocity Verlet).
 ///   v = u0 + h/2 U(0, x0, u0),   x1 = flow of x' = X(x, v) over h,   u1 = v + h/2 U(h, x1, v + h/2 U(0, x0, u0))
-/// Order 2 for any forces: those that depend on velocity see the predicted end speed, whose error of order h^2 enters the
-/// result with another h. Symplectic where forces depend on position alone and X(x, u) on u alone (shafts, points): there
-/// the energy error of an oscillator stays bounded for h w < 2. Rotations drift by the explicit midpoint rule, with the
-/// angular momentum kept: order 2, but not symplectic (RotationSplitting is).
+/// Order 2 for any forces: forces that depend on velocity are evaluated with the predicted speed at the end, whose error of order h^2
+/// enters the result with another factor h. Symplectic if forces depend on position alone and X(x, u) on u alone (shafts, points): then
+/// the energy error of an oscillator stays bounded for h w < 2. Rotations drift by the explicit midpoint rule with constant angular
+/// momentum: order 2, but not symplectic (RotationSplitting is).
 /// Source: Hairer, Lubich, Wanner, "Geometric numerical integration illustrated by the Stoermer-Verlet method", Acta
 /// Numerica 12 (2003) 399, eq. (1.18).
 #pragma once

@@ -1,4 +1,4 @@
-/// Turning a body by hand, as position corrections do.
+/// Rotating a body directly, as position corrections do.
 #pragma once
 
 #include "plab/tables.h"
@@ -6,8 +6,8 @@
 namespace plab
 {
 
-/// Turns body i by q (W) without work: its spin turns with it. With its angular momentum left behind, a slender body would get a part
-/// of that along its thin axis, and L^2 / (2 I) with it.
+/// Rotates body i by q (in W) without doing work: its angular momentum is rotated with it. If the momentum kept its direction, a slender
+/// body would get part of it along its thin axis, and with it the energy L^2 / (2 I).
 inline void turn_without_work(Bodies& bodies, std::uint32_t i, const Quat& q)
 {
     bodies.orientation[i] = normalized(q * bodies.orientation[i]);

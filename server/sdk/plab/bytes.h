@@ -1,4 +1,4 @@
-/// Raw bytes of values: what mementos keep and hashes read. Same build only; files use their own format.
+/// Raw bytes of values, for mementos and hashes. Valid within one build only; files use a format of their own.
 #pragma once
 
 #include <cassert>
@@ -13,7 +13,7 @@
 namespace plab
 {
 
-/// A growing store of bytes; keeps its memory when cleared, so that a warm memento does not allocate.
+/// A growing buffer of bytes. clear() keeps the memory, so a memento that is in use does not allocate.
 class ByteWriter
 {
 public:
@@ -29,7 +29,7 @@ private:
     std::vector<std::uint8_t> bytes_;
 };
 
-/// Reads back what a ByteWriter wrote, in the same order.
+/// Reads what a ByteWriter wrote, in the same order.
 class ByteReader
 {
 public:

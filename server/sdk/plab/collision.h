@@ -1,4 +1,4 @@
-/// Contacts: what detection finds, resolution locates in time, and response answers.
+/// Contacts: found by a detection, located in time by a resolution, resolved by a response.
 #pragma once
 
 #include <cstdint>
@@ -11,87 +11,88 @@
 namespace plab
 {
 
-/// One point where two bodies touch or overlap. a < b in the order of component ids.
+/// One contact point of two bodies. a < b in the order of component ids.
 struct Contact
 {
     Ref a, b;
-    std::uint32_t feature = 0;  ///< which shapes and corner; stable while the same features touch
+    std::uint32_t feature = 0;  ///< identifies shapes and corner; stable while the same features touch
     Vec3 point;                 ///< W, m
     Vec3 normal;                ///< W, unit, from a to b
-    double depth = 0;           ///< m, > 0 when overlapping
+    double depth = 0;           ///< m, penetration depth; > 0 when overlapping
     // Filled by the host:
-    std::uint64_t id = 0;            ///< stable from begin to end of the contact
+    std::uint64_t id = 0;            ///< stable from the beginning to the end of the contact
     double friction = 0;             ///< Coulomb coefficient
     double restitution = 0;          ///< Newton's coefficient
-    double normal_acceleration = 0;  ///< m/s^2 of separation that the forces alone would give; < 0 presses together
-    bool resting = false;            ///< persists; not an impact
-    double approach = 0;             ///< m/s: closing speed at which it began, in the step in which it begins; else 0
-    double turning = 0;              ///< m/s: normal speed that is square to the normal of the step's end, of who moves along a curve
-    // Kept by the host from step to step, for responses that remember; changed in the last evaluation of a step only:
-    Vec3 stretch;           ///< m, W: how far a stiction spring is stretched
-    double rest_depth = 0;  ///< m: the depth at which a contact spring gives no force beyond its equilibrium
-    double preload = 0;     ///< N: the force that it gives at rest_depth
+    double normal_acceleration = 0;  ///< m/s^2 of separation under the applied forces alone; < 0 presses the bodies together
+    bool resting = false;            ///< persistent contact, not an impact
+    double approach = 0;             ///< m/s: closing speed at which the contact began; only in the step in which it begins, else 0
+    double turning = 0;              ///< m/s: part of the normal speed that is due to the curved path of a body, not to separation
+    // Kept by the host from step to step, for responses with memory; changed only in the last evaluation of a step:
+    Vec3 stretch;           ///< m, W: elongation of the stiction spring
+    double rest_depth = 0;  ///< m: the depth at which the contact spring exerts exactly its equilibrium force
+    double preload = 0;     ///< N: the equilibrium force at rest_depth
     // Filled by the response:
     Vec3 impulse;     ///< N s on b, W
     double slip = 0;  ///< m/s, tangential speed after the response
 };
 
-/// A pair that touches since before: detection moves b by `shift` before looking, and takes |shift| off the depth, so
-/// that a gap of a rounding error does not end a standing contact.
+/// A pair that has been in contact since before: the detection displaces b by `shift` before it tests, and subtracts |shift| from the
+/// depth, so that a gap of rounding size does not end a persistent contact.
 struct PersistentPair
 {
     Ref a, b;
     Vec3 shift;
 };
 
-/// Phase::Detect adds what it finds, in any order; the host sorts, so no order of a library reaches the state.
+/// Receives the contacts of Phase::Detect in any order. The host sorts them, so the order in which a library finds them does not reach
+/// the state.
 class ContactSink
 {
 public:
     virtual ~ContactSink() = default;
     virtual std::span<const PersistentPair> persistent() const = 0;
-    /// Only the standing pairs are asked for: no broad phase is needed (trial times of one pair).
+    /// Only persistent pairs are requested (trial times of one pair), so no broad phase is needed.
     virtual bool only_persistent() const { return false; }
-    /// m: contacts whose gap is up to this are wanted too, with depth < 0.
+    /// m: contacts with a gap up to this are also wanted, with depth < 0.
     virtual double margin() const { return 0; }
-    /// m, by body: how far its surface may get from where it is now. Not empty: pairs of bodies whose bounds, grown by
-    /// that, overlap are wanted by near(), and no contacts.
+    /// Motion margin, m, by body: how far its surface may move from its present place. If not empty, the caller wants pairs whose
+    /// bounding boxes overlap when expanded by this margin, by near(), and no contacts.
     virtual std::span<const double> motion_margin() const { return {}; }
     virtual void near(Ref /*a*/, Ref /*b*/) {}
-    /// normal from a to b; a and b in the order in which `precedes` says they stand.
+    /// The normal points from a to b; a and b in the order given by precedes().
     virtual void add(const Contact& contact) = 0;
-    /// What the look took beyond one pair of simple shapes for each pair of bodies, counted in such pairs: parts of a compound, triangles
-    /// gone through, a hull's vertices. The host bounds the work of a step by it.
+    /// Cost of the detection beyond one pair of simple shapes per pair of bodies, in units of such a pair: parts of a compound, triangles
+    /// tested, vertices of a hull. The host limits the work of a step by it.
     virtual void took(double /*further_pairs*/) {}
-    /// The order of two bodies by component id: pairs must be formed in it *before* a library computes contacts.
+    /// The order of two bodies by component id. Pairs must be put in this order *before* a library computes contacts.
     virtual bool precedes(Ref a, Ref b) const = 0;
 };
 
-/// Phase::Gap: how far two bodies are apart at their present poses.
+/// Phase::Gap: the distance of two bodies at their present poses.
 struct GapQuery
 {
     Ref a, b;
     // out
-    double gap = 0;            ///< m; < 0: depth of the overlap
-    Vec3 point_a, point_b;     ///< W, m: the nearest points
+    double gap = 0;            ///< m; < 0: penetration depth
+    Vec3 point_a, point_b;     ///< W, m: the closest points
     Vec3 normal;               ///< W, unit, from a to b
-    double further_pairs = 0;  ///< what it took, as ContactSink::took has it
+    double further_pairs = 0;  ///< cost, as in ContactSink::took()
 };
 
-/// Phase::Locate: a step [0, h] is known to hold an event; the resolution picks the next time to try.
+/// Phase::Locate: a step [0, h] is known to contain an event; the resolution chooses the next time to try.
 struct Trial
 {
     // in
-    double begin = 0;    ///< s, known to be clear
-    double end = 0;      ///< s, known to overlap
-    double depth = 0;    ///< m, deepest new overlap at `end`
-    double closing = 0;  ///< m/s, closing speed there
+    double begin = 0;    ///< s, known to be free of the event
+    double end = 0;      ///< s, known to be after the event (overlapping)
+    double depth = 0;    ///< m, deepest new penetration at `end`
+    double closing = 0;  ///< m/s, closing speed at `end`
     double step = 0;     ///< s, h
     int iteration = 0;   ///< trials so far
-    // Signed gaps, m (depth is a negative gap), and their rates, m/s (closing is negative); NaN: not known
+    // Signed gaps, m (a depth is a negative gap), and their rates, m/s (negative when closing); NaN: unknown
     double gap_begin = 0, gap_end = 0;
     double rate_begin = 0, rate_end = 0;
-    double last = 0, last_gap = 0, last_rate = 0;  ///< of the last trial, at s
+    double last = 0, last_gap = 0, last_rate = 0;  ///< of the last trial, at time `last` (s)
     // out
     enum class Decision : std::uint8_t
     {
@@ -105,19 +106,19 @@ struct Trial
 
 enum class ImpactMode : std::uint8_t
 {
-    Impact,  ///< bodies meet now: restitution and friction impulses; a contact that should not bounce on is set `resting`
-    Rest,    ///< contacts persist over a step: impulses that keep them from closing, with friction, without restitution
+    Impact,  ///< bodies meet now: restitution and friction impulses; a contact that should not bounce any more is set `resting`
+    Rest,    ///< contacts persist over a step: impulses with friction, without restitution, that keep the gaps from closing
 };
 
-/// Phase::Respond: the touching contacts of one group, all at one time.
+/// Phase::Respond: the contacts of one group at one time.
 struct Impact
 {
     ImpactMode mode = ImpactMode::Impact;
-    double dt = 0;  ///< s, Rest only: the step over which gaps may close
+    double dt = 0;  ///< s, Rest only: the step during which gaps may close
     std::span<Contact> contacts;
     int iterations = 0;       ///< out
-    std::int64_t visits = 0;  ///< out: contacts gone through, those of each sweep anew: what the answer took
-    double residual = 0;      ///< out: m/s, largest violation left in normal speed
+    std::int64_t visits = 0;  ///< out: number of contacts processed, counted anew in each sweep: the work of the response
+    double residual = 0;      ///< out: m/s, largest remaining violation of normal speed
     bool converged = true;    ///< out
 };
 

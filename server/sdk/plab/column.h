@@ -1,7 +1,7 @@
 /// One field of all components of a type: an array with one element per row.
 ///
-/// A plugin's table is a struct of columns; the host sizes them together and reads and writes single cells by name
-/// through ColumnBase (requests, mementos, hashes), while phase functions use the typed arrays.
+/// A plugin's table is a struct of columns. The host resizes them together, and reads and writes single cells by name through ColumnBase
+/// (requests, mementos, hashes); phase functions use the typed arrays.
 #pragma once
 
 #include <cstddef>
@@ -22,11 +22,11 @@ public:
     virtual FieldType type() const = 0;
     virtual std::size_t size() const = 0;
     virtual void resize(std::size_t rows) = 0;
-    /// Back to the element's own default; frees what an opaque object held.
+    /// Sets the element's own default and frees what an opaque object held.
     virtual void reset(Row row) = 0;
-    /// The cell as a value; an opaque cell reads as "no value".
+    /// The cell as a value; an opaque cell gives "no value".
     virtual Value get(Row row) const = 0;
-    /// Sets the cell. The value must be of this column's type (checked by whoever parsed it).
+    /// Sets the cell. The value must be of this column's type; the parser has checked it.
     virtual void set(Row row, const Value& value) = 0;
     virtual void save(Row row, ByteWriter& out) const = 0;
     virtual void load(Row row, ByteReader& in) = 0;
@@ -40,12 +40,12 @@ protected:
 template <class T>
 inline constexpr bool kIsField = kFieldTypeOf<T> != FieldType::Opaque;
 
-/// A column of T: bool, int64, double, Vec3, Quat, Mat3, string, Reals, Integers, Entries are fields that the host can
-/// read; Ref and RefList are filled by the host from roles; any other T is an opaque object of the plugin.
+/// A column of T. bool, int64, double, Vec3, Quat, Mat3, string, Reals, Integers and Entries are fields that the host can read; Ref and
+/// RefList are filled by the host from roles; any other T is an opaque object of the plugin.
 template <class T>
 class Column final : public ColumnBase
 {
-    // vector<bool> has no references; a truth value takes a byte.
+    // std::vector<bool> has no references, so a truth value is stored in a byte.
     struct Cell
     {
         T value{};

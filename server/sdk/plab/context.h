@@ -1,9 +1,10 @@
-/// What a phase function may ask of the host: time, who is being advanced, events.
+/// What a phase function can ask of the host: time, the set of objects being advanced, events.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,20 +22,30 @@ enum class Severity : std::uint8_t
 {
     Info,
     Warning,
-    Failure,  ///< the component is quarantined; the rest of the scene goes on
+    Failure,  ///< the component is quarantined; the rest of the scene continues
 };
 
-/// Something that happened in a step, in order of occurrence.
+/// Where two bodies met, and the impulse between them. In W, SI units.
+struct EventContact
+{
+    Vec3 point;        ///< m
+    Vec3 normal;       ///< unit, from a to b
+    Vec3 impulse;      ///< N s, on b; zero where the kind of event has none
+    double depth = 0;  ///< m, of the overlap; < 0: a gap
+};
+
+/// Something that happened in a step; events are in order of occurrence.
 struct Event
 {
     Tick tick = 0;     ///< step in which it happened
     double time = 0;   ///< s, exact within the step
-    std::string kind;  ///< "contact.begin", "script.error", ... : a dotted word
+    std::string kind;  ///< "contact.begin", "script.error", ...: words separated by a dot
     Severity severity = Severity::Info;
-    std::uint32_t component = kNoIndex;  ///< directory index of whom it is about
-    Ref a, b;                            ///< participants, where there are any
-    std::string message;                 ///< for people; may be empty
-    std::vector<double> values;          ///< e.g. a contact's point and normal, a script's figures
+    std::uint32_t component = kNoIndex;   ///< directory index of the component concerned
+    Ref a, b;                             ///< participants, where there are any
+    std::string message;                  ///< human-readable; may be empty
+    std::optional<EventContact> contact;  ///< of the kinds "contact.begin", "impact", "rest", "release", "paradox"
+    std::vector<double> values;           ///< other figures, such as those of a script; a meaning for each kind
 };
 
 class EventSink
@@ -44,7 +55,7 @@ public:
     virtual void emit(Event event) = 0;
 };
 
-/// A parameter change that a script asks for in drive; the host applies it when the drive phase is over.
+/// A parameter change requested by a script in the drive phase; the host applies it at the end of that phase.
 struct ParameterChange
 {
     std::string component;  ///< id
@@ -52,15 +63,15 @@ struct ParameterChange
     Value value;
 };
 
-/// Of a long list of participants, those that are being advanced: so that a field over ten thousand bodies costs a group
-/// of one no more than one.
+/// The members of a long list of participants that are being advanced, so that the cost of a field over ten thousand bodies is
+/// proportional to the group that is advanced.
 struct Shortlist
 {
     const RefList* all = nullptr;
     RefList active;
 };
 
-/// Time and scope of one call. `time` is the solver stage's own.
+/// Time and scope of one call. `time` is that of the solver's stage.
 struct StepContext
 {
     double time = 0;  ///< s
@@ -69,7 +80,7 @@ struct StepContext
     std::uint64_t seed = 0;
     EventSink* events = nullptr;
     std::vector<ParameterChange>* changes = nullptr;  ///< drive phase only
-    const Interruption* interruption = nullptr;       ///< what may take long asks interrupted() now and then
+    const Interruption* interruption = nullptr;       ///< long computations should check interrupted() now and then
 
     std::span<const std::uint32_t> component_of_row;  ///< directory index of each row of this table
     std::span<const std::uint32_t> facet_of_row;      ///< host table index of each row, where the type has a facet
@@ -78,23 +89,23 @@ struct StepContext
 
     std::span<const Shortlist> shortlists;  ///< by address of `all`
 
-    /// The participants of a list that is a column's cell, or those of them that may be active, in the same order.
+    /// The participants in a list (a column's cell), or only those that may be active, in the same order.
     std::span<const Ref> among(const RefList& all) const
     {
         const auto before = [](const Shortlist& s, const RefList* list) { return std::less<>()(s.all, list); };
         const auto found = std::lower_bound(shortlists.begin(), shortlists.end(), &all, before);
         return found != shortlists.end() && found->all == &all ? found->active : all;
     }
-    /// Whether r is being advanced now. Forces on others are wasted work; adding them does no harm.
+    /// Whether r is being advanced now. Forces on other objects have no effect, so computing them is wasted work.
     bool active(Ref r) const
     {
         if (r.facet == Facet::Body) return active_bodies.empty() || active_bodies[r.index] != 0;
         if (r.facet == Facet::Shaft) return active_shafts.empty() || active_shafts[r.index] != 0;
         return true;
     }
-    /// The step is given up: whoever is at work leaves off, with whatever numbers there are. Nobody will see them.
+    /// The step has been interrupted: return at once, whatever the values are. The host discards them.
     bool interrupted() const { return interruption && interruption->due(); }
-    /// An event about the component of `row`.
+    /// Emits an event about the component of `row`.
     void emit(Row row, std::string kind, Severity severity, std::string message, std::vector<double> values = {}) const
     {
         if (!events) return;

@@ -1,4 +1,4 @@
-/// The convex hull of points, as triangles: what Shape/ConvexHull is and what a mesh collides as.
+/// The convex hull of points, as triangles: the geometry of Shape/ConvexHull, and the collision geometry of a mesh.
 #pragma once
 
 #include <algorithm>
@@ -17,29 +17,30 @@
 namespace plab
 {
 
-/// A closed convex polyhedron. normals[f] . p <= offsets[f] for all points p inside, to the tolerance of its making.
+/// A closed convex polyhedron. For all points p inside, normals[f] . p <= offsets[f], up to the tolerance of its construction.
 struct ConvexHull
 {
-    std::vector<Vec3> vertices;                        ///< only those on the hull, in the order in which they were given
+    std::vector<Vec3> vertices;                        ///< only those on the hull, in their original order
     std::vector<std::array<std::uint32_t, 3>> faces;   ///< counter-clockwise seen from outside
-    std::vector<std::array<std::uint32_t, 3>> beside;  ///< the face across the edge from corner i to the next
+    std::vector<std::array<std::uint32_t, 3>> beside;  ///< the face across the edge from corner i to the next corner
     std::vector<Vec3> normals;                         ///< unit, outwards, one per face
     std::vector<double> offsets;
 };
 
-/// Quickhull (Barber, Dobkin, Huhdanpaa, ACM TOMS 22, 1996): grows a tetrahedron until no point is outside. Faces that a
-/// new point lies in the plane of go with those that it sees, so no sliver is made of points on one line. Of many points
-/// only where there would be one: a flat rim of n points must not be covered anew n times.
+/// Quickhull (Barber, Dobkin, Huhdanpaa, ACM TOMS 22, 1996): expands a tetrahedron until no point is outside. A new point replaces the
+/// faces that it sees and also those in whose plane it lies, so that no sliver of nearly collinear points arises. If there are many
+/// points, coplanar faces are replaced only where a sliver would arise; otherwise each of the n points of a flat rim would cause the
+/// whole rim to be triangulated again.
 class Quickhull
 {
 public:
     Quickhull(std::span<const Vec3> points, double tolerance) : points_(points), tolerance_(tolerance) {}
 
-    /// False: the points do not span a volume.
+    /// False if the points do not span a volume.
     bool start();
-    /// False: rounding made the hull fold over; a larger tolerance may do.
+    /// False if the hull folded over because of rounding; a larger tolerance may help.
     bool grow();
-    /// Whether it is closed and nothing that was looked at is more than `most` (m) above a face: rounding may have folded what grew.
+    /// Whether the hull is closed and no tested point is more than `most` (m) above a face. Rounding may have folded the hull.
     bool is_convex(double most) const;
     ConvexHull result() const;
 
@@ -51,7 +52,7 @@ private:
         std::array<Index, 3> corner;
         Vec3 normal;
         double offset = 0;
-        std::vector<Index> outside;  ///< points above this face that no other face has taken
+        std::vector<Index> outside;  ///< points above this face that are assigned to no other face
         bool alive = true;
     };
 
@@ -94,7 +95,7 @@ inline bool Quickhull::start()
     if (d3 <= tolerance_) return false;
 
     Index a = i1, b = i2;
-    if (dot(n, points_[i3] - p0) > 0) std::swap(a, b);  // the base looks away from the fourth point
+    if (dot(n, points_[i3] - p0) > 0) std::swap(a, b);  // the base faces away from the fourth point
     if (!add_face(0, a, b) || !add_face(0, b, i3) || !add_face(b, a, i3) || !add_face(a, 0, i3)) return false;
     for (Index i = 0; i < points_.size(); ++i) assign(i, 0);
     return true;
@@ -122,7 +123,7 @@ inline void Quickhull::assign(Index point, std::size_t first_face)
     }
 }
 
-/// The patch of faces that make room for `eye`: those it sees, and as a rule those whose plane it lies in.
+/// Collects the patch of faces to be replaced by a cone to `eye`: those that it sees, and usually those in whose plane it lies.
 inline bool Quickhull::collect_visible(std::size_t seed, Index eye)
 {
     constexpr std::size_t kMany = 256;
@@ -134,7 +135,7 @@ inline bool Quickhull::collect_visible(std::size_t seed, Index eye)
     return collect_above(seed, eye, -tolerance_);
 }
 
-/// The connected patch of faces that `eye` lies more than `least` above, from the face `seed`.
+/// Collects the connected patch of faces over whose planes `eye` lies by more than `least`, starting from the face `seed`.
 inline bool Quickhull::collect_above(std::size_t seed, Index eye, double least)
 {
     visible_.assign(1, seed);
@@ -154,10 +155,11 @@ inline bool Quickhull::collect_above(std::size_t seed, Index eye, double least)
     return true;
 }
 
-/// Whether an edge of the visible patch's rim and `eye` lie nearly on a line.
+/// Whether `eye` is nearly collinear with an edge of the visible patch's rim.
 inline bool Quickhull::leaves_sliver(Index eye) const
 {
-    constexpr double kThin = 1e-8;  // height of the triangle, of its longest side: a face in the plane beside it then agrees to 1e-8
+    constexpr double kThin =
+        1e-8;  // height of the triangle relative to its longest side: the face then agrees with a coplanar neighbour to 1e-8
     for (const std::size_t v : visible_)
     {
         const auto corner = faces_[v].corner;
@@ -178,7 +180,7 @@ inline void Quickhull::restore_visible()
     for (const std::size_t v : visible_) faces_[v].alive = true;
 }
 
-/// Fills the hole that the visible patch leaves with a cone of faces to `eye`; its rim must be one closed line.
+/// Fills the hole left by the visible patch with a cone of faces to `eye`; the rim must be one closed line.
 inline bool Quickhull::replace_visible(Index eye)
 {
     const std::size_t first_new = faces_.size();
@@ -241,8 +243,8 @@ inline bool Quickhull::is_convex(double most) const
     return std::all_of(faces_.begin(), faces_.end(), [&](const Face& f) { return !f.alive || is_below(f); });
 }
 
-/// Points that each face is held against: all while that is cheap, else the furthest in 26 directions, which a face that leans far off
-/// is seldom above.
+/// The points against which faces are tested: all of them while that is cheap, else the extreme points in 26 directions, which a badly
+/// tilted face rarely contains.
 inline std::vector<Quickhull::Index> Quickhull::witnesses_of_folds() const
 {
     constexpr std::size_t kCheap = 10'000'000;
@@ -287,9 +289,9 @@ inline ConvexHull Quickhull::result() const
     return hull;
 }
 
-/// Points within 1e-12 of the extent above a face count as on it and are dropped (up to 1e-8 for points that rounding
-/// makes awkward); so the hull is right to that, and no corner is further above a neighbour's face than 1e-9 of it (1e-7 at the worst).
-/// Fails for points that do not span a volume, with the reason.
+/// Points within 1e-12 of the extent above a face count as on it and are dropped (up to 1e-8 for point sets that are difficult to round).
+/// The hull has that accuracy, and no corner is further above a neighbour's face than 1e-9 of the extent (1e-7 at worst). Fails with the
+/// reason if the points do not span a volume.
 inline Result<ConvexHull> make_convex_hull(std::span<const Vec3> points)
 {
     if (points.size() < 4) return reason("a hull needs at least 4 vertices, not " + std::to_string(points.size()));
@@ -305,7 +307,7 @@ inline Result<ConvexHull> make_convex_hull(std::span<const Vec3> points)
         if (!hull.start()) return reason("the vertices lie in a plane: their hull has no volume");
         if (hull.grow() && hull.is_convex(std::max(1e-9, 10 * tolerance) * extent)) return hull.result();
     }
-    return reason("the vertices are too nearly in planes and lines for a hull of 1e-8 of their extent; fewer vertices would do");
+    return reason("the vertices are too close to common planes and lines for a hull accurate to 1e-8 of their extent; use fewer vertices");
 }
 
 }  // namespace plab

@@ -13,21 +13,20 @@ namespace plab
 struct JacobiValues
 {
     double sn = 0, cn = 1, dn = 1;
-    double cn_defect = 0, dn_defect = 0;  ///< 1 - cn, 1 - dn: small arguments need them to full relative precision
+    double cn_defect = 0, dn_defect = 0;  ///< 1 - cn and 1 - dn, needed to full relative precision for small arguments
 };
 
-/// The functions for one parameter. It is given as its complement k'^2 = 1 - k^2, because near the separatrix that is
-/// the number that matters. The descent by arithmetic-geometric means is done once; each value then costs one sine, one
-/// cosine and two divisions per level (at most 9). Small arguments use Maclaurin's series and up to two doublings.
-/// Sources: Bulirsch, "Numerical calculation of elliptic integrals and elliptic functions", Numer. Math. 7 (1965) 78-90;
-/// Abramowitz, Stegun, 16.22 and 16.18.
+/// The functions for one parameter, which is given as its complement k'^2 = 1 - k^2, because that is the number that matters near the
+/// separatrix. The descent by arithmetic-geometric means is done once; each value then costs one sine, one cosine and two divisions per
+/// level (at most 9). Small arguments use the Maclaurin series and up to two doublings. Sources: Bulirsch, "Numerical calculation of
+/// elliptic integrals and elliptic functions", Numer. Math. 7 (1965) 78-90; Abramowitz, Stegun, 16.22 and 16.18.
 class EllipticModulus
 {
 public:
-    /// complement = k'^2, cut to [0, 1].
+    /// complement = k'^2, clamped to [0, 1].
     explicit EllipticModulus(double complement);
     JacobiValues at(double u) const;
-    /// K: sn has the period 4K, dn the period 2K. Infinite at the separatrix.
+    /// K: sn has the period 4K and dn the period 2K. Infinite at the separatrix.
     double quarter_period() const { return quarter_period_; }
 
 private:
@@ -35,7 +34,7 @@ private:
 
     static constexpr int kLevels = 14;
     double parameter_ = 0;                      ///< k^2
-    std::array<double, 5> sn_{}, cn_{}, dn_{};  ///< Maclaurin's coefficients of u^2 .. u^10 in sn(u) / u, 1 - cn, 1 - dn
+    std::array<double, 5> sn_{}, cn_{}, dn_{};  ///< Maclaurin coefficients of u^2 .. u^10 in sn(u) / u, 1 - cn, 1 - dn
     std::array<double, kLevels> arithmetic_{}, geometric_{};
     int levels_ = 0;
     double mean_ = 1;
@@ -68,7 +67,7 @@ inline EllipticModulus::EllipticModulus(double complement)
         arithmetic_[static_cast<std::size_t>(levels_)] = a, geometric_[static_cast<std::size_t>(levels_)] = g;
         ++levels_;
         mean_ = 0.5 * (a + g);
-        if (std::fabs(a - g) <= 1e-8 * a) break;  // the next mean agrees to rounding: the descent is quadratic
+        if (std::fabs(a - g) <= 1e-8 * a) break;  // the next mean is exact to rounding, because the descent converges quadratically
         g *= a, a = mean_;
     }
     quarter_period_ = 0.5 * std::numbers::pi / mean_;
@@ -86,7 +85,7 @@ inline JacobiValues EllipticModulus::at(double u) const
 {
     if (std::fabs(u) <= 0.2)
     {
-        // The series end with u^10: to rounding for |u| <= 0.05, as all poles are at least pi/2 away.
+        // The series end with u^10, which is exact to rounding for |u| <= 0.05 because all poles are at least pi/2 away.
         const int doublings = std::fabs(u) <= 0.05 ? 0 : (std::fabs(u) <= 0.1 ? 1 : 2);
         JacobiValues v = series(doublings == 0 ? u : (doublings == 1 ? 0.5 * u : 0.25 * u));
         for (int i = 0; i < doublings; ++i)

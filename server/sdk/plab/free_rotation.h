@@ -22,26 +22,26 @@ struct PrincipalAxes
     Vec3 reciprocal;  ///< 1/(kg m^2)
 };
 
-/// By Jacobi's rotations; free for a body whose frame is principal already. Small moments of a needle are taken from the
-/// inverse inertia, which knows them to full precision.
+/// Computed by Jacobi rotations, which costs nothing if the body's frame is principal already. The small moments of a needle are taken
+/// from the inverse inertia, which has them to full precision.
 PrincipalAxes principal_axes(const RigidMember& member);
 /// The same frame with its axes in the order of ascending moments.
 PrincipalAxes ascending(const PrincipalAxes& body);
 
 /// Free rotation that starts with the angular momentum m in P.
 ///
-/// Euler's equations m' = m x w, w_i = m_i / I_i: by Jacobi's functions and their addition theorem, written so that no
-/// amplitude is divided by: spheres, symmetric tops, rotations about an axis and the separatrix are no special cases.
-/// With a > b > c the reciprocal moments, and when the motion circles axis a:
+/// The solution of Euler's equations m' = m x w, w_i = m_i / I_i in Jacobi's elliptic functions, by their addition theorem. It is written
+/// without dividing by an amplitude, so spheres, symmetric tops, rotations about an axis and the separatrix are not special cases. With a
+/// > b > c the reciprocal moments, and for a motion that circles axis a:
 ///   l^2 = (a-b) (a-c) m_a^2 + (a-b) (b-c) m_b^2,   l^2 k'^2 = (a-c) ((a-b) m_a^2 - (b-c) m_c^2),   s = sn(l t) / l,
 ///   m_b(t) = (m_b cn dn + (a-c) m_a m_c s) / D,    D = cn^2 + (a-b) (a-c) m_a^2 s^2,
 ///   m_c(t) = (m_c cn - (a-b) m_a m_b s dn) / D,    m_a(t) = (m_a dn - (b-c) m_b m_c s cn) / D.
-/// Attitude: the shortest turns p(m) that take m to the axis that is circled, and between them a twist about it,
-///   Q(t) = p(m(0))^-1 twist(psi) p(m(t)),   psi' = (2 T + |L| w_a) / (|L| + m_a),
-/// whose integrand is analytic in a strip of half width pi/2 (in l t) or more about the real axis, so that Gauss'
-/// quadrature gets it to rounding with few nodes; whole periods by the trapezoidal rule.
-/// Sources: Jacobi, Crelle 39 (1849); van Zon, Schofield, J. Comput. Phys. 225 (2007) 145; Celledoni, Fasso, Saefstroem,
-/// Zanna, SIAM J. Sci. Comput. 30 (2008) 2084 (the rotation as two charts and one angle).
+/// The attitude is composed of the shortest rotations p(m) that take m to the circled axis, and a twist about that axis between them,
+///   Q(t) = p(m(0))^-1 twist(psi) p(m(t)),   psi' = (2 T + |L| w_a) / (|L| + m_a).
+/// The integrand psi' is analytic in a strip about the real axis of half width pi/2 or more (in l t), so Gaussian quadrature is exact to
+/// rounding with few nodes; whole periods use the trapezoidal rule.
+/// Sources: Jacobi, Crelle 39 (1849); van Zon, Schofield, J. Comput. Phys. 225 (2007) 145; Celledoni, Fasso, Saefstroem, Zanna, SIAM J.
+/// Sci. Comput. 30 (2008) 2084 (the rotation as two charts and one angle).
 class FreeTop
 {
 public:
@@ -50,7 +50,7 @@ public:
 
     /// Angular momentum in P after t seconds, N m s.
     Vec3 momentum(double t) const { return direction_at(t) * size_; }
-    /// Takes vectors in P at time t to P at time 0.
+    /// The rotation that takes vectors in P at time t to P at time 0.
     Quat turn(double t) const;
 
 private:
@@ -58,7 +58,7 @@ private:
     {
         double s, cn, dn;
         double inverse_divisor;               ///< 1 / D
-        bool small;                           ///< a small part of a turn: the differences below are used
+        bool small;                           ///< a small part of a revolution: the differences below are used
         double cn_lack, dn_lack, cn_dn_lack;  ///< D - cn, D - dn, D - cn dn
         /// (own * factor + mixed) / D
         double component(double own, double factor, double lack, double mixed) const
@@ -92,7 +92,7 @@ namespace free_rotation
 
 inline double off_diagonal(const Mat3& a) { return std::fabs(a(0, 1)) + std::fabs(a(0, 2)) + std::fabs(a(1, 2)); }
 
-/// One of Jacobi's rotations: makes a(p, q) zero. Golub, Van Loan, Matrix computations, algorithm 8.5.1.
+/// One Jacobi rotation: makes a(p, q) zero. Golub, Van Loan, Matrix computations, algorithm 8.5.1.
 inline void rotate_away(Mat3& a, Mat3& axes, int p, int q)
 {
     if (a(p, q) == 0) return;
@@ -123,7 +123,7 @@ inline constexpr std::array<double, 5> kNode10{0.148874338981631210884826, 0.433
 inline constexpr std::array<double, 5> kWeight10{0.295524224714752870173815, 0.269266719309996355091227, 0.219086362515982043995535,
                                                  0.149451349150580593145863, 0.066671344308688137593569};
 
-/// Nodes for an interval of the given length in l t: the error falls as rho^-2n with rho from the ellipse through pi/2 i.
+/// The rule for an interval of the given length in l t: the error decreases as rho^-2n, with rho from the ellipse through pi/2 i.
 inline GaussRule rule_for(double length)
 {
     if (length <= 0.05) return {kNode4, kWeight4};
@@ -175,7 +175,7 @@ inline PrincipalAxes ascending(const PrincipalAxes& body)
 
 inline FreeTop::FreeTop(const PrincipalAxes& body, const Vec3& m)
 {
-    // The direction and the rates |L| / I are all that the motion depends on; scaled so, nothing over- or underflows.
+    // The motion depends only on the direction of m and on the rates |L| / I. With this scaling nothing overflows or underflows.
     const double largest = std::max({std::fabs(m.x), std::fabs(m.y), std::fabs(m.z)});
     if (!(largest > 0)) return;
     const Vec3 scaled = m / largest;
@@ -193,7 +193,7 @@ inline FreeTop::FreeTop(const PrincipalAxes& body, const Vec3& m)
     const double fast = std::sqrt(ab) * std::fabs(n_[a]), slow = std::sqrt(bc) * std::fabs(n_[c]);
     const bool circles_fast = fast >= slow;
     circled_ = circles_fast ? a : c, middle_ = b, other_ = circles_fast ? c : a;
-    const double near = circles_fast ? ab : bc, far = circles_fast ? bc : ab;  // gaps of the middle axis to either side
+    const double near = circles_fast ? ab : bc, far = circles_fast ? bc : ab;  // gaps of the middle axis to both sides
     const double axial = n_[circled_];
     const double lambda2 = near * ac * axial * axial + near * far * n_[b] * n_[b];
     lambda_ = std::sqrt(lambda2);
@@ -207,9 +207,9 @@ inline FreeTop::FreeTop(const PrincipalAxes& body, const Vec3& m)
     steady_ = !(k2_lambda2 > 1e-18 * lambda2);
 }
 
-// For a small part of a turn, new components are old ones plus differences: rounding errors of sn, cn, dn are the same in
-// each step of a run, and would add up in one direction if they were not multiplied by something small. For a large one D
-// may be small, and must not be had as a difference.
+// For a small part of a revolution the new components are computed as the old ones plus differences. The rounding errors of sn, cn, dn
+// are the same in each step of a run, and would accumulate in one direction if they were not multiplied by something small. For a large
+// part D may be small and must not be computed as a difference.
 inline FreeTop::Values FreeTop::values_at(double t) const
 {
     const double u = lambda_ * t;

@@ -1,4 +1,4 @@
-/// The word by which work that takes long is given up: asked for by a signal, a client or a deadline, looked at by the work itself.
+/// The signal that interrupts long computations: set by a signal handler, a client or a deadline, and polled by the computation.
 #pragma once
 
 #include <atomic>
@@ -8,28 +8,28 @@
 namespace plab
 {
 
-/// Asked for on any thread or in a signal handler; never taken back. Who looks and finds it due leaves off at once, wherever
-/// that leaves the numbers: the host gives up the whole step, and the world is as it was where the step began. So the moment at
-/// which it comes is no part of the state's course.
+/// Can be set on any thread or in a signal handler, and is never withdrawn. A computation that finds it due returns at once, whatever
+/// state its values are in. The host then discards the whole step and restores the world to the start of the step, so the moment of the
+/// interruption does not influence the state.
 class Interruption
 {
 public:
     Interruption() = default;
-    /// Due where the other one is, too.
+    /// Also due whenever the other one is due.
     explicit Interruption(const Interruption* also) : also_(also) {}
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
 
-    /// Work in hand is to end when `grace` is over; what is done by then is done. The earliest counts.
+    /// Requests that work in progress ends after `grace`; what is completed by then is valid. The earliest request counts.
     void ask(std::chrono::nanoseconds grace = {}) noexcept
     {
         const std::int64_t at = now() + grace.count();
         std::int64_t before = at_.load(std::memory_order_relaxed);
         while (at < before && !at_.compare_exchange_weak(before, at, std::memory_order_release, std::memory_order_relaxed)) continue;
     }
-    /// Whether anybody asked; it may not be due yet.
+    /// Whether an interruption was requested; it may not be due yet.
     bool asked() const noexcept { return at_.load(std::memory_order_relaxed) != kNever || (also_ && also_->asked()); }
-    /// Whether to leave off now. Costs a load where nobody asked.
+    /// Whether to return now. Costs one load if nothing was requested.
     bool due() const noexcept
     {
         const std::int64_t at = at_.load(std::memory_order_relaxed);
@@ -37,9 +37,9 @@ public:
         heeded_.store(true, std::memory_order_relaxed);
         return true;
     }
-    /// Whether somebody found it due, and left something undone.
+    /// Whether a computation found it due and left work unfinished.
     bool heeded() const noexcept { return heeded_.load(std::memory_order_relaxed); }
-    /// Before the next piece of work.
+    /// To be called before the next computation.
     void forget_heeded() const noexcept { heeded_.store(false, std::memory_order_relaxed); }
 
 private:

@@ -1,4 +1,4 @@
-/// Islands: bodies and shafts that contacts and one-sided rows hold together, as a manager steps them.
+/// Islands: bodies and shafts connected by contacts and one-sided rows, which a manager advances together.
 #pragma once
 
 #include <span>
@@ -10,42 +10,42 @@
 namespace plab
 {
 
-/// How a manager moves its island. Forces are those of the state at the start of the step.
+/// The operations by which a manager moves its island. Forces are those of the state at the start of the step.
 class IslandMotion
 {
 public:
     virtual ~IslandMotion() = default;
-    /// Speeds change by what the forces do in h (s); gyroscopic terms are taken at the present attitude.
+    /// Changes the speeds by the effect of the forces during h (s); gyroscopic terms are taken at the present attitude.
     virtual void kick(double h) = 0;
-    /// Poses and angles move for h (s) with the present speeds.
+    /// Moves poses and angles for h (s) with the present speeds.
     virtual void move(double h) = 0;
-    /// The same with the mean of the present speeds and those before the last kick: exact for constant deceleration.
+    /// The same with the mean of the present speeds and those before the last kick, which is exact for constant acceleration.
     virtual void move_mean(double h) = 0;
-    /// Rows anew at the present state: Jacobians, errors, rates; impulses are kept.
+    /// Recomputes the rows at the present state (Jacobians, errors, rates); impulses are kept.
     virtual void refresh_rows() = 0;
-    /// Contact depth anew at the present state, from where the two surface points have moved; normals are kept.
+    /// Recomputes the contact depths at the present state from the motion of the two surface points; normals are kept.
     virtual void refresh_depths() = 0;
 };
 
-/// Phase::Solve: one step of length h. Everything that moves between start and end is in here; bodies that are not
-/// members have mobility 0. The manager leaves poses and speeds at the end of the step in the host tables.
+/// Phase::Solve: one step of length h. It contains everything that moves during the step; bodies that are not members have mobility 0.
+/// The manager leaves poses and speeds at the end of the step in the host tables.
 struct Island
 {
     double h = 0;                            ///< s
     double time = 0;                         ///< s, at the start of the step
-    double size = 0;                         ///< m, the least radius of gyration of its bodies: what is small is small beside it
+    double size = 0;                         ///< m, the smallest radius of gyration of its bodies: a reference for what counts as small
     std::span<const std::uint32_t> bodies;   ///< dynamic members, host rows, in id order
     std::span<const std::uint32_t> shafts;   ///< dynamic members that carry coordinates (roots of trains), in id order
     std::span<const double> shaft_mobility;  ///< by host row: 1/(kg m^2) of the train that the shaft carries
-    std::span<ConstraintRow> rows;           ///< joints, limits, motors: in id order; shafts stand for their roots
+    std::span<ConstraintRow> rows;           ///< joints, limits, motors: in id order; shafts are represented by their roots
     std::span<Contact> contacts;             ///< sorted by pair and feature; depth < 0: a gap that may close
     IslandMotion* motion = nullptr;
-    const Interruption* interruption = nullptr;  ///< asked in each sweep, factorisation and part of the step
+    const Interruption* interruption = nullptr;  ///< to be checked in each sweep, factorisation and part of the step
     // out
     int iterations = 0;   ///< sweeps, or pivots of a direct method
-    double residual = 0;  ///< m/s: largest violation left of what the contact law and the rows ask of speeds
+    double residual = 0;  ///< m/s: largest remaining violation of the speeds that contact law and rows require
     bool converged = true;
-    bool fell_back = false;  ///< another algorithm than the one asked for had to finish
+    bool fell_back = false;  ///< the requested algorithm failed and another one finished the step
 
     bool interrupted() const { return interruption && interruption->due(); }
 };

@@ -1,4 +1,4 @@
-/// What a step can compute with: squares of states, and products of what a blueprint gives, must stay within a double.
+/// Magnitudes with which a step can compute: squares of states, and products of given parameters, must be finite doubles.
 #pragma once
 
 #include <cmath>
@@ -8,14 +8,14 @@
 namespace plab
 {
 
-/// Numbers in blueprints and requests, in SI units: no larger than this in size.
+/// Largest magnitude of numbers in blueprints and requests, in SI units.
 inline constexpr double kLargestGiven = 1e100;
-/// What must be positive is at least this: something is divided by it.
+/// Smallest value of numbers that must be positive, because something is divided by them.
 inline constexpr double kLeastGiven = 1e-100;
-/// A state beyond this has no finite square: who has it is taken out of the step (state.not_finite).
+/// The square of a larger state would overflow; an object with such a state is taken out of the step (state.not_finite).
 inline constexpr double kLargestState = 1e150;
 
-/// False for nan and inf, too.
+/// Also false for nan and inf.
 inline bool is_computable(double x) { return std::fabs(x) <= kLargestState; }
 inline bool is_computable(const Vec3& v) { return is_computable(v.x) && is_computable(v.y) && is_computable(v.z); }
 

@@ -1,4 +1,4 @@
-/// Numbers in messages. std::to_string(double) prints 1e-13 as 0.000000 and 1e300 with 301 digits: it is not for messages.
+/// Numbers in messages. std::to_string(double) prints 1e-13 as 0.000000 and 1e300 with 301 digits, so it is not used for messages.
 #pragma once
 
 #include <charconv>
@@ -9,7 +9,7 @@
 namespace plab
 {
 
-/// The shortest decimal text that reads back as `value`: for what somebody gave.
+/// The shortest decimal text that parses back to `value`: for given numbers.
 inline std::string number_text(double value)
 {
     char text[32];
@@ -17,7 +17,7 @@ inline std::string number_text(double value)
     return {text, end};
 }
 
-/// `value` to `digits` significant digits, with a power of ten where it is large or small: for what was measured.
+/// `value` with `digits` significant digits and a power of ten if it is large or small: for measured numbers.
 inline std::string rounded_text(double value, int digits = 3)
 {
     char text[64];

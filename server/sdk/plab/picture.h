@@ -1,4 +1,4 @@
-/// What a drawing component (Phase::Draw) sees, and where its pictures go.
+/// The input of a drawing component (Phase::Draw), and the receiver of its pictures.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 namespace plab
 {
 
-/// One thing to be drawn, as it is now.
+/// One visible object in its present state.
 struct Visual
 {
-    const Geometry* geometry = nullptr;  ///< null: a shaft that has no shape; then `size` is that of a plain axle
-    Pose pose;                           ///< X_WS, the shape's pose in its object included
+    const Geometry* geometry = nullptr;  ///< null: a shaft without a shape; `size` is then that of a plain axle
+    Pose pose;                           ///< X_WS, including the shape's pose in its object
     Vec3 size;                           ///< axle: x radius, z half length, m
     Vec3 color{0.7, 0.7, 0.75};          ///< red, green, blue: 0 to 1
     std::uint32_t shape = kNoIndex;      ///< row of Shapes: equal numbers are equal geometry
@@ -42,9 +42,9 @@ class ImageSink
 {
 public:
     virtual ~ImageSink() = default;
-    /// Whether anybody looks at pictures now; a component that only shows need not draw if nobody does.
+    /// Whether any client wants pictures now; if not, a component that only draws can skip its work.
     virtual bool wanted() const = 0;
-    /// `rgba`: 4 bytes a pixel, rows from the top.
+    /// `rgba`: 4 bytes per pixel, rows from the top.
     virtual void show(std::uint32_t component, std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) = 0;
 };
 

@@ -1,4 +1,4 @@
-/// The entry of a plugin: a stamp that the loader checks before it touches anything else, and a register function.
+/// The entry of a plugin: a stamp that the loader checks before anything else, and a function that registers its types.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace plab
 
 inline constexpr std::uint32_t kSdkVersion = 1;
 
-/// Changes whenever a structure that crosses the plugin boundary changes its size: a plugin that was built against
-/// other headers or with flags that change layout is refused by name instead of crashing.
+/// Changes whenever a structure that crosses the plugin boundary changes its size. A plugin built with other headers, or with flags that
+/// change the layout, is refused by name instead of crashing.
 constexpr std::uint64_t layout_stamp()
 {
     std::uint64_t h = 0xcbf29ce484222325ull;

@@ -19,7 +19,7 @@ constexpr std::uint64_t next_random(std::uint64_t& state)
 /// Uniform in [0, 1), 53 bits.
 constexpr double next_uniform(std::uint64_t& state) { return static_cast<double>(next_random(state) >> 11) * 0x1p-53; }
 
-/// A seed of its own for each name.
+/// A different seed for each name.
 constexpr std::uint64_t seed_for(std::uint64_t seed, const char* text, std::size_t n)
 {
     std::uint64_t h = seed ^ 0xcbf29ce484222325ull;

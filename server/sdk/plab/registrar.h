@@ -1,7 +1,7 @@
-/// How a plugin declares its component types: one call per type, commands bound to plain functions.
+/// How a plugin declares its component types: one call per type, with commands bound to plain functions.
 ///
-/// A command is a free function whose signature says what it reads (const X&) and writes (X&); the registrar derives
-/// the call and the access table from it. Functions take `Rows` (all rows of the phase, in id order) or one `Row`.
+/// A command is a free function whose signature states what it reads (const X&) and writes (X&); the registrar derives the call and the
+/// table of accesses from it. A function takes `Rows` (all rows of the phase, in id order) or one `Row`.
 #pragma once
 
 #include <memory>
@@ -46,13 +46,13 @@ private:
     T rows_;
 };
 
-/// What Phase::Potential fills: the energy that a component stores at the present state.
+/// Output of Phase::Potential: the energy that a component stores in the present state.
 struct StoredEnergy
 {
     double joule = 0;
 };
 
-/// Everything that a command may ask for. The host fills what the phase has; the rest is null.
+/// Everything that a command may ask for. The host fills what the phase provides; the rest is null.
 struct PhaseCall
 {
     const StepContext* context = nullptr;
@@ -97,29 +97,29 @@ struct CommandInfo
     std::vector<Access> access;
 };
 
-/// A component type, as declared by its plugin.
+/// A component type as its plugin declares it.
 struct TypeInfo
 {
     std::string name;
     std::string doc;
-    std::string family;  ///< what it can be exchanged within; the name without its last part unless stated
+    std::string family;  ///< types of one family can be swapped for one another; the name without its last part unless stated
     Facet facet = Facet::Component;
     std::unique_ptr<TableBase> (*make)() = nullptr;
     std::vector<CommandInfo> commands;
 
-    // The ladder's facts, for listings and for choosing.
-    int order = 0;             ///< order of convergence, where it has one
+    // Properties for listings and for choosing an algorithm.
+    int order = 0;             ///< order of convergence, if the type has one
     bool elementwise = false;  ///< solver: groups may be advanced together without changing a bit
-    bool local = false;        ///< resolution: rewinds the touched group only, not the whole world
+    bool local = false;        ///< resolution: rewinds only the group concerned, not the whole world
     bool locates = false;      ///< resolution: finds the time of an event inside the step
-    bool certifies = false;    ///< resolution: looks inside the step for events that its ends do not show
+    bool certifies = false;    ///< resolution: searches inside the step for events that its two ends do not show
     bool speculates = false;   ///< resolution: gaps that may close within the step become rows
-    bool by_rows = false;      ///< response: contacts are rows that a manager holds, impacts included
-    bool by_force = false;     ///< response: contacts are forces, at every solver stage
-    bool uniform = false;      ///< force: the same whatever time and state
-    std::string accuracy;      ///< what `order` does not say: "times of impact to one step"
-    std::string strengths;     ///< what it is good for
-    std::string cost;          ///< e.g. "4 force evaluations per step"
+    bool by_rows = false;      ///< response: contacts are rows solved by a manager, including impacts
+    bool by_force = false;     ///< response: contacts are forces, evaluated at every solver stage
+    bool uniform = false;      ///< force: independent of time and state
+    std::string accuracy;      ///< in addition to `order`: "times of impact to one step"
+    std::string strengths;     ///< for which scenes it is suited
+    std::string cost;          ///< for example "4 force evaluations per step"
     std::string limits;        ///< where it fails
     std::string source;        ///< paper or book, with the equation
 };
@@ -228,7 +228,7 @@ struct CommandOf<F, Table, R (*)(A...)> : Command<F, Table, R, A...>
 };
 }  // namespace detail
 
-/// Adds commands and facts to a type just declared.
+/// Adds commands and properties to the type that was just declared.
 template <class Table>
 class TypeBuilder
 {
@@ -242,7 +242,7 @@ public:
         info_->commands.push_back({std::move(name), phase, std::move(doc), &C::run, C::access()});
         return *this;
     }
-    /// A command that the host itself carries out (e.g. State/Restore); listed so that scenes can name it.
+    /// A command that the host itself carries out (such as State/Restore); it is listed so that scenes can name it.
     TypeBuilder& host_command(Phase phase, std::string name, std::string doc)
     {
         info_->commands.push_back({std::move(name), phase, std::move(doc), nullptr, {}});

@@ -1,4 +1,4 @@
-/// Errors as values. Bad input ends in a Result that says where, which element, and why; nothing is thrown.
+/// Errors as values. Bad input gives a Result that states the place, the element and the reason; nothing is thrown.
 #pragma once
 
 #include <cassert>
@@ -11,7 +11,7 @@
 namespace plab
 {
 
-/// A place in a blueprint or a request: file (or "request 17"), line and column from 1; line 0 when there is none.
+/// A place in a blueprint or a request: file (or "request 17"), line and column counted from 1; line 0: none.
 struct SourceLocation
 {
     std::string file;
@@ -19,11 +19,11 @@ struct SourceLocation
     std::uint32_t column = 0;
 };
 
-/// One complaint. Reads "scene.xml:4:7: gear (Constraint/...): velocity_factor must not be zero".
+/// One error. Its text reads "scene.xml:4:7: gear (Constraint/...): velocity_factor must not be zero".
 struct Error
 {
     SourceLocation where;
-    std::string element;  ///< the component, command or element that it is about; may be empty
+    std::string element;  ///< the component, command or element concerned; may be empty
     std::string reason;   ///< what is wrong, and what would be right
 
     std::string text() const
@@ -42,7 +42,7 @@ struct Error
 
 using Errors = std::vector<Error>;
 
-/// A value, or the reason why there is none.
+/// A value, or the reasons why there is none.
 template <class T>
 class [[nodiscard]] Result
 {
@@ -79,7 +79,7 @@ private:
     std::variant<T, Errors> state_;
 };
 
-/// Success, or the reasons why not.
+/// Success, or the reasons for the failure.
 template <>
 class [[nodiscard]] Result<void>
 {

@@ -36,7 +36,7 @@ inline Vec3 log_rotation(const Quat& q)
 
 /// The rate of the rotation vector u of q = q0 exp(u) when the body turns at w_B (rad/s, in the body frame):
 ///   u' = w + u x w / 2 + c u x (u x w),   c = (1 - t/2 cot(t/2)) / t^2,  t = |u|.
-/// Valid for |u| < 2 pi; solvers restart the chart at each step, so that it stays far from there.
+/// Valid for |u| < 2 pi; solvers restart the chart at each step, so |u| stays far below that.
 inline Vec3 rotation_vector_rate(const Vec3& u, const Vec3& w_B)
 {
     const double t2 = length_squared(u);

@@ -1,7 +1,7 @@
-/// The one declaration of a component type's fields and roles.
+/// The single declaration of the fields and roles of a component type.
 ///
-/// A table's describe(Schema&) states each column once; from it come parsing, checks, storage, memento, hash, requests,
-/// --expand, the catalogue and the reference manual.
+/// A table's describe(Schema&) declares each column once. Parsing, checks, storage, memento, hash, requests, --expand, the catalogue and
+/// the reference manual are derived from it.
 #pragma once
 
 #include <deque>
@@ -19,13 +19,13 @@ namespace plab
 
 enum class FieldKind : std::uint8_t
 {
-    Param,    ///< from the blueprint; changed only by a request
-    State,    ///< evolves; has an initial value; in memento and hash, carried over in a swap
+    Param,    ///< from the blueprint; only requests change it
+    State,    ///< evolves; has an initial value; part of memento and hash; carried over in a swap
     Output,   ///< computed by a step; published
-    Scratch,  ///< dies with the step
+    Scratch,  ///< not kept from one step to the next
 };
 
-/// A condition on a value; `text` says it in words ("must be positive").
+/// A condition on a value; `text` states it in words ("must be positive").
 struct Rule
 {
     enum class Kind : std::uint8_t
@@ -34,8 +34,8 @@ struct Rule
         MoreThan,    ///< every component > bound
         AtMost,      ///< every component <= bound
         NonZero,     ///< a number other than 0, a vector other than the zero vector
-        UnitLength,  ///< a direction; normalised on reading, so only zero is refused
-        OneOf,       ///< a text out of a list
+        UnitLength,  ///< a direction; normalised on reading, so only the zero vector is refused
+        OneOf,       ///< one of a list of texts
     };
     Kind kind;
     double bound = 0;
@@ -48,11 +48,11 @@ struct Field
     FieldKind kind = FieldKind::Param;
     FieldType type = FieldType::None;
     Unit unit;
-    Value fallback;  ///< used where the blueprint gives none; no value: the field is required
+    Value fallback;  ///< default if the blueprint gives none; no value: the field is required
     bool required = false;
     bool may_be_infinite = false;
-    bool hosted = false;    ///< lives in the host's table of the facet; the column only carries the initial value
-    bool is_error = false;  ///< an output that accounting reports as this interaction's error
+    bool hosted = false;    ///< the live value is in the host's table of the facet; the column has only the initial value
+    bool is_error = false;  ///< an output that accounting reports as the error of this interaction
     std::vector<Rule> rules;
     std::string doc;
     ColumnBase* column = nullptr;
@@ -63,17 +63,17 @@ struct Role
     std::string name;
     std::string doc;
     std::vector<Facet> facets;
-    std::string family;        ///< for Facet::Component: the type prefix that fits, e.g. "Response/"
-    std::string default_type;  ///< the short form makes a sub-component of this type where none is named
+    std::string family;        ///< for Facet::Component: required type prefix, for example "Response/"
+    std::string default_type;  ///< type of the sub-component that the short form creates if none is named
     std::size_t min = 1, max = 1;
-    bool writes = false;       ///< acts on the participant; else only reads it
-    bool exclusive = false;    ///< no second component may act on the participant through such a role
-    bool independent = false;  ///< acts on each participant by itself: connects them to nothing
+    bool writes = false;       ///< acts on the participant; otherwise only reads it
+    bool exclusive = false;    ///< no second component may act on the participant through a role of this kind
+    bool independent = false;  ///< acts on each participant separately, so it connects no groups
     Column<Ref>* one = nullptr;
     Column<RefList>* many = nullptr;
 };
 
-/// Refines a field just declared. Reads as a sentence: param(...).or_else(1).positive().
+/// Refines the field that was just declared. Reads like a sentence: param(...).or_else(1).positive().
 template <class T>
 class FieldBuilder
 {
@@ -92,7 +92,7 @@ public:
     FieldBuilder& unit_length() { return rule({Rule::Kind::UnitLength, 0, {}}); }
     FieldBuilder& one_of(std::vector<std::string> options) { return rule({Rule::Kind::OneOf, 0, std::move(options)}); }
     FieldBuilder& may_be_infinite() { return field_->may_be_infinite = true, *this; }
-    /// The host keeps the live value (Bodies, Shafts) under this name; see Facet fields in server/docs/notation.md.
+    /// The host keeps the live value (Bodies, Shafts) under this name; see the facet fields in server/docs/notation.md.
     FieldBuilder& hosted() { return field_->hosted = true, *this; }
     FieldBuilder& reported_as_error() { return field_->is_error = true, *this; }
 
@@ -117,17 +117,17 @@ private:
     Role* role_;
 };
 
-/// Collects what describe() declares. Names are snake_case and unique within a type, roles included.
+/// Collects what describe() declares. Names are snake_case and unique within a type, including roles.
 class Schema
 {
 public:
-    /// A parameter; required unless or_else gives a default.
+    /// A parameter; required unless or_else() gives a default.
     template <class T>
     FieldBuilder<T> param(Column<T>& column, std::string name, Unit unit, std::string doc)
     {
         return add<T>(FieldKind::Param, column, std::move(name), unit, std::move(doc), true);
     }
-    /// A state; starts from T{} unless initially() says otherwise, and is settable in the blueprint.
+    /// A state; starts from T{} unless initially() gives another value; can be set in the blueprint.
     template <class T>
     FieldBuilder<T> state(Column<T>& column, std::string name, Unit unit, std::string doc)
     {
@@ -138,7 +138,7 @@ public:
     {
         return add<T>(FieldKind::Output, column, std::move(name), unit, std::move(doc), false);
     }
-    /// Working memory or an opaque object of the plugin; no text form.
+    /// Work memory or an opaque object of the plugin, without a text form.
     template <class T>
     void scratch(Column<T>& column, std::string name, std::string doc)
     {
@@ -172,7 +172,7 @@ public:
             if (r.name == name) return &r;
         return nullptr;
     }
-    /// All columns, roles' included, for sizing them together.
+    /// All columns, including those of roles, for resizing them together.
     std::vector<ColumnBase*> columns() const
     {
         std::vector<ColumnBase*> out;
@@ -193,7 +193,7 @@ private:
         return FieldBuilder<T>(f);
     }
 
-    // Deques: builders and the host keep pointers to elements.
+    // Deques, because builders and the host keep pointers to elements.
     std::deque<Field> fields_;
     std::deque<Role> roles_;
 };

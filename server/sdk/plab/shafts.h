@@ -10,33 +10,33 @@
 namespace plab
 {
 
-/// A velocity factor, turns of driven per turn of driver; exact where it was given as tooth counts.
+/// A velocity ratio: turns of the driven shaft per turn of the driver; exact if given as numbers of teeth.
 struct Ratio
 {
     double value = 1;
-    bool exact = false;  ///< numerator / denominator is the ratio itself
+    bool exact = false;  ///< numerator / denominator is the exact ratio
     std::int64_t numerator = 1;
     std::int64_t denominator = 1;
 };
 
-/// Phase::Connect of a reduced-coordinate coupling adds its edges here; the host builds the constraint graph from all.
+/// Receives the edges of couplings in reduced coordinates (Phase::Connect); the host builds the constraint graph from all of them.
 class RatioGraph
 {
 public:
     virtual ~RatioGraph() = default;
-    /// speed(driven) = ratio * speed(driver), held by the component (directory index) for as long as it lives.
+    /// speed(driven) = ratio * speed(driver), imposed by the component (directory index) as long as it exists.
     virtual void add(std::uint32_t component, Ref driver, Ref driven, const Ratio& ratio) = 0;
 };
 
-/// Shaft motion at one level, seen by Phase::Couple: accelerations and torques inside the solver's stages, speeds and
-/// angular impulses at step starts and after impacts. The same code serves both. Shafts that the constraint graph joins
-/// move together: their inertia is the component's, reflected.
+/// The motion of shafts at one level, for Phase::Couple: accelerations and torques inside the solver's stages, speeds and angular
+/// impulses at the start of a step and after impacts. The same code serves both. Shafts joined by the constraint graph move together:
+/// their inertia is that of the whole train, reduced to the shaft.
 class ShaftMotion
 {
 public:
     virtual ~ShaftMotion() = default;
-    /// Names the component (directory index) that the following calls belong to, and the shaft that it drives: what it
-    /// applies to that one is its reaction. To be called before the first of them.
+    /// Names the component (directory index) to which the following calls belong, and its driven shaft; what it applies to that shaft is
+    /// its reaction. To be called before the other functions.
     virtual void begin(std::uint32_t component, Ref driven) = 0;
     /// rad/s^2 or rad/s.
     virtual double rate(Ref shaft) const = 0;
@@ -44,16 +44,16 @@ public:
     virtual double mobility(Ref shaft) const = 0;
     /// Adds a torque (N m) or angular impulse (N m s).
     virtual void apply(Ref shaft, double torque) = 0;
-    /// Makes the rate what it says, whatever that takes: one-way drives. The shaft then has mobility 0 in this solve.
+    /// Sets the rate, whatever torque that takes: for one-way drives. The shaft then has mobility 0 in this solve.
     virtual void assign(Ref shaft, double rate) = 0;
 };
 
-/// Torque that a coupling transmits to its driven shaft; filled by the host for Phase::Finish.
+/// The torque that a coupling transmits to its driven shaft; filled by the host for Phase::Finish.
 class ShaftReactions
 {
 public:
     virtual ~ShaftReactions() = default;
-    /// N m on driven at the end of the step, by the component that owns the edge; none if it is redundant.
+    /// N m on the driven shaft at the end of the step, by the component that owns the edge; none if the edge is redundant.
     virtual std::optional<double> torque(std::uint32_t component) const = 0;
 };
 

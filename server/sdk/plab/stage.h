@@ -1,4 +1,4 @@
-/// The stages of a simulation command (the paper's) and the phases within them in which commands run.
+/// The stages of a simulation command (as in the paper), and the phases within them in which commands run.
 #pragma once
 
 #include <cstdint>
@@ -17,27 +17,27 @@ enum class Stage : std::uint8_t
     Deinit,
 };
 
-/// When the host calls a command. The order is the order of the step (server/simulation/step/step_tree.h holds the tree).
+/// When the host calls a command. The order is that of the step (server/simulation/step/step_tree.h has the tree).
 enum class Phase : std::uint8_t
 {
     Measure,    ///< Init: mass properties of a shape
-    Prepare,    ///< Init, and after a parameter changed: turn parameters into host rows, check rules across fields
-    Connect,    ///< Init, and after any structural change: contribute to structures built from all components
-    Drive,      ///< PreStep: once per step; may change own declared state
+    Prepare,    ///< Init, and after a parameter changed: derive host rows from parameters, check rules across fields
+    Connect,    ///< Init, and after any structural change: contribute to structures that are built from all components
+    Drive,      ///< PreStep: once per step; may change its own declared state
     Force,      ///< Step: add wrenches; a pure function of time and state, at every solver stage
     Couple,     ///< Step: relate speeds of shafts, at every solver stage and after impulses
     Constrain,  ///< Step: constraint rows at the present state, at every solver stage
-    Touch,      ///< Step: contacts that are forces add their wrenches, at every solver stage
+    Touch,      ///< Step: force-based contacts add their wrenches, at every solver stage
     Advance,    ///< Step: a solver advances its group
     Solve,      ///< Step: a manager advances an island of one-sided rows and contacts
     Detect,     ///< PostStep: find contacts
-    Gap,        ///< PostStep: how far two bodies are apart
-    Locate,     ///< PostStep: choose trial times within a step that holds an event
+    Gap,        ///< PostStep: distance of two bodies
+    Locate,     ///< PostStep: choose trial times within a step that contains an event
     Respond,    ///< PostStep: apply impulses to touching bodies
     Finish,     ///< PostStep: outputs and history of a finished step
-    Potential,  ///< PostStep: energy stored by a conservative force; asked for when somebody reads energies
-    Draw,       ///< PostStep: show; never changes state
-    Restore,    ///< Rewind: participant's saved state comes back (done by the host; listed so that scenes can select it)
+    Potential,  ///< PostStep: energy stored by a conservative force; called only when energies are read
+    Draw,       ///< PostStep: draw; never changes state
+    Restore,    ///< Rewind: restore the participants' saved state (done by the host; listed so that scenes can select it)
 };
 inline constexpr int kPhaseCount = static_cast<int>(Phase::Restore) + 1;
 

@@ -1,8 +1,8 @@
-/// Surfaces that solids touch from their front, also concave ones: a bowl, a bore, triangles. Behind them is solid. For
-/// bodies that forces do not move.
+/// Surfaces that solids touch from the front only, concave ones included: a bowl, a bore, triangles. The space behind them is solid. For
+/// bodies that are not dynamic.
 ///
-/// Their geometry is a mesh, which is their picture, with hull_collides false. A mesh has no size of its own: what it
-/// collides as is kept there, so that a table of shapes needs no further column.
+/// The geometry of a surface is a mesh (which is also how it is drawn) with hull_collides false. A mesh does not use its `size`, so the
+/// collision parameters of the surface are stored there and a table of shapes needs no further column.
 #pragma once
 
 #include "plab/tables.h"
@@ -15,7 +15,7 @@ enum class Surface : std::uint8_t
     None,
     Bowl,       ///< the inside of the sphere of `radius` around the origin of S, where z <= reach
     Bore,       ///< the inside of the cylinder of `radius` about z of S, where |z| <= reach
-    Triangles,  ///< the mesh's triangles, from where they are seen counter-clockwise
+    Triangles,  ///< the mesh's triangles, touched from the side from which they appear counter-clockwise
 };
 
 /// `radius`, `reach` (m): of bowls and bores.
@@ -31,7 +31,7 @@ inline Surface surface_of(const Geometry& geometry)
     return static_cast<Surface>(static_cast<int>(geometry.size.y));
 }
 
-/// m; of what surface_of() says is a bowl or a bore.
+/// m; of a shape for which surface_of() returns a bowl or a bore.
 inline double surface_radius(const Geometry& geometry) { return geometry.size.x; }
 inline double surface_reach(const Geometry& geometry) { return geometry.size.z; }
 

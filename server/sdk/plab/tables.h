@@ -1,5 +1,5 @@
-/// Host tables: what components meet on. One array per field; an index is a Ref's index and stays valid while the
-/// component lives. The world owns them; phase functions see them as const or not, as their signature says.
+/// The host tables, on which components interact. One array per field; an index is the index in a Ref, and stays valid as long as the
+/// component exists. The world owns the tables; phase functions get them const or not, as their signature states.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ namespace plab
 enum class Motion : std::uint8_t
 {
     Static,     ///< never moves
-    Kinematic,  ///< moves with the velocity it was given; nothing pushes it
+    Kinematic,  ///< moves with a prescribed velocity; forces do not affect it
     Dynamic,    ///< moves by forces
 };
 
-/// Rigid bodies in space. Frames: W world, B the body's frame as authored, C its centre of mass with B's axes.
-/// Angular momentum is the state of a dynamic body's rotation; its angular velocity follows from it
-/// (see refresh_spin), so that free rotation keeps its momentum to the last bit. A needle would lose its spin that way
-/// (its smallest inertia multiplies every rounding error of the momentum), so for needles it is the other way round.
+/// Rigid bodies in space. Frames: W world, B the body's frame as authored, C its centre of mass with B's axes. The angular momentum is
+/// the state of a dynamic body's rotation and the angular velocity follows from it (see refresh_spin), so free rotation conserves angular
+/// momentum to the last bit. A needle would lose its spin in this way, because the inverse of its smallest inertia multiplies every
+/// rounding error of the momentum; for needles the angular velocity is the state.
 struct Bodies
 {
     std::vector<Motion> motion;
@@ -33,7 +33,7 @@ struct Bodies
     std::vector<Vec3> angular_momentum;   ///< about C, in W, N m s; dynamic bodies only
     std::vector<double> mass;             ///< kg
     std::vector<double> inverse_mass;     ///< 1/kg; 0 unless dynamic
-    std::vector<std::uint8_t> needle;     ///< 1: principal inertias so far apart that the angular velocity is the state
+    std::vector<std::uint8_t> needle;     ///< 1: principal inertias so different that the angular velocity is the state
     std::vector<Mat3> inertia_B;          ///< about C, in B, kg m^2
     std::vector<Mat3> inverse_inertia_B;  ///< 0 unless dynamic
     std::vector<Vec3> center_B;           ///< p_BC, m
@@ -52,7 +52,7 @@ struct Bodies
         const Mat3 R = rotation_matrix(orientation[i]);
         return R * inverse_inertia_B[i] * transposed(R);
     }
-    /// The derived one of momentum and spin from the one that is the state, after that or the orientation changed:
+    /// Recomputes the dependent one of momentum and spin from the one that is the state, after the state or the orientation has changed:
     /// w = R I_B^-1 R^T L.
     void refresh_spin(std::uint32_t i)
     {
@@ -75,7 +75,7 @@ struct Bodies
             angular_momentum[i] += l_W;
         refresh_spin(i);
     }
-    /// An impulse j (N s) at p_W; nothing happens to a body that is not dynamic.
+    /// Applies an impulse j (N s) at p_W; has no effect on a body that is not dynamic.
     void apply_impulse(std::uint32_t i, const Vec3& j, const Vec3& p_W)
     {
         if (!dynamic(i)) return;
@@ -99,10 +99,10 @@ struct Shafts
     std::vector<Pose> axle;               ///< X_WA: origin on the axle, z along it, at angle 0; m
     std::vector<RefList> shapes;          ///< for drawing
     // Written by the host's constraint graph: angle = anchor + ratio * (angle of root - root_anchor).
-    std::vector<std::uint32_t> root;  ///< the shaft that carries the motion; itself where nothing joins it
-    std::vector<double> ratio;        ///< turns per turn of root; 1 where nothing joins it
-    std::vector<double> anchor;       ///< rad, own angle when it was joined
-    std::vector<double> root_anchor;  ///< rad, the root's angle then
+    std::vector<std::uint32_t> root;  ///< the shaft that carries the motion; the shaft itself if nothing is coupled to it
+    std::vector<double> ratio;        ///< turns per turn of the root; 1 if nothing is coupled to it
+    std::vector<double> anchor;       ///< rad, own angle when the shafts were joined
+    std::vector<double> root_anchor;  ///< rad, angle of the root at that time
 
     std::size_t size() const { return motion.size(); }
     bool dynamic(std::uint32_t i) const { return motion[i] == Motion::Dynamic; }
@@ -110,10 +110,10 @@ struct Shafts
     double kinetic_energy(std::uint32_t i) const { return dynamic(i) ? 0.5 * inertia[i] * speed[i] * speed[i] : 0.0; }
 };
 
-/// Numbers that are no place in space: z' = r, with rates r that interactions add. Temperatures, concentrations, currents.
+/// Numbers without a place in space: z' = r, with rates r that interactions add. Temperatures, concentrations, currents.
 struct Quantities
 {
-    std::vector<std::vector<double>> value;  ///< units are the scene's own
+    std::vector<std::vector<double>> value;  ///< in the scene's own units
 
     std::size_t size() const { return value.size(); }
 };
@@ -132,7 +132,7 @@ enum class GeometryKind : std::uint8_t
     Sphere,
     Box,
     Plane,
-    Mesh,      ///< triangles for drawing and integration; collides as its convex hull where `hull_collides`
+    Mesh,      ///< triangles for drawing and integration; collides as its convex hull if `hull_collides`
     Capsule,   ///< all points within size.x of the segment from -size.z to size.z along z of S
     Cylinder,  ///< radius size.x, from -size.z to size.z along z of S
     Compound,  ///< `parts`, each with its own pose in S
@@ -142,19 +142,19 @@ struct Geometry
 {
     GeometryKind kind = GeometryKind::None;
     Pose pose;                             ///< X_BS of the shape in its body
-    Vec3 size;                             ///< sphere: x = radius; box: half extents; plane: nothing (normal is z of S)
+    Vec3 size;                             ///< sphere: x = radius; box: half extents; plane: unused (its normal is z of S)
     std::vector<std::uint32_t> parts;      ///< compound: rows of Shapes, none of them a compound or a plane
     std::vector<Vec3> vertices;            ///< mesh, in S, m
     std::vector<std::uint32_t> triangles;  ///< mesh: index triples, counter-clockwise seen from outside
     bool hull_collides = false;
 };
 
-/// Shapes, shared by reference: several bodies may name one.
+/// Shapes are shared by reference: several bodies may use one.
 struct Shapes
 {
     std::vector<Geometry> geometry;
     std::vector<MassProperties> solid;      ///< by Shape/VolumeIntegration; valid where unmeasurable is empty
-    std::vector<std::string> unmeasurable;  ///< why there are no mass properties ("mesh is open at edge 3-7")
+    std::vector<std::string> unmeasurable;  ///< reason why there are no mass properties ("mesh is open at edge 3-7")
     std::size_t size() const { return geometry.size(); }
 };
 
@@ -168,12 +168,12 @@ struct SurfaceLaw
 class Materials
 {
 public:
-    /// The index of a name; the empty name is 0, a body without material.
+    /// The index of a name; the empty name, for a body without material, is 0.
     std::uint32_t intern(const std::string& name);
     void clear_pairs() { pairs_.clear(); }
     /// Sets the law for a pair, in either order. False if another component set it already.
     bool add_pair(std::uint32_t a, std::uint32_t b, const SurfaceLaw& law);
-    /// The law of a pair, or null: then the response's own parameters hold.
+    /// The law of a pair, or null: then the response uses its own parameters.
     const SurfaceLaw* find_pair(std::uint32_t a, std::uint32_t b) const;
 
 private:

@@ -1,4 +1,4 @@
-/// Units of declared fields. Inside, everything is SI and radians; a unit names the dimension that text must fit.
+/// Units of declared fields. Internally all values are in SI units and radians; a unit states the dimension that a text must have.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 namespace plab
 {
 
-/// Exponents of metre, kilogram, second and radian. Radians are kept apart so that "30 deg" fits no plain number.
+/// Exponents of metre, kilogram, second and radian. Radians are a dimension of their own, so "30 deg" is not accepted for a plain number.
 struct Dimension
 {
     std::array<signed char, 4> power{0, 0, 0, 0};

@@ -1,4 +1,4 @@
-/// The values of fields as they stand in blueprints, requests and listings.
+/// The values of fields in blueprints, requests and listings.
 #pragma once
 
 #include <cstdint>
@@ -40,10 +40,10 @@ enum class FieldType : std::uint8_t
     RealList,
     IntegerList,
     EntryList,
-    Opaque,  ///< a plugin's own object: never text, never copied
+    Opaque,  ///< a plugin's own object: no text form, never copied
 };
 
-/// The alternatives stand in the order of FieldType.
+/// The alternatives are in the order of FieldType.
 using Value = std::variant<std::monostate, bool, std::int64_t, double, Vec3, Quat, Mat3, std::string, Reals, Integers, Entries>;
 
 inline FieldType type_of(const Value& v) { return static_cast<FieldType>(v.index()); }

@@ -1,7 +1,7 @@
 /// Vectors, rotations and poses: the geometry that the host and all plugins share.
 ///
-/// Plain values in double precision. Every sum is written out in one fixed order, so that all builds round alike
-/// (server/docs/determinism.md). Notation as in server/docs/notation.md: p_WB is the position of B measured in W.
+/// Plain values in double precision. Every sum is written out in one fixed order, so all builds round alike (server/docs/determinism.md).
+/// Notation as in server/docs/notation.md: p_WB is the position of B measured in W.
 #pragma once
 
 #include <cmath>
@@ -44,7 +44,7 @@ constexpr double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.
 constexpr Vec3 cross(const Vec3& a, const Vec3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 constexpr double length_squared(const Vec3& a) { return dot(a, a); }
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
-/// The direction of a; the zero vector stays zero.
+/// The direction of a; the zero vector remains zero.
 inline Vec3 normalized(const Vec3& a)
 {
     const double n = length(a);
@@ -52,7 +52,7 @@ inline Vec3 normalized(const Vec3& a)
 }
 inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
-/// A unit vector square to the unit vector n.
+/// A unit vector perpendicular to the unit vector n.
 inline Vec3 any_perpendicular(const Vec3& n)
 {
     const Vec3 axis = std::fabs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -124,7 +124,7 @@ constexpr double determinant(const Mat3& a)
     return a.m[0][0] * (a.m[1][1] * a.m[2][2] - a.m[1][2] * a.m[2][1]) - a.m[0][1] * (a.m[1][0] * a.m[2][2] - a.m[1][2] * a.m[2][0]) +
            a.m[0][2] * (a.m[1][0] * a.m[2][1] - a.m[1][1] * a.m[2][0]);
 }
-/// The inverse by cofactors. The caller makes sure that a is not singular.
+/// The inverse by cofactors. The caller ensures that a is not singular.
 constexpr Mat3 inverse(const Mat3& a)
 {
     const double d = 1.0 / determinant(a);

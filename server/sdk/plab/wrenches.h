@@ -1,4 +1,4 @@
-/// Where forces go: one sum per body and shaft, and the power of each force component for the energy ledger.
+/// Accumulators of forces: one sum per body and shaft, and the power of each force component for the energy ledger.
 #pragma once
 
 #include <span>
@@ -10,20 +10,20 @@
 namespace plab
 {
 
-/// Sums of forces and torques of one solver stage. Phase::Force functions add; the host clears and reads.
+/// Sums of forces and torques at one solver stage. Phase::Force functions add; the host clears and reads.
 class Wrenches
 {
 public:
     std::vector<Vec3> force;                         ///< N, in W, per body
     std::vector<Vec3> torque;                        ///< N m about C, in W, per body
     std::vector<double> shaft_torque;                ///< N m about the axle, per shaft
-    std::vector<std::vector<double>> quantity_rate;  ///< 1/s of the value's unit, per row of Quantities and value
+    std::vector<std::vector<double>> quantity_rate;  ///< per row of Quantities and value: unit of the value per second
 
     Wrenches() = default;
     Wrenches(const Bodies& bodies, const Shafts& shafts) : bodies_(&bodies), shafts_(&shafts) {}
     void bind(const Bodies& bodies, const Shafts& shafts) { bodies_ = &bodies, shafts_ = &shafts; }
 
-    /// Names the component (directory index) that the following additions belong to. To be called before the first one.
+    /// Names the component (directory index) to which the following additions belong. To be called before the first one.
     void begin(std::uint32_t component) { current_ = component; }
 
     /// A force through the centre of mass.
@@ -54,9 +54,9 @@ public:
     /// Adds to the rate of value i of a row of Quantities. Does no work.
     void add_rate(Ref quantities, std::size_t i, double rate) { quantity_rate[quantities.index][i] += rate; }
 
-    /// Power by component, W; null while nobody accounts (trial steps).
+    /// Power by component, W; null where nothing is booked (trial steps).
     std::vector<double>* power = nullptr;
-    /// Whose power counts: participants outside what is advanced take no part in the ledger. Empty: all.
+    /// Participants whose power is booked; those outside the advanced set are not part of the ledger. Empty: all.
     std::span<const std::uint8_t> accounted_bodies, accounted_shafts;
 
 private:

@@ -62,7 +62,7 @@ void Advance::collect_observed(std::span<const std::uint32_t> groups)
 void Advance::advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial)
 {
     collect_observed(groups);
-    // Whom the members read goes along from where the members are, and comes back to where it had got to.
+    // Observed groups first advance from the start of their pieces to `from`; they are put back to the end of the step afterwards.
     if (!observed_.empty())
     {
         for (const std::uint32_t g : observed_) motion_.rewind(g);

@@ -1,4 +1,5 @@
-/// Groups over a part of a step, each by who is to move it: its solver alone, the springs that it touches, or the island that it stands in.
+/// Advances groups over a part of a step, each in the right way: by its solver alone, with the contact springs that it may touch, or with
+/// the island of persistent contacts to which it belongs.
 #pragma once
 
 #include "simulation/advance/batches.h"
@@ -15,12 +16,12 @@ public:
     {
     }
 
-    /// After any structural change.
+    /// To be called after any structural change.
     void rebuild();
-    /// Everybody over the whole step: in batches, on as many threads as there are, where nobody touches anybody.
+    /// Advances all groups over the whole step. If no group has contacts, in batches on all threads.
     void advance_all();
-    /// From where their pieces are. Whom they read goes along, and comes back to where it had got to. A trial emits no events and
-    /// freezes nobody.
+    /// Advances groups from `from` to `to` (s since the start of the step), from their present state. Groups whose state they read are
+    /// advanced along with them, and put back afterwards. A trial emits no events and freezes no object.
     void advance(std::span<const std::uint32_t> groups, double from, double to, WorkBook book, bool trial);
 
     BatchedAdvance& batches() { return batches_; }

@@ -9,8 +9,9 @@ namespace plab::simulation
 namespace
 {
 
-/// A solver that judges may declare this command beside its own: it advances groups together where that changes no bit, or
-/// refuses (by an error) with the state at the start of the advance. Then they are split, down to each by itself.
+/// A solver that chooses its algorithm may declare this command in addition to its own. It either advances several groups together without
+/// changing a bit of the result, or refuses (by an error) and leaves the state at the start of the advance. Then the groups are split, if
+/// necessary down to single clusters.
 constexpr std::string_view kTogether = "Solver/AdvanceTogether";
 
 bool is_together(const CommandInfo& command) { return command.phase == Phase::Advance && command.name == kTogether; }
@@ -23,7 +24,7 @@ const CommandInfo* together_command(const world::World& world, std::uint32_t sol
     return found == commands.end() ? nullptr : &*found;
 }
 
-/// How clusters share systems, in the order in which they are planned: whoever goes alone opens a part that nobody joins.
+/// How clusters share systems, in the order in which they are planned. Alone comes last, so that no other cluster joins its parts.
 enum class Sharing
 {
     Always,
@@ -39,7 +40,7 @@ struct Cluster
     Sharing sharing = Sharing::Alone;
 };
 
-/// In the order of their first group.
+/// The clusters, in the order of their first group.
 std::vector<Cluster> clusters_of(const Groups& groups)
 {
     std::vector<Cluster> out(groups.clusters);
@@ -53,7 +54,7 @@ std::vector<Cluster> clusters_of(const Groups& groups)
     return out;
 }
 
-/// Takes half of the clusters out of a part that holds several; empty if it holds one.
+/// Takes half of the clusters out of a part that has several, and returns them; empty if it has one.
 std::vector<std::uint32_t> half_of(const Groups& groups, std::vector<std::uint32_t>& part)
 {
     std::vector<std::uint32_t> clusters;
@@ -69,7 +70,7 @@ std::vector<std::uint32_t> half_of(const Groups& groups, std::vector<std::uint32
     return taken;
 }
 
-/// Which solver advances what in which batch together, unless it refuses: by batch, solver, and split_.
+/// Index of the part in which a solver advances clusters together unless it refuses: by batch, solver, and split_.
 using SharedParts = std::map<std::tuple<const Batch*, std::uint32_t, std::uint32_t>, std::size_t>;
 
 void share(Batch& batch, std::span<const std::uint32_t> cluster, std::uint32_t solver, std::uint32_t split, SharedParts& parts)
@@ -104,9 +105,7 @@ std::uint64_t BatchedAdvance::take_evaluations()
 
 void BatchedAdvance::plan()
 {
-    // One batch for each thread, in whole clusters: what reads another group must share its stage times. Partition never
-    // shows in the state: groups do not feel one another, and a solver whose choices depend on its whole system gets each
-    // cluster by itself.
+    // One batch for each thread, in whole clusters: a group that reads another one must share its stage times.
     std::vector<Cluster> clusters = clusters_of(step_.groups);
     std::size_t total = 0;
     for (Cluster& c : clusters)
@@ -120,12 +119,12 @@ void BatchedAdvance::plan()
     }
     std::stable_sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.sharing < b.sharing; });
     batches_.clear();
-    batches_.reserve(static_cast<std::size_t>(workers_.threads()));  // they stay where they are
+    batches_.reserve(static_cast<std::size_t>(workers_.threads()));  // pointers to batches must stay valid
     SharedParts shared;
     std::map<std::uint32_t, std::size_t> home;
     for (const Cluster& c : clusters)
     {
-        // A solver that keeps something between advances serves its clusters one after the other, in one order.
+        // A solver that keeps state between advances serves its clusters one after the other, in a fixed order.
         const bool keeps = c.solver != kNoIndex && !step_.world.type_of(c.solver)->info.elementwise;
         const auto known = keeps ? home.find(c.solver) : home.end();
         Batch& batch = known != home.end() ? batches_[known->second] : lightest_batch(total);
@@ -173,7 +172,7 @@ void BatchedAdvance::run_batch(Batch& batch, std::vector<double>& work)
 {
     for (std::size_t i = 0; i < batch.parts.size(); ++i)
     {
-        // The frame is new in each step; its pointers are the same.
+        // The frame changes in each step; the pointers in it stay the same.
         batch.parts[i].system->set_frame(step_.frame);
         while (!run_solver(batch.parts[i], work, batch.events))
         {
@@ -218,7 +217,7 @@ bool BatchedAdvance::run_solver(Batch::Part& part, std::vector<double>& work, Ev
 
 void BatchedAdvance::emit_in_order()
 {
-    // In an order that no partition shows in.
+    // Sort events so that their order does not depend on the partition.
     std::vector<Event> all;
     for (Batch& batch : batches_)
     {
@@ -242,7 +241,7 @@ void BatchedAdvance::advance()
         workers_.run(batches_.size(), [this](std::size_t b) { run_batch_measured(batches_[b]); });
     }
     emit_in_order();
-    // After a split they are planned anew: parts in the order that the split itself gives, not in that of their history.
+    // After a split the batches are planned again, so that the order of the parts follows from split_ and not from the history.
     ready_ = std::none_of(batches_.begin(), batches_.end(), [](const Batch& b) { return b.split; });
     for (Batch& batch : batches_)
     {

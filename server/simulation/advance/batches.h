@@ -1,7 +1,7 @@
-/// The whole step in one go for everybody: groups in batches, one batch for each thread.
+/// Advances all groups over the whole step in parallel: groups are divided into batches, one batch for each thread.
 ///
-/// Partition never shows in the state: groups do not feel one another, and a solver whose choices depend on its whole system gets each
-/// cluster by itself, or refuses to advance several together; then they are split.
+/// The partition has no influence on the state: groups do not interact, and a solver whose choices depend on its whole system (a step size
+/// chosen from an error estimate, for instance) gets each cluster by itself, or refuses to advance several together; then they are split.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 namespace plab::simulation
 {
 
-/// Events of one thread, until all threads are done.
+/// Stores the events of one thread until all threads are done.
 class EventBuffer final : public EventSink
 {
 public:
@@ -20,7 +20,7 @@ public:
     std::vector<Event> events;
 };
 
-/// What one thread advances: whole clusters of groups.
+/// The work of one thread: whole clusters of groups.
 struct Batch
 {
     struct Part
@@ -30,15 +30,15 @@ struct Batch
         std::unique_ptr<GroupSystem> system;
         bool fine = true;
     };
-    /// Clusters of one solver share a part where that changes no bit (`together`).
+    /// Adds a cluster. Clusters of one solver share a part if that changes no bit of the result (`together`).
     void add(std::span<const std::uint32_t> cluster, std::uint32_t solver, bool together);
 
     std::vector<Part> parts;
     std::size_t load = 0;
-    bool split = false;  ///< a part was refused in this step
+    bool split = false;  ///< a solver refused a part in this step
     std::vector<double> work;
     std::unique_ptr<StageScratch> scratch;
-    CostMeter meter;  ///< where threads step in parallel
+    CostMeter meter;  ///< used if threads step in parallel
     EventBuffer events;
 };
 
@@ -47,14 +47,14 @@ class BatchedAdvance
 public:
     BatchedAdvance(StepState& step, GroupMotion& motion, int threads) : step_(step), motion_(motion), workers_(threads) {}
 
-    /// After any structural change.
+    /// To be called after any structural change.
     void rebuild();
     void advance();
-    /// Of forces, since the last time.
+    /// Number of force evaluations since the last call.
     std::uint64_t take_evaluations();
 
-    /// By cluster: 0, or which part it went to when its solver refused to advance it with others. Who shares systems with whom shows
-    /// in the last digits of the ledger, so a snapshot keeps it.
+    /// By cluster: 0, or the part that it went to when its solver refused to advance it with others. Which clusters share a system affects
+    /// the last digits of the energy ledger, so a snapshot keeps it.
     const std::vector<std::uint32_t>& split() const { return split_; }
     void continue_split(const std::vector<std::uint32_t>& split);
 
@@ -72,7 +72,7 @@ private:
     std::vector<Batch> batches_;
     bool ready_ = false;
     std::vector<std::uint32_t> split_;
-    std::int64_t waiting_ns_ = 0;  ///< for other threads: nobody's cost
+    std::int64_t waiting_ns_ = 0;  ///< time spent waiting for other threads: not counted as any component's cost
 };
 
 }  // namespace plab::simulation

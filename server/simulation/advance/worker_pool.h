@@ -1,4 +1,4 @@
-/// Threads that share a list of independent jobs. Which thread does which job never shows in the result.
+/// Threads that share a list of independent jobs. The result does not depend on which thread does which job.
 #pragma once
 
 #include <atomic>

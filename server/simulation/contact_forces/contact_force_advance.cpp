@@ -1,4 +1,4 @@
-// An island of groups that may touch by force, in pieces of the step.
+// Advances an island of groups that may touch by force, in pieces of the step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,20 +13,22 @@ namespace plab::simulation
 {
 namespace
 {
-/// Beginnings and ends of contacts in one step of one island that are located; later ones come at the ends of pieces.
+/// Largest number of switching events that are located in one step of one island; later ones take effect at the ends of pieces.
 constexpr int kMostEvents = 20000;
-/// Fewest pieces per contact, however stiff: far from where explicit methods blow up (rate * h < 2 for the weakest).
+/// Smallest number of pieces per contact, however stiff: well inside the stability limit of explicit methods (rate * h < 2 for the
+/// weakest).
 constexpr double kFewestPerContact = 4;
-/// The same for one that rests.
+/// The same for a resting contact.
 constexpr double kFewestAtRest = 8;
 constexpr int kMostTrials = 100;
 constexpr int kMostPieces = 10'000'000;
-/// Of the smaller body's radius: a gap up to this is looked at, whatever the speeds.
+/// As a fraction of the smaller body's radius: gaps up to this are detected, whatever the speeds.
 constexpr double kLeastMargin = 1e-8;
-/// Of the time in which a body goes through half of another's thickness: at least twice within it somebody looks.
+/// Longest piece, as a fraction of the time in which a body passes through half of another's thickness: so contacts are detected often
+/// enough that no body passes through another unnoticed.
 constexpr double kUnseen = 0.25;
 
-/// m: half of the least width; of a hull half of the least along its axes, as it may be thinner askew.
+/// m: half of the smallest width. For a hull half of the smallest half-width along its axes, as it may be thinner in other directions.
 double thinnest(const Geometry& g)
 {
     if (const double known = least_half_width(g); known > 0) return known;
@@ -60,16 +62,7 @@ bool ContactForces::run(Piece& piece, double to, WorkBook book, bool trial)
     return finite;
 }
 
-double ContactForces::number(std::uint32_t response, const char* name, double otherwise) const
-{
-    const Field* field = step_.world.table_of(response).schema().find_field(name);
-    const Row row = step_.world.component(response).row;
-    if (field)
-        if (const auto* column = dynamic_cast<const Column<std::int64_t>*>(field->column)) return static_cast<double>((*column)[row]);
-    return otherwise;
-}
-
-/// m/s: no two points of the pair come together faster.
+/// m/s: bound on the closing speed of any two points of the pair.
 double ContactForces::closing_bound(const NearPair& p) const
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -87,13 +80,13 @@ double ContactForces::margin_for(double h) const
         const double travel = 2 * closing_bound(p) * h;
         if (std::isfinite(travel)) margin = std::max(margin, travel);
     }
-    // A spring that took over from a hard contact reaches beyond the surface.
+    // A spring that took over from a hard contact may push before the surfaces touch.
     double open = 0;
     for (const Pushing& p : pushing_) open = std::max(open, -live_.pairs[p.pair].contacts[p.contact].open_depth);
     return margin + 2 * open;
 }
 
-/// s: as far as nobody can pass through anybody unseen.
+/// s: longest piece, at most `most`, in which no body can pass through another one unnoticed.
 double ContactForces::free_time(double most) const
 {
     double time = most;
@@ -109,8 +102,8 @@ double ContactForces::free_time(double most) const
     return time;
 }
 
-/// s: in which one of the pair goes through half the thickness of the other at their present speeds, along the way that they go; where
-/// they turn, along the way that is shortest.
+/// s: time in which one of the pair passes through half the thickness of the other at their present velocities, along the direction of
+/// their relative motion; for rotation through the smallest thickness.
 double ContactForces::time_through(const NearPair& p) const
 {
     const world::HostTables& host = step_.world.host();
@@ -131,8 +124,8 @@ double ContactForces::time_through(const NearPair& p) const
     return least;
 }
 
-/// rad/s: of the contacts that push, together. By Gershgorin: the squares of the frequencies of M^-1 J^T k J are no more than
-/// the largest of, over the contacts, the sums over all contacts of its two bodies.
+/// rad/s: bound on the largest frequency or decay rate of all pushing contacts together. By Gershgorin's theorem the squared frequencies,
+/// the eigenvalues of M^-1 J^T k J, are at most the largest, over the contacts, of the sums over all contacts of its two bodies.
 double ContactForces::fastest_rate()
 {
     for (const std::uint32_t b : bodies_)
@@ -164,7 +157,7 @@ double ContactForces::spin_rate() const
     return rate;
 }
 
-/// The error of a swing is its speed times pieces^-order: as it dies, fewer do for the same error.
+/// The error of an oscillation is proportional to its speed amplitude times pieces^-order: as it decays, fewer pieces give the same error.
 double ContactForces::pieces_per_contact(const ForceContact& contact, double wanted) const
 {
     if (!(contact.swing_speed < contact.peak_swing_speed)) return wanted;
@@ -172,8 +165,8 @@ double ContactForces::pieces_per_contact(const ForceContact& contact, double wan
                       wanted);
 }
 
-/// s: length of a piece while something pushes. Half of the pieces that a step may have are as short as was asked for, so
-/// that a short contact gets them all; the others share what is left.
+/// s: length of a piece while something pushes. The first half of the pieces that a step may have are as short as steps_per_contact asks
+/// for, so that a short contact is fully resolved; the other half divide what is left of the step.
 double ContactForces::contact_time(double left, int used)
 {
     double per_contact = 0, most = kMostPieces, wanted_pieces = 0;
@@ -184,15 +177,16 @@ double ContactForces::contact_time(double left, int used)
         if (std::exchange(detector, pair.detector) != pair.detector)
         {
             const auto is_it = [&](const Detector& d) { return d.component == pair.detector; };
-            response = std::find_if(contacts_.detectors().begin(), contacts_.detectors().end(), is_it)->response;
-            wanted_pieces = number(response, "steps_per_contact", 200);
-            most = std::min(most, number(response, "max_substeps", 20000));
+            const Detector& d = *std::find_if(contacts_.detectors().begin(), contacts_.detectors().end(), is_it);
+            response = d.response;
+            wanted_pieces = d.steps_per_contact.value_or(200);
+            most = std::min(most, d.max_substeps.value_or(20000));
         }
         per_contact = std::max(per_contact, pieces_per_contact(pair.contacts[p.contact], wanted_pieces));
     }
     undersampled_ = false;
     const double rate = fastest_rate();
-    // A stiction spring's turn is known up to half a turn.
+    // The rotation of a body within a piece is measured by its rotation vector, which is unique up to half a turn only.
     const double turn = spin_rate();
     const double longest = turn > 0 ? std::min(left, 1 / turn) : left;
     if (!(rate > 0)) return longest;
@@ -221,7 +215,7 @@ double ContactForces::locate(Piece& piece, double high)
     for (int i = 0; i < kMostTrials && !step_.frame.give_up(); ++i)
     {
         double next = guess(low, high, at_low_, at_high_);
-        // Where guesses creep up from one side, halve.
+        // If the estimates approach from one side only, bisect.
         if (i % 3 == 2 && high - low > 0.25 * width) next = low + 0.5 * (high - low);
         if (i % 3 == 2) width = high - low;
         if (!(next > low && next < high) || high - low <= 0x1p-51 * high) break;
@@ -285,7 +279,7 @@ void ContactForces::start(double from)
     inspect(margin_, at_end_);
     switch_contacts(at_end_, from);
     if (from > 0) return;
-    // How deep it will get is asked anew in each step: what hit hard may have come to rest.
+    // The expected largest depth is computed again in each step: a contact that began with a hard impact may have come to rest.
     for (const Seen& s : at_end_)
         if (ForceContact* known = find_pushing(s.found); known && known->asked != step_.frame.tick)
             known->asked = step_.frame.tick, expect(*known, s.found, std::fabs(s.separation_speed));
@@ -298,19 +292,19 @@ void ContactForces::advance_island(const Island& island, double from, double to,
     piece.solver = solver_of(island);
     piece.begin = piece.t = from, piece.end = to;
     piece.book = book, piece.trial = trial;
-    // Whoever moves as told is where it is at `from`.
+    // Kinematic bodies are put to their poses at `from`.
     piece.system->begin(from, from, book, nullptr);
     piece.system->move_prescribed();
     order_ = std::max(1, step_.world.type_of(piece.solver)->info.order);
     start(from);
-    // Free flight and switches come on top of what contacts may have.
+    // Pieces of free flight and switching events are not limited by max_substeps.
     while (piece.t < to && piece.finite && piece.pieces < kMostPieces && !step_.frame.give_up()) one_piece(piece);
     if (piece.t < to && piece.finite) piece.finite = run(piece, to, book, trial);
     motion_.finish_advance(*piece.system, piece.finite, to, trial);
 }
 
-/// Standing hard contacts and springs in one island: the hard ones' time stepping, cut as the springs need it. Springs are
-/// taken half a piece ahead of the speeds, which makes kick and mean move together symplectic:
+/// Advances an island with persistent hard contacts and springs: by the time stepping of the hard contacts, in pieces as short as the
+/// springs need. Springs are evaluated half a piece ahead of the positions, which makes kick and mean move together symplectic:
 ///   v1 = v0 - h w^2 (x0 + h v0 / 2),  x1 = x0 + h (v0 + v1) / 2   =>   det = 1.
 void ContactForces::advance_mixed(const Island& island, double from, double to, WorkBook book, bool trial)
 {

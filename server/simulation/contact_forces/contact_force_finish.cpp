@@ -1,4 +1,4 @@
-// What is told of contacts that are forces when a step is over.
+// What is reported of force contacts when a step is over.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -9,7 +9,7 @@
 namespace plab::simulation
 {
 
-/// The reported impulse of a contact that is a force is that of its present force over the step.
+/// The reported impulse of a force contact is its present force times the step.
 void ContactForces::report(std::vector<FoundContact>& found)
 {
     for (FoundContact& f : found)
@@ -22,7 +22,7 @@ void ContactForces::report(std::vector<FoundContact>& found)
     }
 }
 
-/// Each law sees all of its contacts once more, together: its outputs are those of the whole scene at the end of the step.
+/// Evaluates each law once more for all of its contacts together, so that its outputs describe the whole scene at the end of the step.
 void ContactForces::run_outputs(std::vector<FoundContact>& found)
 {
     StepContext context;
@@ -62,9 +62,7 @@ void ContactForces::emit_happenings()
         constexpr const char* kNames[] = {"contact.begin", "contact.impact", "contact.end"};
         Event e;
         e.time = h.time, e.kind = kNames[static_cast<int>(h.kind)], e.component = h.detector, e.a = h.a, e.b = h.b;
-        if (h.kind != ForceHappening::Kind::End)
-            e.values = {h.point.x,  h.point.y,   h.point.z,   h.normal.x,  h.normal.y,
-                        h.normal.z, h.impulse.x, h.impulse.y, h.impulse.z, h.depth};
+        if (h.kind != ForceHappening::Kind::End) e.contact = {h.point, h.normal, h.impulse, h.depth};
         step_.emit(std::move(e));
     }
     live_.happenings.clear();
@@ -77,7 +75,7 @@ void ContactForces::emit_stiff()
     Event e;
     e.time = step_.frame.start_time, e.kind = "contact.stiff", e.severity = Severity::Warning, e.component = stiff_;
     e.message = "steps_per_contact asks for " + rounded_text(std::ceil(pieces_needed_)) +
-                " pieces of a step, more than max_substeps; contacts are cut less finely";
+                " substeps per step, more than max_substeps; contacts are resolved with fewer substeps";
     e.values = {pieces_needed_};
     step_.emit(std::move(e));
 }

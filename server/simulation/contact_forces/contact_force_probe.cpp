@@ -64,7 +64,7 @@ void ForceProbe::take(const Bodies& bodies, const Contact& contact, double size,
 
 Vec3 ForceProbe::force(world::World& world, std::uint32_t response, double depth, const Vec3& stretch, const Vec3& velocity)
 {
-    // All relative velocity is b's; what the law makes of masses and arms does not ask for more.
+    // The whole relative velocity is given to b: laws depend on the relative velocity only.
     for (std::size_t k = 0; k < 2; ++k)
     {
         bodies_.velocity[k] = k == 1 ? velocity : Vec3{};
@@ -86,7 +86,7 @@ double ForceProbe::normal_force(world::World& world, std::uint32_t response, dou
 double ForceProbe::open_depth(world::World& world, std::uint32_t response)
 {
     if (contact_.preload == 0 && contact_.rest_depth == 0) return 0;
-    // The static force rises with depth: bracket downwards, then halve.
+    // The static force rises with depth: bracket its zero downwards, then bisect.
     const auto pushes = [&](double depth) { return normal_force(world, response, depth, 0) > 0; };
     double high = std::max(contact_.depth, contact_.rest_depth), step = 1e-12 * size_;
     double low = high - step;
@@ -103,7 +103,7 @@ double ForceProbe::open_depth(world::World& world, std::uint32_t response)
 double ForceProbe::peak_depth(world::World& world, std::uint32_t response, double open_depth, double closing)
 {
     if (!(closing > 0) || !(mobility_[2] > 0)) return open_depth;
-    // f(x) x = m v^2: for a linear spring exactly the amplitude, for other powers near it. To a few per cent.
+    // Solve f(x) x = m v^2 to a few per cent: for a linear spring x is the amplitude exactly, for other powers approximately.
     const double energy = closing * closing / mobility_[2];
     const auto share = [&](double x) { return normal_force(world, response, open_depth + x, 0) * x / energy; };
     const double small = 1e-9 * size_;

@@ -1,6 +1,7 @@
-/// What the law of a contact force says of one contact by itself: stiffness, damping, how deep it will get.
+/// Measures the force law of one contact by itself: stiffness, damping, and the largest depth that it will reach.
 ///
-/// The law belongs to a plugin; it is asked on two bodies of the probe's own, so that nothing of the scene moves.
+/// The law belongs to a plugin and is a black box, so its derivatives are taken by finite differences. The probe evaluates it on copies
+/// of the two bodies, so that nothing in the scene changes.
 #pragma once
 
 #include <array>
@@ -18,16 +19,16 @@ void run_force_laws(world::World& world, std::uint32_t response, StepContext& co
 class ForceProbe
 {
 public:
-    /// The two bodies of `contact` as they stand, at rest.
+    /// Copies the two bodies of `contact` at their present poses, at rest.
     /// `size`: m, the smaller body's radius; `h`: s, the step.
     void take(const Bodies& bodies, const Contact& contact, double size, double h);
     /// Force on b along the normal, N, at a depth (m) and a closing speed (m/s).
     double normal_force(world::World& world, std::uint32_t response, double depth, double closing);
-    /// The depth at which the spring gives no force, near the one of the contact.
+    /// m: the depth at which the spring force is zero, near that of the contact.
     double open_depth(world::World& world, std::uint32_t response);
-    /// The depth at which the spring has taken up an approach at `closing`, from the depth at which it opens.
+    /// m: the largest depth that an impact with the speed `closing` (m/s) reaches if it starts at `open_depth` (m).
     double peak_depth(world::World& world, std::uint32_t response, double open_depth, double closing);
-    /// At a depth.
+    /// Frequencies and decay rate at a depth (m).
     ContactRates rates(world::World& world, std::uint32_t response, double depth);
     /// N/m of the stiction spring at a depth; 0 without friction.
     double stiction(world::World& world, std::uint32_t response, double depth);
@@ -41,7 +42,7 @@ private:
     std::array<Vec3, 3> axes_;  // two along the surface, then the normal
     std::array<double, 3> mobility_{};
     double share_a_ = 0;
-    double speed_ = 0;  // m/s, small beside the body's size a step
+    double speed_ = 0;  // m/s, small compared to the body's size per step
     double size_ = 0;   // m, over which rounding of positions counts
     Bodies bodies_;
     Shafts shafts_;

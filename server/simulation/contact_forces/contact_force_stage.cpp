@@ -1,4 +1,4 @@
-// Contacts that are forces, at a solver stage: found anew, matched with what is known of them, and handed to the laws.
+// Force contacts at a stage of the solver: detection, matching with the known contacts, and evaluation of the laws.
 #include <algorithm>
 #include <numbers>
 #include <tuple>
@@ -92,7 +92,7 @@ void ContactForces::detect(std::uint32_t index, std::span<const PersistentPair> 
     sink.begin_query(index, pairs, true, margin);
     ComponentCall query(step_, *step_.world.tables()[detector.table], detector.row);
     query.context.events = nullptr, query.call.contacts = &sink;
-    (void)query.run(*detector.command);  // what fails fails in the look at the end of the step, which tells it
+    (void)query.run(*detector.command);  // an error occurs again in the detection at the end of the step, which reports it
 }
 
 void ContactForces::fill_surface(FoundContact& f) const
@@ -123,8 +123,9 @@ void ContactForces::inspect(double margin, std::vector<Seen>& out)
     }
 }
 
-/// How far b's surface has moved along a's since the piece began: to third order in the turn where the contact point is
-/// a corner; where it stays below the centre only the first term counts, and a ball that rolls has not moved at all.
+/// m: displacement of b's surface along a's since the piece began. The error is of third order in the rotation if the contact point is a
+/// corner. For a ball the contact point stays below the centre, so the quadratic term is normal to the surface and drops out: a rolling
+/// ball has no displacement at all.
 Vec3 ContactForces::moved_along(const FoundContact& f) const
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -138,7 +139,8 @@ Vec3 ContactForces::moved_along(const FoundContact& f) const
     return displacement(f.contact.b.index) - displacement(f.contact.a.index);
 }
 
-/// Of the contact points that push: their places and what is known of them.
+/// Detects the pushing contact points at the present state, and fills in their stored state. With `lead`, depth and stretch are
+/// extrapolated by lead_.
 void ContactForces::gather(bool lead)
 {
     found_.clear(), matched_.clear();
@@ -198,7 +200,8 @@ void ContactForces::add(const StepContext& context, Wrenches& wrenches)
         run_laws(context, wrenches);
         return;
     }
-    // Time stepping takes forces once, and books them at other speeds: they stay what they were.
+    // Time stepping of a mixed island evaluates forces once, and calls again to book their work at other velocities: the forces must not
+    // change in between.
     if (!std::exchange(taken_, true))
     {
         gather(true);
@@ -240,7 +243,7 @@ void ContactForces::book(const StepContext& context, std::vector<double>& work, 
     }
 }
 
-/// At the present state, for whoever asks in between stages.
+/// Evaluates the laws at the present state, outside of solver stages.
 void ContactForces::evaluate_laws()
 {
     gather(false);
@@ -260,18 +263,20 @@ bool ContactForces::any_slack_change() const
     return std::any_of(matched_.begin(), matched_.end(), changed);
 }
 
-/// A piece is finished, and evaluate_laws was called at its end: history changes here and nowhere else.
+/// Commits the state of the contacts after a finished piece. evaluate_laws() has been called at its end; the history of the contacts
+/// changes nowhere else.
 void ContactForces::commit(double t, double h)
 {
     const double time = step_.frame.start_time + t;
     for (const auto& [i, known] : matched_)
     {
         const Contact& c = found_[i].contact;
-        // Of a swing at w, force times mobility changes by w^2 times its speed; the estimate fades within half a turn.
+        // In an oscillation at the frequency w, the rate of change of force times mobility is w^2 times the speed, which gives the speed
+        // amplitude. The estimate decays within half a period.
         const double rate = std::numbers::pi / known->half_period;
         const double speed = h > 0 ? length(c.impulse - known->force) * known->rates.mobility / (h * rate * rate) : 0.0;
         known->swing_speed = std::max(speed, known->swing_speed * (1 - std::min(0.5, h / known->half_period)));
-        // What counts as much: the touch, or a swing as wide as the force's static give.
+        // The reference is the largest of the speed so far and the speed of an oscillation whose amplitude is the static deflection.
         known->peak_swing_speed = std::max({known->peak_swing_speed, known->swing_speed, length(c.impulse) * known->rates.mobility / rate});
         known->stretch = c.stretch, known->force = c.impulse, known->depth = c.depth;
         if (c.depth > 1.05 * known->peak) expect(*known, found_[i], 0);

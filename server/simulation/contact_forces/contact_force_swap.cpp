@@ -1,9 +1,9 @@
-// Standing contacts when their response is exchanged for one of another kind: nothing pops, and swapping back at the same
-// boundary brings back every bit.
+// Conversion of contacts when their response is exchanged for one of another kind. Forces stay continuous, so that nothing jumps, and
+// swapping back at the same step boundary restores every bit.
 //
-//   spring -> hard: the overlap that the spring had is let be, and taken out slowly (position_correction.h); impulses are the
-//                   spring's force over a step. A contact that is about at rest stands.
-//   hard -> spring: the spring gives at the present depth the force that held the contact over the last step:
+//   spring -> hard: the overlap of the spring is kept as rest_depth and removed slowly (position_correction.h); warm-start impulses are the
+//                   spring force times the step. A contact that is nearly at rest becomes persistent.
+//   hard -> spring: at the present depth the spring gives the force that held the contact over the last step:
 //                   f = preload + k (depth - rest_depth), and its stiction spring is stretched accordingly.
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,7 @@ std::size_t ContactForces::converted(std::uint32_t component) const
     return n;
 }
 
-/// The laws of all detectors, as they are now.
+/// Hashes the present laws of all detectors.
 void ContactForces::read_laws()
 {
     laws_.assign(contacts_.detectors().size(), {});
@@ -74,7 +74,7 @@ void ContactForces::convert_contacts()
     const auto lives = [&](Ref r) { return step_.world.host().component_of(r) != kNoIndex; };
     std::erase_if(cache.force_pairs(),
                   [&](const ForcePair& p) { return index_of(p.detector) == contacts_.detectors().size() || !lives(p.a) || !lives(p.b); });
-    // From copies: what goes over must not be met again.
+    // Loop over copies, so that converted pairs are not visited again.
     const auto soft = cache.force_pairs();
     const auto hard = cache.pairs();
     live_.pairs = soft;
@@ -102,11 +102,11 @@ void ContactForces::soft_to_hard(const ForcePair& pair, std::uint32_t d)
     cache.get_or_add(pair.detector, pair.a, pair.b, step_.world, pair.since, added) = to;
     cache.parked_force_pairs().push_back(pair);
     live_.pairs.erase(find_same(live_.pairs, pair.detector, pair.a, pair.b));
-    // A sensor holds nobody: what they held is lost.
+    // A sensor holds no body, so contacts that become those of a sensor are not counted as converted.
     if (contacts_.detectors()[d].responds || contacts_.detectors()[d].by_rows) converted_[d] += pair.count;
 }
 
-/// Another law takes over with the force that there is.
+/// Another force law takes over with the present force.
 void ContactForces::soft_to_soft(const ForcePair& pair, std::uint32_t d)
 {
     PairState as_hard;
@@ -133,7 +133,7 @@ void ContactForces::hard_to_soft(const PairState& pair, std::uint32_t d)
     converted_[d] += to.count;
 }
 
-/// As the same law had it at this boundary, else as what held the contact says.
+/// The parked state of the pair if the same law had it at this boundary, otherwise a state computed from the impulses.
 ForcePair ContactForces::remember_or_soften(const PairState& pair, std::uint32_t d)
 {
     std::vector<ForcePair>& parked = contacts_.cache().parked_force_pairs();
@@ -161,7 +161,8 @@ PairState ContactForces::harden(const ForcePair& pair, const Detector& detector)
         if (!answered) continue;
         hard.impulse = soft.force * step_.frame.step;
         hard.rest_depth = std::max(soft.depth, 0.0);
-        // Faster than a tenth of what a swing as wide as the spring's static give has, it is in the middle of an impact.
+        // A pair that moves faster than a tenth of the speed of an oscillation with the static deflection as its amplitude is in the middle
+        // of an impact, and does not rest.
         Contact at;
         at.a = pair.a, at.b = pair.b, at.normal = pair.normal, at.point = bodies.position[pair.b.index];
         const double swing = dot(soft.force, pair.normal) * soft.rates.mobility * soft.half_period / std::numbers::pi;
@@ -182,7 +183,7 @@ bool ContactForces::soften_contact(const KnownContact& hard, const FoundContact&
     soft.feature = hard.feature, soft.id = hard.id, soft.begin = step_.frame.start_time + dt, soft.reported = true;
     soft.depth = c.depth;
     probe_.take(step_.world.host().bodies, c, contacts_.smaller_radius(c.a, c.b), step_.frame.step);
-    // Where the spring gives that force anyway, nothing need be remembered.
+    // If the spring gives that force anyway, no offset is needed.
     const double plain = probe_.normal_force(step_.world, response, c.depth, 0);
     if (c.depth <= 0 || std::fabs(plain - press) > 1e-9 * press) soft.rest_depth = c.depth, soft.preload = std::max(press, 0.0);
     FoundContact asked = at;
@@ -193,7 +194,7 @@ bool ContactForces::soften_contact(const KnownContact& hard, const FoundContact&
     if (k > 0) soft.stretch = (held - c.normal * press) * (-1 / k);
     soft.force = held;
     expect(soft, at, 0);
-    // It may be taken over in the middle of an impact, which gets as many pieces as from the touch on.
+    // The contact may be converted in the middle of an impact, which gets as many pieces as one from its first touch on.
     soft.swing_speed = std::fabs(contacts_.normal_velocity(c));
     soft.peak_swing_speed = std::max(soft.swing_speed, length(held) * soft.rates.mobility * soft.half_period / std::numbers::pi);
     return true;

@@ -1,4 +1,4 @@
-// When contact points begin and cease to push.
+// Switching events of force contacts: when contact points begin and cease to push.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,7 +16,7 @@ const ContactForces::Seen* ContactForces::find_seen(const std::vector<Seen>& lis
     return nullptr;
 }
 
-/// m: what positions cannot tell apart.
+/// m: rounding error of a depth.
 double ContactForces::rounding(const Contact& c) const
 {
     return 0x1p-50 * (8 * contacts_.smaller_radius(c.a, c.b) + positions_of(c.a, c.b));
@@ -29,11 +29,12 @@ bool ContactForces::switches(const Seen& seen, const std::vector<Seen>& before)
     if (const ForceContact* known = find_pushing(seen.found)) return c.depth < known->open_depth && seen.separation_speed > 0;
     if (c.depth <= rounding(c)) return false;
     if (const Seen* then = find_seen(before, seen.found)) return then->found.contact.depth <= rounding(c);
-    // A new corner of bodies that touch anyway comes at the end of the piece: its depth has no beginning to be found.
+    // A new corner of bodies that touch already is added at the end of the piece: as it was not detected before, there is no bracket for
+    // its touch.
     return !find_pair(contacts_.detectors()[seen.found.detector].component, c.a, c.b);
 }
 
-/// The present state against where the piece began. Leaves the laws evaluated.
+/// Whether any contact has switched between the start of the piece and the present state. Leaves the laws evaluated.
 bool ContactForces::has_switched(const std::vector<Seen>& now)
 {
     evaluate_laws();
@@ -45,8 +46,9 @@ bool ContactForces::any_switch(const std::vector<Seen>& before, const std::vecto
     return std::any_of(after.begin(), after.end(), [&](const Seen& s) { return switches(s, before); });
 }
 
-/// The first time in (low, high) at which one of those that have switched at `high` seems to do so: the depth's time as a
-/// cubic of the depth, from depths and speeds at both ends; where that cannot be, the middle.
+/// Estimates the first time in (low, high) at which one of the contacts that have switched at `high` does so. Inverse Hermite
+/// interpolation: time as a cubic polynomial of the depth, from depths and speeds at both ends, evaluated at the depth of the switch. The
+/// middle if the speeds do not allow that.
 double ContactForces::guess(double low, double high, const std::vector<Seen>& at_low, const std::vector<Seen>& at_high)
 {
     const double h = high - low;
@@ -64,7 +66,8 @@ double ContactForces::guess(double low, double high, const std::vector<Seen>& at
             const double d0 = then->found.contact.depth - open, d1 = s.found.contact.depth - open, travel = d1 - d0;
             const double u = -d0 / travel;
             t = u * h;
-            const double slow0 = travel / -then->separation_speed, slow1 = travel / -s.separation_speed;  // s per whole way
+            // s: time for the whole depth interval at the speed of each end.
+            const double slow0 = travel / -then->separation_speed, slow1 = travel / -s.separation_speed;
             if (slow0 > 0 && slow1 > 0 && slow0 < 3 * h && slow1 < 3 * h)
                 t = u * (1 - u) * (1 - u) * slow0 + u * u * (3 - 2 * u) * h + u * u * (u - 1) * slow1;
         }
@@ -74,7 +77,7 @@ double ContactForces::guess(double low, double high, const std::vector<Seen>& at
     return first;
 }
 
-/// Whether those that switch beyond are, at the present state, where they switch.
+/// Whether one of the contacts that have switched in `beyond` is at its switching depth at the present state, up to rounding.
 bool ContactForces::is_there(const std::vector<Seen>& now, const std::vector<Seen>& beyond)
 {
     for (const Seen& s : beyond)
@@ -115,7 +118,7 @@ void ContactForces::begin_contact(const Seen& seen, double time)
     if (fresh) pair->law_type = laws_[seen.found.detector].type, pair->law = laws_[seen.found.detector].values;
     ForceContact* old = pair->find(c.feature);
     if (!old && pair->count == ForcePair::kMostContacts) return;
-    // Where a swap has let an overlap be, a corner that comes to it begins without force as well.
+    // If a swap has left an overlap in this pair, a new corner starts without force as well.
     const auto eases = [](const ForceContact& other) { return other.rest_depth > 0; };
     const bool overlap_is_old = std::any_of(pair->all().begin(), pair->all().end(), eases);
     pair->normal = c.normal;
@@ -130,7 +133,7 @@ void ContactForces::begin_contact(const Seen& seen, double time)
     if (fresh) tell(ForceHappening::Kind::Begin, *pair, c, {}, time);
 }
 
-/// A point whose force is over. One that still overlaps, as a swap had left it, waits.
+/// Ends a contact point whose force is over. If it still overlaps because of a swap, it becomes dormant instead.
 void ContactForces::let_go(const Seen& seen, ForcePair& pair, double time)
 {
     const Contact& c = seen.found.contact;
@@ -147,7 +150,7 @@ void ContactForces::follow_dormant(const Seen& seen, ForceContact& known, double
     if (known.depth > 0 && seen.separation_speed < 0) begin_contact(seen, time);
 }
 
-/// Points that had let go and do not overlap any more, or are not there any more.
+/// Removes dormant points that do not overlap any more or have disappeared.
 void ContactForces::drop_dormant(const std::vector<Seen>& seen)
 {
     const auto overlaps = [&](const ForcePair& pair, const ForceContact& known)
@@ -199,7 +202,7 @@ void ContactForces::drop_ended(double time)
     std::erase_if(live_.pairs, over);
 }
 
-/// Corners that are not there any more, though their gap is not wide: they have become others.
+/// Lists pushing points that are not detected any more although their gap is small: their feature ids have changed.
 void ContactForces::list_gone(const std::vector<Seen>& seen)
 {
     there_.clear(), gone_.clear();
@@ -211,11 +214,11 @@ void ContactForces::list_gone(const std::vector<Seen>& seen)
             gone_.push_back(id);
 }
 
-/// At the end of a piece: who pushes in the next one.
+/// At the end of a piece: updates which points push in the next one.
 void ContactForces::switch_contacts(const std::vector<Seen>& seen, double t)
 {
     const double time = step_.frame.start_time + t;
-    // What would switch within this time does so now: a face's corners come down together.
+    // Contacts that would switch within this time switch now: the corners of a face land together.
     const double instant = 1e-12 * step_.frame.step;
     list_gone(seen);
     for (const Seen& s : seen)

@@ -1,4 +1,4 @@
-// Who may meet by force within a step, and who advances together because of it.
+// Which pairs may touch by force within a step, and which groups advance together because of it.
 #include "simulation/contact_forces/contact_forces.h"
 
 #include <algorithm>
@@ -10,9 +10,9 @@ namespace plab::simulation
 namespace
 {
 
-constexpr int kMostRounds = 64;
+constexpr int kMostMarginRounds = 64;
 constexpr double kSameMotionMargin = 1 + 1e-9,
-                 kLeastMotionMargin = 0.01;  // the latter of a body's radius: what rests is not looked at twice
+                 kLeastMotionMargin = 0.01;  // the latter as a fraction of a body's radius, so that resting bodies take no second pass
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void ContactForces::rebuild()
     make_room();
 }
 
-/// Where few bodies are near one another, their number changes without a step that asks for memory.
+/// Reserves memory, so that steps with few near bodies do not allocate when their number changes.
 void ContactForces::make_room()
 {
     constexpr std::size_t kRoom = 32;
@@ -90,9 +90,9 @@ void ContactForces::begin_step()
 
 void ContactForces::fill_motion_margins(double h)
 {
-    // Speeds, and what the forces of now would do; half as much again for what they do later.
+    // Displacement by the present velocities and forces, with half of it added for changes during the step.
     GroupSystem& system = motion_.system_for(step_.all_groups, {});
-    // To begin joins speeds to the rows of joints that have just come: that is work, whoever is the first to do it.
+    // begin() projects velocities onto joint rows that are new. That does work, which has to be booked by the first call, this one.
     system.begin(0, h, step_.book(), nullptr);
     system.evaluate(0, 0);
     const auto members = system.bodies();
@@ -106,20 +106,22 @@ void ContactForces::fill_motion_margins(double h)
     }
 }
 
-/// Whoever may be hit within the step may leave with the speed that the blow gives, and hit the next one.
+/// A body that is hit within the step may leave with the speed of the impact and hit the next one: propagates motion margins along chains
+/// of near pairs.
 void ContactForces::spread_motion_margins()
 {
     for (int round = 0; raise_motion_margins(); ++round)
     {
-        const bool is_last = round == kMostRounds;
+        const bool is_last = round == kMostMarginRounds;
         if (is_last) level_motion_margins();
         find_near();
         if (is_last) return;
     }
 }
 
-/// Reaches of near pairs, until they agree; false if they did. Of two that meet head-on without a loss the one at rest leaves with
-/// 2 m / (m + m') of the other's speed. Round a circle of pairs these shares multiply to 1 at most: it comes to an end.
+/// Raises the motion margins of near pairs until they are consistent; false if they already were. In a head-on elastic impact of m on m' at
+/// rest, m' leaves with 2 m / (m + m') of the speed of m. Around a closed chain of pairs the product of these factors is at most 1, so the
+/// iteration ends.
 bool ContactForces::raise_motion_margins()
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -147,7 +149,7 @@ bool ContactForces::raise_motion_margins()
     return raised;
 }
 
-/// For a row longer than there are rounds: nobody is out of anybody's reach who is near the fastest.
+/// For chains of bodies longer than the number of rounds: gives every dynamic body at least the largest margin.
 void ContactForces::level_motion_margins()
 {
     const double most = *std::max_element(motion_margin_.begin(), motion_margin_.end());
@@ -238,7 +240,7 @@ void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std:
     island_count_ = 0;
     if (!within_motion_margins(groups, to - from))
     {
-        // An impact within the step made somebody faster than anybody could know.
+        // An impact within the step has made a body faster than its margin allows.
         for (const std::uint32_t g : groups)
             for (const std::uint32_t b : step_.groups.all[g].bodies)
                 motion_margin_[b] = std::max(motion_margin_[b], 2 * speed_of({Facet::Body, b}) * (to - from));
@@ -267,7 +269,7 @@ void ContactForces::take(std::span<const std::uint32_t> groups, std::vector<std:
 
 void ContactForces::collect_observed(Island& island, std::span<const std::uint32_t> observed)
 {
-    // Whom the forces of the island read, and who is moved as told and may be touched.
+    // The groups that the forces of the island read, and those of kinematic bodies that may be touched.
     bound_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t g : island.groups) bound_[g] = 1;
     island.observed.assign(observed.begin(), observed.end());
@@ -288,7 +290,7 @@ void ContactForces::collect_observed(Island& island, std::span<const std::uint32
 
 std::uint32_t ContactForces::solver_of(const Island& island) const
 {
-    // As for a group: the highest order, then the first by id.
+    // The same rule as for a group: the solver of the highest order, then the first by id.
     std::uint32_t best = kNoIndex;
     const world::World& world = step_.world;
     for (const std::uint32_t g : island.groups)

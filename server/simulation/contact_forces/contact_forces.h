@@ -1,10 +1,24 @@
-/// Contacts that are forces (responses `by_force`): found and evaluated at every solver stage, in as many pieces of the
-/// step as their fastest rate asks for, and only while something touches.
+/// Force contacts (responses `by_force`): springs and dampers such as Response/Penalty, integrated by the solver of the bodies.
 ///
-/// Which contact points push is fixed within a piece, so that what the solver sees is smooth and its order is kept. The times
-/// at which a point begins and ceases to push are located, and a piece ends there. Groups whose bodies may meet by force
-/// within the step advance together, as an island; an island that holds standing hard contacts too is advanced by their
-/// time stepping, with the springs as forces (contact_force_advance.cpp).
+/// A contact force has a kink at the touch: it is zero before and rises after it. An integrator of order p keeps its order only if the
+/// right-hand side is smooth over each of its steps. Two measures achieve that:
+///
+/// 1. Switching events. The step is divided into pieces, and within a piece the set of contact points that push is fixed. After each piece
+///    the contacts are detected: if a point has begun to overlap, a pushing point has opened, or a damper has become slack (it would have
+///    to pull, so its law gives no force), the piece is undone, the time of the first such switch is located by inverse cubic
+///    interpolation of the depth with bisection as a safeguard, and the piece is repeated up to that time. There the set changes.
+/// 2. Piece length. A stiff contact may last much shorter than a step. The largest frequency or decay rate of all pushing contacts is
+///    bounded by Gershgorin's theorem, and a piece is pi / (rate * steps_per_contact) long, so that half a period gets that many pieces.
+///    As an oscillation decays, fewer pieces give the same error. max_substeps limits their number; if more would be needed, pieces
+///    become longer and the event contact.stiff warns.
+/// While nothing pushes, a piece is as long as no body can pass through another one unnoticed.
+///
+/// At every stage of the solver the contacts are detected again and the law is evaluated. Each contact point has a tangential (stiction)
+/// spring, whose stretch is its value at the start of the piece plus the relative displacement since then; it is committed once a piece
+/// is finished, so rejected trials leave no trace.
+///
+/// Groups whose bodies may touch by force within the step advance together as an island. An island that contains persistent hard
+/// contacts as well is advanced by the time stepping of those, with the springs as forces (contact_force_advance.cpp).
 #pragma once
 
 #include <vector>
@@ -23,34 +37,33 @@ public:
     {
     }
 
-    /// After any structural change. Contacts go over from hard to soft and back where a response was exchanged.
+    /// To be called after any structural change. Converts contacts from hard to soft and back if a response was exchanged.
     void rebuild();
     /// Whether any detector's contacts are forces.
     bool any() const { return any_; }
     /// Whether anything may touch by force in this step; after begin_step.
     bool may_touch() const { return !near_.empty(); }
-    /// Looks who may meet within the step.
+    /// Finds the pairs that may meet within the step.
     void begin_step();
 
-    /// Takes out of `smooth` and `in_contact` the groups that may touch by force between `from` and `to`; all are advanced
-    /// from there by advance().
+    /// Takes the groups that may touch by force between `from` and `to` (s) out of `smooth` and `in_contact`; advance() moves them.
     void take(std::span<const std::uint32_t> groups, std::vector<std::uint32_t>& smooth, std::vector<std::uint32_t>& in_contact,
               double from, double to);
-    /// Advances what take() took. `shadows`: whom the groups read, and who is brought back by the caller.
+    /// Advances the groups that take() took. `observed`: groups whose state they read; the caller restores those.
     void advance(std::span<const std::uint32_t> observed, double from, double to, WorkBook book, bool trial);
-    /// Springs push in this system of one or more groups from now on, at the present state.
+    /// Adds the contact forces at the present state to this system of one or more groups.
     void attach(GroupSystem& system, std::span<const std::uint32_t> groups);
     /// Flags groups that may touch another one by force.
     void flag_near(std::vector<std::uint8_t>& groups) const;
-    /// Whoever may push a group that is flagged is flagged too. True if that flagged somebody.
+    /// Flags all groups that may push a flagged group. True if that flagged any.
     bool close_over(std::vector<std::uint8_t>& groups) const;
-    /// How many contact points went over from hard to soft or back when the structure was rebuilt last, by detector
-    /// component or response component.
+    /// Number of contact points that were converted from hard to soft or back when the structure was rebuilt last, for a detector or
+    /// response component.
     std::size_t converted(std::uint32_t component) const;
-    /// Of the end of the step: events, outputs, and what is reported with found contacts.
+    /// Finishes the step: emits events, evaluates outputs, and fills the forces into the found contacts.
     void finish_step(std::vector<FoundContact>& found);
 
-    // Contacts go back and forth with a group.
+    // The state of contacts is rewound and restored with that of their groups.
     void rewind(std::uint32_t group) override
     {
         if (any_) transfer(segment_, live_, group);
@@ -89,13 +102,13 @@ private:
         std::vector<std::uint32_t> groups, observed;
         bool mixed = false;
     };
-    /// A contact as found, with its speed of parting.
+    /// A detected contact with its separation speed.
     struct Seen
     {
         FoundContact found;
         double separation_speed = 0;  ///< m/s
     };
-    /// A body where the present piece began.
+    /// The pose of a body at the start of the present piece.
     struct Anchor
     {
         Vec3 position;
@@ -204,7 +217,6 @@ private:
     double spin_rate() const;
     double closing_bound(const NearPair& pair) const;
     double margin_for(double h) const;
-    double number(std::uint32_t response, const char* name, double otherwise) const;
     void save(const GroupSystem& system);
     void restore(const GroupSystem& system);
 
@@ -222,25 +234,25 @@ private:
     std::vector<std::uint8_t> by_force_;  ///< by detector
     ForceState live_, segment_, end_;
     std::vector<NearPair> near_;
-    std::vector<double> motion_margin_;  ///< m, by body, for the whole step
+    std::vector<double> motion_margin_;  ///< m, by body, for the whole step: expansion of its AABB
 
     std::vector<Island> islands_;
     std::size_t island_count_ = 0;
     std::vector<std::uint8_t> member_, bound_;  ///< by group
     DisjointSets sets_;
 
-    // Of the island that is being advanced.
+    // State of the island that is being advanced.
     std::vector<NearPair> pairs_;
     std::vector<Pushing> pushing_;
-    std::vector<std::uint32_t> bodies_;  ///< of pairs_
-    std::vector<Anchor> anchors_;        ///< by body, where pushing
-    double margin_ = 0;                  ///< m: gaps up to this are looked at within a piece
-    int order_ = 1;                      ///< of the solver
-    bool taken_ = false;                 ///< the forces of this piece of a mixed island are known
-    double lead_ = 0;                    ///< s: how far ahead of the speeds springs are taken (mixed islands)
+    std::vector<std::uint32_t> bodies_;  ///< bodies of pairs_
+    std::vector<Anchor> anchors_;        ///< by body; valid for bodies_
+    double margin_ = 0;                  ///< m: gaps up to this are detected within a piece
+    int order_ = 1;                      ///< order of the solver
+    bool taken_ = false;                 ///< the forces of this piece of a mixed island have been evaluated
+    double lead_ = 0;                    ///< s: how far ahead of the state springs are evaluated (mixed islands)
     std::vector<PersistentPair> persistent_;
     std::vector<FoundContact> found_;
-    std::vector<std::pair<std::size_t, ForceContact*>> matched_;  ///< found_ and what is known of it
+    std::vector<std::pair<std::size_t, ForceContact*>> matched_;  ///< index in found_, and the known contact
     std::vector<Contact> law_contacts_;
     std::vector<Seen> at_start_, at_end_, at_trial_, at_low_, at_high_;
     std::vector<std::uint64_t> gone_, there_;  ///< ids of contacts
@@ -250,9 +262,9 @@ private:
     ForceProbe probe_;
     std::vector<NearCollector::Pair> near_found_;
     std::array<std::vector<double>, 3> sums_;  ///< by body, of ContactRates: normal, tangential, damping
-    double pieces_needed_ = 0;                 ///< the most that a step of an island asked for beyond what it may have
-    std::uint32_t stiff_ = kNoIndex;           ///< response that asked
-    bool undersampled_ = false;                ///< the present piece is longer than was asked for
+    double pieces_needed_ = 0;                 ///< largest number of pieces that an island asked for beyond max_substeps in this step
+    std::uint32_t stiff_ = kNoIndex;           ///< the response that asked for them
+    bool undersampled_ = false;                ///< the present piece is longer than steps_per_contact asks for
     std::vector<std::size_t> converted_;       ///< contact points, by detector
     struct Law
     {
@@ -260,7 +272,7 @@ private:
     };
     std::vector<Law> laws_;             ///< by detector; see ForcePair
     std::vector<SurfaceLaw> surfaces_;  ///< by detector, in this step
-    std::size_t last_pair_ = 0;         ///< where find_pair found something last: lists stand in one order
+    std::size_t last_pair_ = 0;         ///< index that find_pair found last: pairs are usually looked up in order
 };
 
 }  // namespace plab::simulation

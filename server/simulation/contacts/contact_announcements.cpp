@@ -1,4 +1,4 @@
-// Events of contacts in the middle of a step: released, in Painleve's paradox.
+// Contact events inside a step: releases and Painleve's paradox.
 #include <algorithm>
 #include <utility>
 
@@ -11,7 +11,7 @@ namespace plab::simulation
 namespace
 {
 
-/// PairHead::release: whether it is released shows in the next step.
+/// Value of PairHead::release if only the next step shows whether the pair is released.
 constexpr std::uint32_t kUndecided = PairHead::kNoRelease - 1;
 
 }  // namespace
@@ -23,20 +23,27 @@ Event ContactBook::contact_event(const char* kind, const PairState& pair, double
     return e;
 }
 
+Event ContactBook::contact_event(const char* kind, const PairState& pair, double time, const Contact& at, const Vec3& impulse) const
+{
+    Event e = contact_event(kind, pair, time);
+    e.contact = {at.point, at.normal, impulse, at.depth};
+    return e;
+}
+
 void ContactBook::add_point(Pressing& pressing, PairState& pair, const Contact& c, double speed, double h)
 {
     const double before = dot(cache_.contact_of(pair, c.feature).impulse, c.normal);
     pressing.before += before;
     pressing.now += dot(c.impulse, c.normal);
     const bool is_known = pair.pressed_tick == step_.frame.tick || pair.release == kUndecided;
-    if (!(before > 0) && !is_known) return;  // it only touches
+    if (!(before > 0) && !is_known) return;  // it touches without pressing
     pressing.opens = std::min(pressing.opens, speed - c.turning);
     pressing.separation_speed = std::min(pressing.separation_speed, speed - c.turning + std::max(0.0, -c.depth) / h);
 }
 
 bool ContactBook::note_release(PairState& pair, const Contact& first, const Pressing& pressing, double from, double h)
 {
-    constexpr double kNothing = 0x1p-40;  // of the last step's impulse: what an iteration leaves
+    constexpr double kNothing = 0x1p-40;  // fraction of the last step's impulse: the residual of an iterative solver
     if (pair.pressed_tick != step_.frame.tick)
     {
         const bool is_open = pair.release == kUndecided && pair.pressed_tick == step_.frame.tick - 1;
@@ -56,13 +63,12 @@ bool ContactBook::note_release(PairState& pair, const Contact& first, const Pres
     if (pair.release < kUndecided || !(pressing.separation_speed > kParts * taken)) return true;
     if (h < step_.frame.step && !(pressing.opens > 0))
     {
-        // In a bit of a step a gap may be too wide to close: the next step shows whether it holds on.
+        // In a short piece of a step a gap may be too wide to close: the next step shows whether the pair holds on.
         pair.release = kUndecided;
         return true;
     }
-    Event e =
-        contact_event("contact.release", pair, step_.frame.start_time + from + h * (taken / (taken + pressing.separation_speed) - 0.5));
-    e.values = {first.point.x, first.point.y, first.point.z, first.normal.x, first.normal.y, first.normal.z};
+    const double time = step_.frame.start_time + from + h * (taken / (taken + pressing.separation_speed) - 0.5);
+    Event e = contact_event("contact.release", pair, time, first);
     pair.release = static_cast<std::uint32_t>(releases_.size());
     releases_.push_back(std::move(e));
     return true;
@@ -75,24 +81,23 @@ bool ContactBook::tell_release(PairState& pair)
     return true;
 }
 
-/// Whether two bodies that touch slide so that pressing harder would close them faster.
 bool ContactBook::is_paradox(const Contact& contact) const
 {
     return contact.depth >= -overlap_tolerance(contact.a, contact.b) &&
            pressing_share(step_.world.host().bodies, contact, step_.frame.step) <= 0;
 }
 
-/// Told where it begins: what follows is one of several answers, an impulse that ends the slip.
+/// Reports the paradox in the first step in which it occurs. What follows is one of several possible solutions: an impulse that ends the
+/// sliding.
 void ContactBook::tell_paradox(const Contact& contact, PairState& pair, double time)
 {
     const bool goes_on = pair.paradox_tick >= step_.frame.tick - 1;
     pair.paradox_tick = step_.frame.tick;
     if (goes_on) return;
-    Event e = contact_event("contact.paradox", pair, time);
+    Event e = contact_event("contact.paradox", pair, time, contact);
     e.severity = Severity::Warning;
-    e.message = "Painleve's paradox: friction of " + number_text(contact.friction) +
-                " on this lever leaves sliding without an answer; an impulse ends the slip. Less friction, or a less slender body, has one";
-    e.values = {contact.point.x, contact.point.y, contact.point.z, contact.normal.x, contact.normal.y, contact.normal.z};
+    e.message = "Painleve's paradox: with friction " + number_text(contact.friction) +
+                " and this lever arm sliding has no solution; an impulse ends it. Less friction or a less slender body avoids the paradox";
     step_.emit(std::move(e));
 }
 

@@ -15,10 +15,10 @@ namespace plab::simulation
 namespace
 {
 
-/// Of the smaller body's radius: a standing pair is never looked at as if it were closer than this.
+/// Largest extra margin with which a persistent pair is detected, as a fraction of the smaller body's radius.
 constexpr double kMostShare = 0.1;
 
-/// m: radius of the most curved round shape of a body, negative of what is touched from inside; infinite where it has none.
+/// m: radius of the most strongly curved shape of a body, negative for surfaces that are touched from inside; infinite if it has none.
 double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
 {
     double least = HUGE_VAL;
@@ -47,12 +47,14 @@ const PairState* known_pair(const ContactCache& cache, const world::World& world
     return at != cache.pairs().end() && at->detector == detector && at->a == c.a && at->b == c.b ? &*at : nullptr;
 }
 
-/// m: by how much two round bodies part while they slide along one another straight on for h: (v h)^2 / (2 (r_a + r_b)) in one step.
-/// That leaves them parting at twice this per step, and forces, which take it back, act a step later: up to 8 times as much.
+/// m: gap that opens between two round bodies because they move straight on for h while they slide along one another. One step opens
+/// (v h)^2 / (2 (r_a + r_b)). After it they separate by twice that per step, and forces act against it one step later, so the gap can
+/// grow to 8 times as much.
 double opening_by_curves(double speed, double h, double radii) { return 4 * speed * speed * h * h / radii; }
 
-/// m, beyond `base`: what slides along a curve is off it by a little more than others at the end of a step, and still held: without, it
-/// would hop. Not what parts faster than the curve makes it: that bounces.
+/// m: persistence margin of a pair that may slide along a curve, at least `base`. Such a pair is off the curve by a little more than others
+/// at the end of a step and must still count as persistent, otherwise it would hop. A pair that separates faster than the curvature
+/// explains bounces, and gets `base` only.
 double sliding_margin(const world::HostTables& host, Ref a, Ref b, const Vec3& normal, double base, double radius, double h)
 {
     const Vec3 v = host.bodies.velocity[b.index] - host.bodies.velocity[a.index];
@@ -133,7 +135,8 @@ void ContactBook::detect_all(std::vector<FoundContact>& out)
                 persistent_.push_back({p.a, p.b, {}}), margin = std::max(margin, persistence_margin(p));
         const std::size_t first = out.size();
         detect(detectors_[d], d, persistent_, false, out, margin);
-        // One look has one margin, that of the widest standing pair: gaps count for standing pairs only, each up to its own.
+        // A detection pass has one margin, the largest of all persistent pairs. Gaps count for persistent pairs only, each up to its own
+        // margin, so the others are dropped again.
         const auto far = [&](const FoundContact& f)
         {
             if (f.contact.depth > 0) return false;
@@ -145,8 +148,8 @@ void ContactBook::detect_all(std::vector<FoundContact>& out)
     sort_contacts(out, step_.world);
 }
 
-/// Contacts of pairs that stand as soon as they touch: with the gaps that count as touching, or may close within the step, and, of pairs
-/// that pressed, those that curves open.
+/// Contacts of a detector whose pairs are persistent as soon as they touch. Includes gaps up to the persistence margin, gaps that may close
+/// within the step (speculative contacts), and, for pairs that pressed, gaps that curvature opens.
 void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact>& out)
 {
     const Detector& detector = detectors_[index];
@@ -156,16 +159,16 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
     for (std::uint32_t b = 0; b < bodies.size(); ++b)
     {
         if (!bodies.dynamic(b) || !std::isfinite(radius_of_body_[b])) continue;
-        // The other one is round, too, of any radius.
+        // The other body may be round as well, with any radius.
         const double opens = opening_by_curves(2 * fastest, step_.frame.step, curve_radius(bodies, step_.world.host().shapes, b));
         margin = std::max(margin, kPersistenceShare * radius_of_body_[b] + std::min(opens, kMostShare * radius_of_body_[b]));
     }
-    const double acceleration = detector.speculates ? number_of(detector.resolution, "acceleration") : 0.0;
+    const double acceleration = detector.speculation_acceleration.value_or(0);
     if (detector.speculates) margin = std::max(margin, speculative_margin(bodies, radius_of_body_, acceleration, step_.frame.step));
     const std::size_t first = out.size();
     detect(detector, index, {}, false, out, margin);
-    // By the normal that is seen, not the one that is known: this look serves the next step as well, and a step that begins from a
-    // snapshot looks with other knowledge.
+    // Use the detected normal, not the stored one: this detection serves the next step as well, and it has to give the same result in a
+    // step that starts from a snapshot, where the stored normal may differ.
     const auto margin_of = [&](const Contact& c)
     {
         const PairState* pair = known_pair(cache_, step_.world, detector.component, c);
@@ -181,13 +184,6 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
     out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), far), out.end());
 }
 
-double ContactBook::number_of(std::uint32_t component, const char* parameter) const
-{
-    const Field* field = step_.world.table_of(component).schema().find_field(parameter);
-    const auto* column = field ? dynamic_cast<const Column<double>*>(field->column) : nullptr;
-    return column ? (*column)[step_.world.component(component).row] : 0.0;
-}
-
 KnownContact& ContactBook::known_contact(const FoundContact& f) { return cache_.contact_of(*find_pair(f), f.contact.feature); }
 
 PairState* ContactBook::find_pair(const FoundContact& f)
@@ -195,14 +191,15 @@ PairState* ContactBook::find_pair(const FoundContact& f)
     return cache_.find(detectors_[f.detector].component, f.contact.a, f.contact.b, step_.world);
 }
 
-/// m: gaps of a standing pair up to this may close within h: corners that come round are held before they are through.
+/// m: gaps of a persistent pair up to this may close within h (s). Corners that rotate towards the other body become contacts before they
+/// penetrate it.
 double ContactBook::gap_margin(const PairState& pair, double h) const
 {
     const double margin = closing_margin(step_.world.host().bodies, radius_of_body_, pair.a, pair.b, pair.normal, h);
     return margin > persistence_margin(pair) ? margin : 0.0;
 }
 
-/// One look has one margin: drops what was seen beyond that of its own pair.
+/// A detection pass has one margin for all pairs: drops contacts beyond the margin of their own pair.
 void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -241,7 +238,7 @@ void ContactBook::touching_pairs_of(std::span<const std::uint32_t> groups, std::
         f.contact.resting = true;
         const KnownContact& known = known_contact(f);
         f.contact.id = known.id, f.contact.impulse = known.impulse;
-        f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
+        f.contact.depth -= known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
         fill_material(f);
     }
 }
@@ -272,7 +269,7 @@ bool ContactBook::is_of_pair(const FoundContact& f, const PairState& pair) const
 
 std::size_t ContactBook::first_of_pair(const PairState& pair, std::size_t from) const
 {
-    // Both lists stand in the order of detector, a, b: one walk serves all pairs.
+    // Both lists are sorted by detector, a and b, so one pass serves all pairs.
     const auto key = [&](std::uint32_t detector, Ref a, Ref b)
     { return std::tuple(step_.world.rank(detector), step_.world.rank(a), step_.world.rank(b)); };
     const auto wanted = key(pair.detector, pair.a, pair.b);

@@ -1,4 +1,4 @@
-/// Contacts that are forces, over time: what a spring remembers from the touch to the end of the contact.
+/// State of force contacts (springs and dampers) over time: what is stored from the first touch to the end of the contact.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 namespace plab::simulation
 {
 
-/// How fast one contact by itself would swing or settle, as sums over both of its bodies.
+/// Squared frequencies and decay rate of one contact by itself, as sums over both of its bodies.
 struct ContactRates
 {
     double normal = 0;      ///< 1/s^2: stiffness times mobility along the normal
     double tangential = 0;  ///< 1/s^2: along the surface, the worse direction
     double damping = 0;     ///< 1/s: damping times mobility, the worst direction
     double mobility = 0;    ///< 1/kg along the normal
-    double share_a = 0;     ///< how much of it is a's
+    double share_a = 0;     ///< a's fraction of the mobility, 0 to 1
 };
 
 /// One contact point that pushes.
@@ -27,37 +27,37 @@ struct ForceContact
 {
     std::uint32_t feature = 0;
     std::uint64_t id = 0;
-    Vec3 stretch;           ///< m, W: of the stiction spring, where the present piece of the step began
-    double rest_depth = 0;  ///< m, N: see Contact; other than 0 where the spring took over from a hard contact
+    Vec3 stretch;           ///< m, W: of the stiction spring, at the start of the present piece of the step
+    double rest_depth = 0;  ///< m; and preload, N: see Contact. Nonzero if the spring took over from a hard contact
     double preload = 0;
-    double open_depth = 0;        ///< m: the spring gives no force there; below it the contact ends
-    double approach = 0;          ///< m/s: closing speed at the touch
-    double begin = 0;             ///< s, time of the touch
-    double depth = 0;             ///< m, as seen last
-    double peak = 0;              ///< m: how deep it is expected to get
+    double open_depth = 0;        ///< m: depth at which the spring force is zero; below it the contact ends
+    double approach = 0;          ///< m/s: closing speed at the first touch
+    double begin = 0;             ///< s, time of the first touch
+    double depth = 0;             ///< m, as detected last
+    double peak = 0;              ///< m: largest depth that is expected
     double half_period = 0;       ///< s: pi over the fastest rate of this contact by itself
     ContactRates rates;           ///< at `peak`
-    double swing_speed = 0;       ///< m/s: about the speed with which it swings
-    double peak_swing_speed = 0;  ///< m/s: the most that this has been
+    double swing_speed = 0;       ///< m/s: estimated speed amplitude of its oscillation
+    double peak_swing_speed = 0;  ///< m/s: the largest value of it so far
     Vec3 impulse;                 ///< N s on b, since it began
     Vec3 force;                   ///< N on b, as of the last finished piece
     Tick asked = -1;              ///< step in which `peak` was estimated last
-    bool slack = false;           ///< overlaps, and the law gives no force: a damper that would have to pull
-    bool reported = false;        ///< its impact is an event already
-    /// Has let go where a swap had let an overlap be: no force until the bodies have parted, or close again.
+    bool slack = false;           ///< overlaps, but the law gives no force: a damper that would have to pull
+    bool reported = false;        ///< its impact event has been emitted
+    /// Its force has ended while a swap had left some overlap: no force until the bodies have separated or close again.
     bool dormant = false;
 };
 
-/// A pair of bodies with contact points that push, without those.
+/// A pair of bodies with contact points that push: everything but the points.
 struct ForcePairHead
 {
     std::uint32_t detector = kNoIndex;  ///< component
     Ref a, b;
     Tick since = 0;
-    std::uint64_t law_type = 0;  ///< which law made it what it is: the type
-    std::uint64_t law = 0;       ///< type and parameters
+    std::uint64_t law_type = 0;  ///< hash of the type of the force law that the state belongs to
+    std::uint64_t law = 0;       ///< hash of its type and parameters
     Vec3 normal;
-    std::uint32_t count = 0;  ///< of its contacts
+    std::uint32_t count = 0;  ///< number of its contacts
 };
 
 struct ForcePair : ForcePairHead
@@ -76,7 +76,7 @@ struct ForcePair : ForcePairHead
     }
 };
 
-/// Something to tell when the step is over, unless its time is rewound.
+/// An event to be emitted when the step is over, unless its time is rewound.
 struct ForceHappening
 {
     enum class Kind : std::uint8_t
@@ -93,7 +93,7 @@ struct ForceHappening
     double depth = 0;             ///< m
 };
 
-/// All that changes with contacts that are forces while groups advance: it goes back when they do.
+/// The state of force contacts that changes while groups advance; it is rewound with them.
 struct ForceState
 {
     std::vector<ForcePair> pairs;  ///< by detector, a and b in id order

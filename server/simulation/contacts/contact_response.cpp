@@ -1,4 +1,4 @@
-// What answers contacts: materials, responses, and what these do to the energy.
+// Responses to contacts: materials, calls of the responses, and booking of their energy.
 #include <algorithm>
 
 #include "simulation/contacts/contact_book.h"
@@ -20,12 +20,11 @@ void ContactBook::fill_material(FoundContact& f) const
     f.contact.friction = law.friction, f.contact.restitution = law.restitution;
 }
 
-/// Where no Material/Pair says otherwise.
+/// Friction and restitution that apply unless a Material/Pair sets its own.
 SurfaceLaw ContactBook::response_law(std::uint32_t detector) const
 {
-    const std::uint32_t response = detectors_[detector].response;
-    if (response == kNoIndex) return {};
-    return {number_of(response, "friction"), number_of(response, "restitution")};
+    const Detector& d = detectors_[detector];
+    return {d.friction.value_or(0), d.restitution.value_or(0)};
 }
 
 double ContactBook::kinetic_energy(const std::vector<FoundContact>& contacts) const
@@ -42,7 +41,7 @@ double ContactBook::kinetic_energy(const std::vector<FoundContact>& contacts) co
 
 void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, double dt, WorkBook book)
 {
-    // Each detector's own response answers for its contacts. Several detectors are answered in id order.
+    // Each detector's contacts go to its own response; detectors are handled in id order.
     for (std::uint32_t d = 0; d < detectors_.size(); ++d)
     {
         if (!detectors_[d].responds) continue;
@@ -63,7 +62,7 @@ void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, 
         step_.meter.leave();
         if (book.work) book_impact(response, contacts, mode, kinetic_energy(contacts) - before, book);
         step_.report.worst_residual = std::max(step_.report.worst_residual, impact.residual);
-        // A response that counts none went through all contacts in each iteration.
+        // A response that does not count its visits went through all contacts in each iteration.
         const std::size_t visits = impact.visits > 0 ? static_cast<std::size_t>(impact.visits)
                                                      : impact_contacts_.size() * static_cast<std::size_t>(impact.iterations);
         step_.report.swept_rows += 3 * (impact_contacts_.size() + visits);
@@ -73,7 +72,8 @@ void ContactBook::respond(std::vector<FoundContact>& contacts, ImpactMode mode, 
     }
 }
 
-/// An impact takes energy, or keeps it, where nobody is moved as told.
+/// Books the work of an impact. Without kinematic bodies an impact cannot create energy; any excess is an error of the response and goes to
+/// ContactEnergy::made instead.
 void ContactBook::book_impact(std::uint32_t response, const std::vector<FoundContact>& contacts, ImpactMode mode, double work,
                               WorkBook book)
 {

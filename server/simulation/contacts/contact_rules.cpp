@@ -20,7 +20,7 @@ Error refused(const world::World& world, const Detector& d, std::string why)
     return e;
 }
 
-/// How a detection takes a body: those in Between collide with one another and with those in Against.
+/// The role of a body in a detection: bodies in Between collide with one another and with those in Against.
 enum class Side : std::uint8_t
 {
     None,
@@ -35,7 +35,7 @@ bool collide(std::size_t x, std::size_t y)
     return (x == between && y != none) || (y == between && x != none);
 }
 
-/// By host row.
+/// The side of each body, by host row.
 std::vector<Side> sides_of(const world::World& world, const Detector& d)
 {
     std::vector<Side> out(world.host().bodies.size(), Side::None);
@@ -50,7 +50,7 @@ std::vector<Side> sides_of(const world::World& world, const Detector& d)
     return out;
 }
 
-/// Bodies that two detections take alike: the first of them by id, and the next.
+/// Bodies with the same sides in two detections: the first two of them by id, for dynamic and for other bodies.
 struct Alike
 {
     std::array<std::uint32_t, 2> moving{kNoIndex, kNoIndex}, fixed{kNoIndex, kNoIndex};
@@ -65,7 +65,7 @@ struct Alike
     }
 };
 
-/// A pair of bodies, at least one of which forces move, that both detections look at; or nobody.
+/// A pair of bodies, at least one of them dynamic, that both detections handle; kNoIndex if there is none.
 std::array<std::uint32_t, 2> shared_pair(const world::World& world, const std::vector<Side>& first, const std::vector<Side>& second)
 {
     std::array<Alike, kSides * kSides> classes;
@@ -103,8 +103,8 @@ void refuse_shared_pairs(const world::World& world, std::span<const Detector> de
             const auto id = [&](std::uint32_t body) { return "'" + world.id_of(Ref{Facet::Body, body}) + "'"; };
             errors.push_back(refused(world, detectors[k],
                                      "the pair " + id(a) + ", " + id(b) + " is answered by '" + world.id_of(detectors[i].component) +
-                                         "' as well: one pair takes one detection. Take it out of `between` or `against` of one of "
-                                         "them, or let one be a sensor, with Response/None"));
+                                         "' as well: a pair may have only one detection. Remove it from `between` or `against` of one "
+                                         "of them, or make one of them a sensor with Response/None"));
         }
 }
 
@@ -119,12 +119,12 @@ Errors check_contacts(const world::World& world, std::span<const Detector> detec
         const std::string resolution = type_name(world, d.resolution), response = type_name(world, d.response);
         if (d.speculates && !d.by_rows)
             errors.push_back(refused(world, d,
-                                     resolution + " makes contacts of gaps that may close, which " + response +
-                                         " cannot hold; it needs a response by rows, like Response/Rows"));
+                                     resolution + " treats gaps that may close as contacts, which " + response +
+                                         " cannot solve; it needs a response by rows, like Response/Rows"));
         if (world.type_of(d.resolution)->info.certifies && !d.gap)
             errors.push_back(refused(world, d,
-                                     resolution + " looks for contacts inside a step by measuring gaps, which " +
-                                         type_name(world, d.component) + " cannot; take Resolution/LocalBisection"));
+                                     resolution + " finds contacts inside a step by measuring gaps, which " +
+                                         type_name(world, d.component) + " cannot do; use Resolution/LocalBisection"));
     }
     refuse_shared_pairs(world, detectors, errors);
     return errors;

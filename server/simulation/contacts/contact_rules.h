@@ -1,5 +1,5 @@
-/// Which resolution goes with which response: what makes no sense is refused when a scene is loaded or a component
-/// exchanged; what is merely not used is stated.
+/// Checks which resolutions and responses fit together. Combinations that cannot work are refused when a scene is loaded or a component is
+/// exchanged; parameters that merely have no effect are reported.
 #pragma once
 
 #include <span>
@@ -12,15 +12,15 @@
 namespace plab::simulation
 {
 
-/// Refused, with the detector as the element:
-///   - a resolution that speculates without a response by rows: nobody would let the gaps close;
-///   - a resolution that certifies with a detection that measures no gaps;
-///   - two detections that both answer one pair of bodies: each would push as if the other were not there. A sensor
-///     (Response/None) beside another detection is fine.
+/// Errors, with the detector as the element, for
+///   - a resolution that speculates without a response by rows: other responses would hold bodies apart at the gap;
+///   - a resolution that certifies with a detection that cannot measure gaps;
+///   - two detections that both answer the same pair of bodies: each would push as if the other did not exist. A sensor
+///     (Response/None) in addition to another detection is fine.
 Errors check_contacts(const world::World& world, std::span<const Detector> detectors);
 
-/// Sentences on what a scene names and does not use, for `--explain`:
-///   - a resolution that locates, or certifies, beside a response that is a force.
+/// Sentences about components of a scene that have no effect, for `--explain`:
+///   - a resolution that locates, or certifies, together with a response that is a force.
 std::vector<std::string> unused_in_contacts(const world::World& world, std::span<const Detector> detectors);
 
 }  // namespace plab::simulation

@@ -60,8 +60,7 @@ KnownContact& ContactCache::contact_of(PairState& pair, std::uint32_t feature)
 {
     for (std::uint32_t i = 0; i < pair.count; ++i)
         if (pair.contacts[i].feature == feature) return pair.contacts[i];
-    // A full manifold gives its last place away: ids beyond it are of no use to
-    // anybody.
+    // If the manifold is full, its last slot is reused.
     const std::uint32_t place = std::min<std::uint32_t>(pair.count, PairState::kMostContacts - 1);
     pair.count = place + 1;
     pair.contacts[place] = {};
@@ -87,16 +86,16 @@ void ContactCache::refresh(const world::World& world, const std::vector<Detector
         const auto lives = [&](Ref r) { return world.host().component_of(r) != kNoIndex; };
         return !has_detector || !lives(p.a) || !lives(p.b);
     };
-    const auto foreseen_by_nobody = [&](const PairState& p)
+    const auto has_no_speculating_detector = [&](const PairState& p)
     {
         return p.ahead && std::none_of(detectors.begin(), detectors.end(),
                                        [&](const Detector& d) { return d.component == p.detector && d.speculates; });
     };
     std::erase_if(pairs_, gone);
-    std::erase_if(pairs_, foreseen_by_nobody);
+    std::erase_if(pairs_, has_no_speculating_detector);
     for (PairState& p : pairs_)
     {
-        // Where nobody responds any more nothing stands: a sensor holds no body up.
+        // Without a response nothing rests: a sensor supports no body.
         const bool answered =
             std::any_of(detectors.begin(), detectors.end(),
                         [&](const Detector& d) { return d.component == p.detector && (d.responds || d.by_rows || d.by_force); });
@@ -119,7 +118,7 @@ void copy_head(const ForcePairHead& from, ForcePairHead& to) { to = from; }
 std::uint64_t hash_of_contact(const KnownContact& k)
 {
     const std::uint64_t h = mix(mix(hash_of(k.impulse), k.id), std::uint64_t{k.feature});
-    // Only where somebody remembers.
+    // The spring state is hashed only if there is one.
     if (k.stretch == Vec3{} && k.rest_depth == 0 && k.preload == 0) return h;
     return mix(mix(mix(h, hash_of(k.stretch)), k.rest_depth), k.preload);
 }
@@ -172,7 +171,7 @@ std::uint64_t ContactCache::state_hash(const world::World& world, std::uint64_t 
     for (const PairState& p : pairs_) h = mix(h, hash_of_pair(world, p));
     for (const ForcePair& p : force_pairs_)
     {
-        // By name: who else there is in the scene is no part of their state.
+        // By name, so that the hash of these pairs does not depend on what else is in the scene.
         h = mix(mix(h, hash_of_name(world.id_of(p.a))), hash_of_name(world.id_of(p.b)));
         for (const ForceContact& c : p.all()) h = mix(h, hash_of_contact(c));
     }
@@ -182,7 +181,7 @@ std::uint64_t ContactCache::state_hash(const world::World& world, std::uint64_t 
 namespace
 {
 
-/// The first command of a phase that takes part; null if there is none.
+/// The first command of a phase that is selected; null if there is none.
 const CommandInfo* find_command(const world::World& world, std::uint32_t component, Phase phase)
 {
     if (component == kNoIndex || world.component(component).quarantined) return nullptr;
@@ -200,12 +199,11 @@ std::uint32_t manager_of(const world::World& world, std::uint32_t response)
     return kNoIndex;
 }
 
-/// What the detector's resolution and response say of themselves.
+/// Fills in what the types of the detector's resolution and response declare.
 void describe(Detector& d, const world::World& world)
 {
     d.responds = find_command(world, d.response, Phase::Respond) != nullptr;
-    // A gap is measured wherever there is a resolution that needs it, whatever
-    // the stage lists select.
+    // The gap command is used whenever a resolution needs it, whatever the stage lists select.
     for (const CommandInfo& command : world.type_of(d.component)->info.commands)
         if (command.phase == Phase::Gap && command.run) d.gap = &command;
     if (d.response != kNoIndex && !world.component(d.response).quarantined)
@@ -214,7 +212,10 @@ void describe(Detector& d, const world::World& world)
         d.by_rows = response.by_rows, d.by_force = response.by_force;
         if (d.by_rows) d.manager = manager_of(world, d.response);
     }
+    d.friction = {world, d.response, "friction"}, d.restitution = {world, d.response, "restitution"};
+    d.steps_per_contact = {world, d.response, "steps_per_contact"}, d.max_substeps = {world, d.response, "max_substeps"};
     if (!find_command(world, d.resolution, Phase::Locate)) return;
+    d.speculation_acceleration = {world, d.resolution, "acceleration"}, d.max_work = {world, d.resolution, "max_work"};
     const TypeInfo& resolution = world.type_of(d.resolution)->info;
     d.speculates = resolution.speculates;
     d.locates = resolution.locates && !d.by_force;
@@ -223,6 +224,16 @@ void describe(Detector& d, const world::World& world)
 }
 
 }  // namespace
+
+DeclaredNumber::DeclaredNumber(const world::World& world, std::uint32_t component, std::string_view name)
+{
+    if (component == kNoIndex) return;
+    const Field* field = world.table_of(component).schema().find_field(name);
+    if (!field) return;
+    row_ = world.component(component).row;
+    real_ = dynamic_cast<const Column<double>*>(field->column);
+    whole_ = dynamic_cast<const Column<std::int64_t>*>(field->column);
+}
 
 std::vector<Detector> find_detectors(const world::World& world, const Schedule& schedule)
 {

@@ -1,9 +1,8 @@
-/// Contacts over time: who touches since when, under stable ids, whatever
-/// detection library found them.
+/// Contacts over time: which pairs touch since when, under stable ids, whatever detection library found them.
 ///
-/// A pair is known from the step in which it first touches until its gap opens.
-/// What the next step depends on (resting, overlap at the start, impulses for
-/// warm starts) is state: it is saved, restored and hashed with the scene.
+/// A pair is known from the step in which it first touches until its gap opens. If it stays in contact without bouncing, it is persistent
+/// (`resting`). Everything that the next step depends on (resting, overlap at the start, impulses for warm starts) is state: it is saved,
+/// restored and hashed with the scene.
 #pragma once
 
 #include <array>
@@ -15,7 +14,26 @@
 namespace plab::simulation
 {
 
-/// A detection component with the algorithms that answer for what it finds.
+/// A number that a component declares under some name. It is found once, when the scene changes; a step then reads it without a search.
+class DeclaredNumber
+{
+public:
+    DeclaredNumber() = default;
+    /// Nothing is declared where `component` is kNoIndex or has no such parameter.
+    DeclaredNumber(const world::World& world, std::uint32_t component, std::string_view name);
+    double value_or(double otherwise) const
+    {
+        if (real_) return (*real_)[row_];
+        return whole_ ? static_cast<double>((*whole_)[row_]) : otherwise;
+    }
+
+private:
+    const Column<double>* real_ = nullptr;
+    const Column<std::int64_t>* whole_ = nullptr;
+    Row row_ = 0;
+};
+
+/// A detection component with the algorithms that handle what it finds: its resolution and its response.
 struct Detector
 {
     std::uint32_t component = kNoIndex;
@@ -24,17 +42,19 @@ struct Detector
     const CommandInfo* command = nullptr;
     std::uint32_t resolution = kNoIndex;  ///< component
     std::uint32_t response = kNoIndex;    ///< component
-    std::uint32_t manager = kNoIndex;     ///< component; of a response by rows
-    const CommandInfo* gap = nullptr;     ///< measures how far two bodies are apart; null: it cannot
+    std::uint32_t manager = kNoIndex;     ///< component; for a response by rows
+    const CommandInfo* gap = nullptr;     ///< command that measures the gap of two bodies; null: it has none
     bool locates = false, local = false;
-    bool certifies = false;   ///< the resolution looks inside the step
-    bool speculates = false;  ///< gaps that may close within the step are
-                              ///< contacts, with depth < 0
-    bool responds = false;    ///< the response has a command for impacts and takes part
-    bool by_rows = false;     ///< the response leaves contacts to a manager
-    bool by_force = false;    ///< the response is a force
-    /// Contacts are no events: a touching pair is a standing pair at once, and a
-    /// manager or a force answers it.
+    bool certifies = false;                          ///< the resolution uses motion bounds: no impact inside the step is missed
+    bool speculates = false;                         ///< gaps that may close within the step count as contacts, with depth < 0
+    bool responds = false;                           ///< the response has a command for impacts and takes part
+    bool by_rows = false;                            ///< the response leaves contacts to a manager
+    bool by_force = false;                           ///< the response is a force
+    DeclaredNumber friction, restitution;            ///< of the response; materials may have their own
+    DeclaredNumber steps_per_contact, max_substeps;  ///< of a response that is a force
+    DeclaredNumber speculation_acceleration;         ///< m/s^2, of a resolution that speculates
+    DeclaredNumber max_work;                         ///< of a resolution that locates
+    /// Contacts are not events: a touching pair is persistent at once, and a manager or a force handles it.
     bool persists() const { return by_force || (by_rows && !locates); }
 };
 
@@ -55,12 +75,12 @@ struct KnownContact
     std::uint32_t feature = 0;
     std::uint64_t id = 0;
     Vec3 impulse;           ///< N s per step on b, for warm starts
-    Vec3 stretch;           ///< m, as in Contact: what contacts that are forces remember
+    Vec3 stretch;           ///< m, as in Contact: state of force contacts
     double rest_depth = 0;  ///< m
     double preload = 0;     ///< N
 };
 
-/// The last impacts of a pair, to see where a sequence of bounces ends.
+/// The last impacts of a pair, to predict where a sequence of bounces ends (zeno.h).
 struct BounceHistory
 {
     double time = 0;      ///< s, of the last impact
@@ -69,28 +89,25 @@ struct BounceHistory
     friend bool operator==(const BounceHistory&, const BounceHistory&) = default;
 };
 
-/// A pair without its contacts.
+/// A pair: everything but its contacts.
 struct PairHead
 {
     std::uint32_t detector = kNoIndex;  ///< component
     Ref a, b;
     Tick since = 0;
     bool resting = false;
-    bool ahead = false;        ///< does not touch: a gap that may close within the step
-                               ///< (Resolution/Speculative), held and told to nobody
-    bool overlapping = false;  ///< at the end of the last advance: it cannot be
-                               ///< bracketed from there
-    Vec3 normal;               ///< of the last contact seen, a to b
-    std::uint32_t count = 0;   ///< of its contacts
+    bool ahead = false;        ///< does not touch: a gap that may close within the step (Resolution/Speculative); solved, but not reported
+    bool overlapping = false;  ///< at the end of the last advance: there is no clear side to bracket from
+    Vec3 normal;               ///< of the contact detected last, a to b
+    std::uint32_t count = 0;   ///< number of its contacts
     BounceHistory bounces;
-    std::uint32_t impacts = 0;  ///< in the step `impacts_tick`; not hashed: a step begins with none
+    std::uint32_t impacts = 0;  ///< number of impacts in the step `impacts_tick`; not hashed: a step begins with none
     Tick impacts_tick = -1;
-    Tick paradox_tick = -2;     ///< last step in which pressing harder would have
-                                ///< closed it faster; not hashed either
-    double pressed_before = 0;  ///< N s, in the step before `pressed_tick`; not hashed: a step looks itself
+    Tick paradox_tick = -2;     ///< last step with Painleve's paradox at this pair; not hashed either
+    double pressed_before = 0;  ///< N s, in the step before `pressed_tick`; not hashed: each step finds it itself
     Tick pressed_tick = -1;
     static constexpr std::uint32_t kNoRelease = UINT32_MAX;
-    std::uint32_t release = kNoRelease;  ///< among those noted in the step `pressed_tick`
+    std::uint32_t release = kNoRelease;  ///< index of its release among those noted in the step `pressed_tick`
 };
 
 struct PairState : PairHead
@@ -106,36 +123,33 @@ class ContactCache
 public:
     PairState* find(std::uint32_t detector, Ref a, Ref b, const world::World& world);
     PairState& get_or_add(std::uint32_t detector, Ref a, Ref b, const world::World& world, Tick now, bool& added);
-    /// Adds pairs that are not known yet, in one pass. `fresh` is sorted as
-    /// pairs() are.
+    /// Adds pairs that are not known yet, in one pass. `fresh` is sorted like pairs().
     void add_sorted(std::span<const PairState> fresh, const world::World& world);
     std::vector<PairState>& pairs() { return pairs_; }
     const std::vector<PairState>& pairs() const { return pairs_; }
-    /// The id under which a feature of the pair is known; a new one if it is new.
+    /// The known contact of a feature of the pair; added with a new id if the feature is new.
     KnownContact& contact_of(PairState& pair, std::uint32_t feature);
-    /// Null where that is not known.
+    /// Null if the pair or the feature is not known.
     const KnownContact* find_contact(std::uint32_t detector, Ref a, Ref b, std::uint32_t feature, const world::World& world);
-    /// Drops pairs whose detector or bodies are gone and sorts the rest anew,
-    /// after a structural change.
+    /// To be called after a structural change: drops pairs whose detector or bodies are gone, and sorts the rest again.
     void refresh(const world::World& world, const std::vector<Detector>& detectors);
     void clear() { *this = {}; }
-    /// As `from`, but for the places of contacts that are not in use: a pair has room for more than it mostly has.
+    /// Copies `from`, except contact slots that are not in use: a pair has more of them than it usually needs.
     void copy(const ContactCache& from);
     std::uint64_t new_id() { return next_id_++; }
     std::uint64_t next_id() const { return next_id_; }
-    /// Ids go on where those of a snapshot ended.
+    /// Lets ids continue from those of a snapshot.
     void continue_ids(std::uint64_t next) { next_id_ = next; }
-    /// Pairs whose contacts are forces, in the same order.
+    /// Pairs with force contacts, in the same order.
     std::vector<ForcePair>& force_pairs() { return force_pairs_; }
     const std::vector<ForcePair>& force_pairs() const { return force_pairs_; }
-    /// Pairs as they were before a swap made other ones of them at the present
-    /// boundary: swapping back brings them back.
+    /// Pairs as they were before a swap converted them at the present step boundary: swapping back restores them.
     std::vector<PairState>& parked_pairs() { return parked_pairs_; }
     const std::vector<PairState>& parked_pairs() const { return parked_pairs_; }
     std::vector<ForcePair>& parked_force_pairs() { return parked_force_pairs_; }
     const std::vector<ForcePair>& parked_force_pairs() const { return parked_force_pairs_; }
     void forget_parked() { parked_pairs_.clear(), parked_force_pairs_.clear(); }
-    /// Of all that later steps depend on, added to `start`.
+    /// Hash of everything that later steps depend on, mixed into `start`.
     std::uint64_t state_hash(const world::World& world, std::uint64_t start) const;
 
 private:
@@ -174,7 +188,7 @@ private:
     double margin_ = 0;
 };
 
-/// Collects the pairs that may meet, given how far each body may get.
+/// Collects the pairs that may meet, given each body's motion margin, by which its AABB is expanded.
 class NearCollector final : public ContactSink
 {
 public:
@@ -198,31 +212,30 @@ private:
     std::vector<Pair>* out_;
 };
 
-/// By detector, bodies in id order, feature: no library's order reaches the
-/// state.
+/// Sorts by detector, bodies in id order, and feature, so that the order in which a library reports contacts does not affect the state.
 void sort_contacts(std::vector<FoundContact>& contacts, const world::World& world);
 
-/// N s: what the contacts of a pair took along their normal in the last advance.
+/// N s: sum of the normal impulses of a pair in the last advance.
 double pressed_with(const PairState& pair);
-/// Whether a standing pair held something in the last step; what did not bounces, or passes by.
+/// Whether a persistent pair had a pressing impulse in the last step.
 bool pressed(const PairState& pair);
 
-/// 1/kg: how fast an impulse of 1 N s at p (W, m) along n makes a body there, along n.
+/// 1/kg: effective inverse mass of a body at p (W, m) along n: the velocity change there by a unit impulse.
 double mobility_at(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n);
 
-/// m: the least radius of gyration, sqrt(tr I / 2m), of the dynamic ones among some bodies; 0 if there are none. What is small there is
-/// small beside it.
+/// m: the smallest radius of gyration, sqrt(tr I / 2m), of the dynamic ones among some bodies; 0 if there are none. It serves as the
+/// length scale of tolerances.
 double least_gyration(const Bodies& bodies, std::span<const std::uint32_t> some);
 
-/// Overlap that is left alone: share of the smaller body's radius.
+/// Overlap that is not corrected, as a fraction of the smaller body's radius.
 inline constexpr double kOverlapShare = 1e-8;
-/// Slower than this share of a body's radius of gyration a step nothing meets.
+/// A contact that closes by less than this fraction of the radius of gyration per step is not an impact.
 inline constexpr double kNoApproach = 0x1p-34;
-/// Share of the speed that a contact took in the last step: what parts faster than that is released, and does not tremble.
+/// A pair is released if it separates faster than this fraction of the speed that its impulse took away in the last step. Slower motion is
+/// jitter.
 inline constexpr double kParts = 0x1p-24;
-/// A standing pair is looked at as if it were this share of its smaller body's
-/// radius closer: corners that are about to touch are contacts too, with their
-/// gap, and a gap below this does not end the contact.
+/// Persistence margin as a fraction of the smaller body's radius. Persistent pairs are detected with this margin: corners that are about to
+/// touch are contacts too, with their gap, and a gap below the margin does not end the contact.
 inline constexpr double kPersistenceShare = 1e-4;
 
 }  // namespace plab::simulation

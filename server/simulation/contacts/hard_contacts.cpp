@@ -8,7 +8,8 @@ namespace plab::simulation
 void HardContacts::begin_step()
 {
     if (held_.any()) held_.begin_step();
-    // A step that begins from a snapshot looks where others know: no part of what bounds this step's work.
+    // A step that starts from a snapshot has to detect contacts that are otherwise known from the step before. This must not count in the
+    // work budget, or the step would not be reproducible.
     step_.report.further_pairs = 0;
 }
 
@@ -87,7 +88,7 @@ void HardContacts::finish_step()
         const bool ahead = held_.keeps_ahead(pair, touches, own, time);
         if (!touches && !ahead)
         {
-            // What pressed in its last step, and is gone at its end, was released in between.
+            // A pair that pressed in the last step and does not touch at the end of this one was released in between.
             if (was_held && !released) step_.emit(contacts_.contact_event("contact.release", pair, time));
             if (!pair.ahead) step_.emit(contacts_.contact_event("contact.end", pair, time));
             continue;

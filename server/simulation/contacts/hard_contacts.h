@@ -1,5 +1,5 @@
-/// Standing contacts that impulses hold, whoever answers them: managers (held_islands.h) or responses (impulse_islands.h); and, at the end
-/// of a step, what becomes of every pair that is known.
+/// Persistent contacts that impulses hold, solved by managers (held_islands.h) or by responses (impulse_islands.h). At the end of a step
+/// this class also decides which known pairs persist and which end.
 #pragma once
 
 #include "simulation/contacts/held_islands.h"
@@ -24,14 +24,15 @@ public:
     /// After any structural change.
     void rebuild() { held_.rebuild(); }
     void begin_step();
-    /// Whether anybody has to advance with others because of a standing contact, or a joint that only a manager can hold.
+    /// Whether groups have to advance as islands because of a persistent contact, or of a joint that only a manager can hold.
     bool any_stands() const;
     /// Whether a group has such a joint in this step.
     bool holds_joints_of(std::uint32_t group) const { return held_.holds_joints_of(group); }
-    /// Groups with a standing contact, from where they are: each island by itself.
+    /// Advances groups with persistent contacts from their present state, each island by itself. Times in s since the start of the step.
     void advance(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to, WorkBook book,
                  bool trial);
-    /// With the contacts of the step's end in found(): which begin, persist and end; overlap is parted.
+    /// With the contacts of the end of the step in ContactBook::found(): decides which pairs begin, persist and end, and corrects
+    /// positions.
     void finish_step();
 
 private:

@@ -1,5 +1,4 @@
-// Contacts of islands that managers hold: which of them are known, who begins
-// to stand, and what the next step remembers.
+// Contacts of islands that managers hold: which of them are known, which pairs become persistent, and what is kept for the next step.
 #include <algorithm>
 #include <cmath>
 
@@ -7,8 +6,7 @@
 
 namespace plab::simulation
 {
-// Who knows what
-// ------------------------------------------------------------------------------------------------------
+// Known pairs ---------------------------------------------------------------------------------------------------------
 
 void HeldIslands::note_state()
 {
@@ -22,16 +20,16 @@ bool HeldIslands::is_current() const
 {
     const Bodies& bodies = step_.world.host().bodies;
     if (!known_ || known_positions_ != bodies.position || known_orientations_ != bodies.orientation) return false;
-    // How far gaps are looked for depends on speeds.
+    // The margin up to which gaps are detected depends on velocities.
     return known_velocities_ == bodies.velocity && known_spins_ == bodies.angular_velocity;
 }
 
 void HeldIslands::begin_step()
 {
     find_yielding_rows();
-    const bool stands = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(),
-                                    [](const Detector& d) { return d.by_rows && d.persists(); });
-    if (!stands || is_current()) return;
+    const bool any_persists = std::any_of(contacts_.detectors().begin(), contacts_.detectors().end(),
+                                          [](const Detector& d) { return d.by_rows && d.persists(); });
+    if (!any_persists || is_current()) return;
     contacts_.detect_all(contacts_.found());
     adopt(contacts_.found(), step_.frame.start_time);
     note_state();
@@ -68,9 +66,7 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
 
 void HeldIslands::tell_begin(const PairState& pair, const Contact& c, double time) const
 {
-    Event begin = contacts_.contact_event("contact.begin", pair, time);
-    begin.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, 0, 0, 0, c.depth};
-    step_.emit(std::move(begin));
+    step_.emit(contacts_.contact_event("contact.begin", pair, time, c));
 }
 
 bool HeldIslands::keeps_ahead(PairState& pair, bool touches, std::span<const FoundContact> found, double time) const
@@ -91,8 +87,7 @@ void HeldIslands::pass_on(PairState& pair, std::uint32_t known, std::span<const 
     for (std::uint32_t i = known; i < pair.count; ++i) pair.contacts[i].impulse = left * share;
 }
 
-// Contacts
-// ------------------------------------------------------------------------------------------------------------
+// Contacts ------------------------------------------------------------------------------------------------------------
 
 void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law)
 {
@@ -102,14 +97,13 @@ void HeldIslands::fill(FoundContact& f, PairState& pair, const SurfaceLaw& law)
     f.contact.friction = (own ? own : &law)->friction, f.contact.restitution = (own ? own : &law)->restitution;
     const KnownContact& known = contacts_.cache().contact_of(pair, f.contact.feature);
     f.contact.id = known.id, f.contact.impulse = known.impulse;
-    f.contact.depth -= known.rest_depth;  // what a swap from a spring left is taken out by and by
+    f.contact.depth -= known.rest_depth;  // overlap left by a swapped-out spring is removed gradually
     f.contact.resting = true;
 }
 
-/// Contacts of the held groups at the present state. Those of persisting pairs
-/// are known if nothing moved since; the others depend on who stands since
-/// when, so they are looked for anew: a function of the state, whatever
-/// happened before it.
+/// Collects the contacts of the held groups at the present state. Those of detectors that persist are known if nothing has moved since the
+/// last detection. Contacts of the other detectors are detected anew, because they depend on which pairs have come to rest in the meantime:
+/// this way the result is a function of the state alone, whatever happened before.
 void HeldIslands::collect_contacts(double from, double h)
 {
     touching_.clear(), pair_of_contact_.clear();
@@ -129,8 +123,7 @@ void HeldIslands::collect_contacts(double from, double h)
     add_known_contacts();
 }
 
-/// What the last look found of persisting pairs. Both lists stand in the order
-/// of detector, a, b.
+/// Adds what the last detection found of persistent pairs. Both lists are sorted by detector, a and b.
 void HeldIslands::add_known_contacts()
 {
     std::size_t at = 0;
@@ -161,17 +154,17 @@ void HeldIslands::share_contacts(double h)
             if (bodies.dynamic(r.index) && step_.groups.of(r) != kNoIndex && number == kNoIndex)
                 number = island_of_group_[step_.groups.of(r)];
         if (number == kNoIndex) continue;
-        Island& island = *islands_[number];
+        HeldIsland& island = *islands_[number];
         island.turns = island.turns || (!island.has_rows && midway_.turns(c, h));
         island.contacts.push_back(c);
         island.places.push_back(i);
     }
 }
 
-/// Closing speed of what begins: a contact that held nothing in the last step
-/// and closes faster than half of what forces would give it in this one, or
-/// held something and is hit. Below that it trembles, or comes to rest.
-void HeldIslands::set_approach(Island& island, const GroupSystem& system, double h)
+/// Sets Contact::approach, the closing speed of impacts. A contact counts as an impact if it had no impulse in the last step and closes
+/// faster than half the speed that forces would give it in this one, or if it had an impulse and closes faster than twice that speed.
+/// Slower contacts jitter or come to rest, and get no restitution.
+void HeldIslands::set_approach(HeldIsland& island, const GroupSystem& system, double h)
 {
     for (std::size_t k = 0; k < island.members.size(); ++k)
         given_speed_[island.bodies[k]] = length(system.acceleration(island.members[k])) * h;
@@ -185,20 +178,20 @@ void HeldIslands::set_approach(Island& island, const GroupSystem& system, double
     for (const std::uint32_t b : island.bodies) given_speed_[b] = 0;
 }
 
-void HeldIslands::keep(const Island& island)
+void HeldIslands::keep(const HeldIsland& island)
 {
     for (std::size_t i = 0; i < island.contacts.size(); ++i)
     {
         const Contact& c = island.contacts[i];
         PairState& pair = *pair_of_contact_[island.places[i]];
-        // What an impact took does not tell how hard the contact will press.
+        // The impulse of an impact is not an estimate of how hard the contact will press in the next step.
         contacts_.cache().contact_of(pair, c.feature).impulse = c.approach > 0 ? Vec3{} : c.impulse;
         pair.normal = c.normal;
     }
 }
 
-/// Looks for pairs that pressed in the last step, and whose points all part.
-void HeldIslands::note_releases(Island& island, double from, double h) const
+/// Finds pairs that pressed in the last step and whose points all separate now.
+void HeldIslands::note_releases(HeldIsland& island, double from, double h) const
 {
     for (std::size_t i = 0, end = 0; i < island.contacts.size(); i = end)
     {
@@ -212,23 +205,22 @@ void HeldIslands::note_releases(Island& island, double from, double h) const
             contacts_.add_point(pressing, pair, c, island.motion.separation_speed(end), h);
             is_hit = is_hit || c.approach > 0;
         }
-        if (is_hit) pressing.now = HUGE_VAL;  // who is hit is held
+        if (is_hit) pressing.now = HUGE_VAL;  // a pair with an impact is not released
         if (!contacts_.note_release(pair, island.contacts[i], pressing, from, h)) continue;
         for (std::size_t k = i; k < end; ++k) island.contacts[k].impulse = {};
     }
 }
 
-void HeldIslands::tell_impacts(const Island& island, double time)
+void HeldIslands::tell_impacts(const HeldIsland& island, double time)
 {
     for (std::size_t i = 0; i < island.contacts.size(); ++i)
     {
         const Contact& c = island.contacts[i];
         if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
-        const double depth = touching_[island.places[i]].contact.depth;
         PairState& pair = *pair_of_contact_[island.places[i]];
         if (pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, tell_begin(pair, touching_[island.places[i]].contact, time);
-        Event e = contacts_.contact_event("contact.impact", pair, time);
-        e.values = {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.impulse.x, c.impulse.y, c.impulse.z, depth};
+        Event e = contacts_.contact_event("contact.impact", pair, time, c, c.impulse);
+        e.contact->depth = touching_[island.places[i]].contact.depth;
         step_.emit(std::move(e));
     }
 }

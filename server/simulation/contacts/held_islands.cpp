@@ -40,7 +40,8 @@ void HeldIslands::rebuild()
         }
 }
 
-/// Limits that are near, motors at a loss: who has such rows now. Others advance by their solver.
+/// Finds the groups with joint rows that are one-sided (limits that are near) or have a bounded impulse (motors) in this step
+/// (ConstraintRow::may_yield). All other groups can advance by their solver.
 void HeldIslands::find_yielding_rows()
 {
     holds_joints_ = false;
@@ -63,7 +64,7 @@ std::uint32_t HeldIslands::manager_of(const PairState& pair) const
     return kNoIndex;
 }
 
-// Who is held ---------------------------------------------------------------------------------------------------------
+// Which groups are held -----------------------------------------------------------------------------------------------
 
 void HeldIslands::take(std::vector<std::uint32_t>& groups, DisjointSets& islands)
 {
@@ -107,13 +108,13 @@ void HeldIslands::make_islands(DisjointSets& islands)
         if (number == kNoIndex)
         {
             number = static_cast<std::uint32_t>(island_count_++);
-            if (islands_.size() < island_count_) islands_.push_back(std::make_unique<Island>());
-            Island& fresh = *islands_[number];
+            if (islands_.size() < island_count_) islands_.push_back(std::make_unique<HeldIsland>());
+            HeldIsland& fresh = *islands_[number];
             fresh.manager = manager_of_island_[root], fresh.has_rows = fresh.turns = false;
             fresh.groups.clear(), fresh.contacts.clear(), fresh.places.clear();
         }
         island_of_group_[g] = number;
-        Island& island = *islands_[number];
+        HeldIsland& island = *islands_[number];
         island.groups.push_back(g);
         island.has_rows = island.has_rows || !step_.groups.all[g].rows.empty();
     }
@@ -123,7 +124,7 @@ void HeldIslands::make_islands(DisjointSets& islands)
 
 void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial)
 {
-    // A look at where a piece begins: no time, no impulses.
+    // An advance by no time, to query the start of a piece: no impulses.
     if (!(to > from)) return;
     make_islands(islands);
     collect_contacts(from, to - from);
@@ -131,27 +132,28 @@ void HeldIslands::advance(std::span<const std::uint32_t> observed, DisjointSets&
     plain_.clear(), jointed_.clear(), plain_groups_.clear();
     for (std::size_t i = 0; i < island_count_; ++i)
     {
-        Island& island = *islands_[i];
+        HeldIsland& island = *islands_[i];
         (island.has_rows ? jointed_ : plain_).push_back(&island);
         if (!island.has_rows) plain_groups_.insert(plain_groups_.end(), island.groups.begin(), island.groups.end());
     }
-    // Islands without joints share one system: who is in which of them changes with every contact, who is in all does not.
+    // Islands without joints share one system: their members change with every contact, but the union of all islands changes rarely, so
+    // the system needs no new configuration.
     std::sort(plain_groups_.begin(), plain_groups_.end());
     if (!plain_.empty()) run(plain_, plain_groups_, observed, from, to, book, trial);
-    for (Island* island : jointed_) run(std::span(&island, 1), island->groups, observed, from, to, book, trial);
+    for (HeldIsland* island : jointed_) run(std::span(&island, 1), island->groups, observed, from, to, book, trial);
 }
 
-void HeldIslands::run(std::span<Island*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed,
+void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed,
                       double from, double to, WorkBook book, bool trial)
 {
     GroupSystem& system = motion_.system_for(groups, observed);
     system.hold_rows(true);
     system.begin(from, to, book, trial ? nullptr : &step_);
-    for (Island* island : islands) island->members.clear(), island->roots.clear(), island->bodies.clear(), island->shafts.clear();
+    for (HeldIsland* island : islands) island->members.clear(), island->roots.clear(), island->bodies.clear(), island->shafts.clear();
     for (std::uint32_t i = 0; i < system.bodies().size(); ++i)
     {
         const std::uint32_t b = system.bodies()[i], number = island_of_group_[step_.groups.group_of_body[b]];
-        if (number == kNoIndex) continue;  // a shadow
+        if (number == kNoIndex) continue;  // observed only
         islands_[number]->members.push_back(i), islands_[number]->bodies.push_back(b);
     }
     for (std::uint32_t i = 0; i < system.roots().size(); ++i)
@@ -162,27 +164,28 @@ void HeldIslands::run(std::span<Island*> islands, std::span<const std::uint32_t>
     }
     system.evaluate(0, 0);
     given_speed_.resize(step_.world.host().bodies.size(), 0.0);
-    for (Island* island : islands) set_approach(*island, system, to - from);
+    for (HeldIsland* island : islands) set_approach(*island, system, to - from);
     lead(islands, system, to - from);
-    for (Island* island : islands)
+    for (HeldIsland* island : islands)
         if (!step_.frame.give_up()) solve(*island, system, from, to, book, trial);
-    const bool given_up = step_.frame.give_up();  // then isles may not have been solved, and nobody reads what is booked
+    const bool given_up = step_.frame.give_up();  // then islands may be unsolved, and the booked work is discarded
     if (book.work && !given_up) book_forces(system, islands, to - from);
     midway_.take_back();
     system.finish_held();
     if (!given_up)
-        for (const Island* island : islands) report_rows(*island, system, to - from, book);
+        for (const HeldIsland* island : islands) report_rows(*island, system, to - from, book);
     system.hold_rows(false);
     motion_.finish_advance(system, system.all_finite(), to, trial);
 }
 
-/// Islands in which somebody goes along a curve are led half a step ahead, with their forces. Not where somebody meets, or moves as told:
-/// impacts are at the start of the step, and along the normals of then.
-void HeldIslands::lead(std::span<Island*> islands, GroupSystem& system, double h)
+/// Advances islands in which a body moves along a curved surface to the midpoint of the step, where contacts and forces are evaluated
+/// (midway_contacts.h). Islands with an impact are left out, as its impulse acts at the start of the step along the normals there; so are
+/// islands with kinematic bodies.
+void HeldIslands::lead(std::span<HeldIsland*> islands, GroupSystem& system, double h)
 {
     const auto stays = [this](const Contact& c) { return c.approach > 0 || midway_.is_driven(c); };
     led_places_.clear();
-    for (Island* island : islands)
+    for (HeldIsland* island : islands)
     {
         island->turns = island->turns && std::none_of(island->contacts.begin(), island->contacts.end(), stays);
         if (!island->turns) continue;
@@ -193,59 +196,60 @@ void HeldIslands::lead(std::span<Island*> islands, GroupSystem& system, double h
     system.evaluate(0, 0);
     std::sort(led_places_.begin(), led_places_.end());
     midway_.bend(led_places_, touching_, h);
-    for (Island* island : islands)
+    for (HeldIsland* island : islands)
         for (std::size_t i = 0; island->turns && i < island->places.size(); ++i) island->contacts[i] = touching_[island->places[i]].contact;
 }
 
-void HeldIslands::solve(Island& island, GroupSystem& system, double from, double to, WorkBook book, bool trial)
+void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, double to, WorkBook book, bool trial)
 {
     world::World& world = step_.world;
     world::HostTables& host = world.host();
-    island.rows.clear();
-    if (island.has_rows && system.rows())
+    held.rows.clear();
+    if (held.has_rows && system.rows())
     {
         system.rows()->begin_hold(system.context());
-        island.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
+        held.rows.assign(system.rows()->rows().begin(), system.rows()->rows().end());
     }
     if (!trial)
-        for (std::size_t i = 0; i < island.contacts.size(); ++i)
-            if (contacts_.is_paradox(island.contacts[i]))
-                contacts_.tell_paradox(island.contacts[i], *pair_of_contact_[island.places[i]], step_.frame.start_time + from);
-    island.motion.begin(system, host.bodies, host.shafts, island.members, island.roots, island.contacts, island.rows, book.work != nullptr);
+        for (std::size_t i = 0; i < held.contacts.size(); ++i)
+            if (contacts_.is_paradox(held.contacts[i]))
+                contacts_.tell_paradox(held.contacts[i], *pair_of_contact_[held.places[i]], step_.frame.start_time + from);
+    held.motion.begin(system, host.bodies, host.shafts, held.members, held.roots, held.contacts, held.rows, book.work != nullptr);
     Island island;
     island.interruption = step_.frame.interruption;
     island.h = to - from, island.time = step_.frame.start_time + from;
-    island.bodies = island.bodies, island.shafts = island.shafts;
-    island.size = least_gyration(host.bodies, island.bodies);
+    island.bodies = held.bodies, island.shafts = held.shafts;
+    island.size = least_gyration(host.bodies, held.bodies);
     shaft_mobility_.resize(host.shafts.size());
-    for (const std::uint32_t root : island.shafts) shaft_mobility_[root] = mobility_of(root);
+    for (const std::uint32_t root : held.shafts) shaft_mobility_[root] = mobility_of(root);
     island.shaft_mobility = shaft_mobility_;
-    island.rows = island.rows, island.contacts = island.contacts, island.motion = &island.motion;
+    island.rows = held.rows, island.contacts = held.contacts, island.motion = &held.motion;
 
-    ComponentCall answer(step_, island.manager);
+    ComponentCall answer(step_, held.manager);
     answer.context.time = island.time, answer.context.dt = island.h, answer.context.interruption = island.interruption;
     if (trial) answer.context.events = nullptr;
     answer.call.island = &island;
-    const double before = book.work ? island.motion.kinetic_energy() : 0.0;
-    step_.meter.enter(step_.meter.of_component(island.manager));
-    step_.meter.ran(world.component(island.manager).table, Phase::Solve);
+    const double before = book.work ? held.motion.kinetic_energy() : 0.0;
+    step_.meter.enter(step_.meter.of_component(held.manager));
+    step_.meter.ran(world.component(held.manager).table, Phase::Solve);
     answer.run(Phase::Solve);
     step_.meter.leave();
-    if (book.work) book_contacts(island, island.motion.kinetic_energy() - before, book);
-    // A factorisation takes longer for each row the more there are: as long as a sweep over all where there are so many.
+    if (book.work) book_contacts(held, held.motion.kinetic_energy() - before, book);
+    // The cost per row of a factorisation grows with the number of rows. For kFactored rows it is taken to cost one more sweep.
     constexpr std::size_t kFactored = 400;
-    const std::size_t rows = 3 * island.contacts.size() + island.rows.size();
+    const std::size_t rows = 3 * held.contacts.size() + held.rows.size();
     step_.report.swept_rows += rows * (static_cast<std::size_t>(1 + island.iterations) + rows / kFactored);
     if (trial) return;
     step_.report.worst_residual = std::max(step_.report.worst_residual, island.residual);
-    note_releases(island, from, to - from);
-    keep(island);
-    tell_impacts(island, island.time);
+    note_releases(held, from, to - from);
+    keep(held);
+    tell_impacts(held, island.time);
 }
 
-/// Contacts give back no more than they took, so what they do to bodies that nothing else drives is no more than nothing, but for
-/// what parting their overlap lifts. What a method makes beyond that is nobody's work: it stays unexplained.
-void HeldIslands::book_contacts(Island& island, double gained, WorkBook book)
+/// Books the work of the manager. Contacts dissipate energy, so on bodies that nothing else drives their work must not be positive, apart
+/// from what position correction lifts. Energy that the method creates beyond that is not booked as work, so it remains visible as the
+/// unexplained part of the ledger (ContactEnergy::made).
+void HeldIslands::book_contacts(HeldIsland& island, double gained, WorkBook book)
 {
     const Bodies& bodies = step_.world.host().bodies;
     const double lifted = island.motion.count_corrections();
@@ -261,8 +265,8 @@ void HeldIslands::book_contacts(Island& island, double gained, WorkBook book)
     own.made += book.sign * made, own.lifted += book.sign * lifted;
 }
 
-/// What joints say of themselves, and their share in what the manager did.
-void HeldIslands::report_rows(const Island& island, GroupSystem& system, double h, WorkBook book)
+/// Reports the impulses of the joints, and moves their work from the manager's account to theirs.
+void HeldIslands::report_rows(const HeldIsland& island, GroupSystem& system, double h, WorkBook book)
 {
     if (island.rows.empty()) return;
     StepContext context = system.context();
@@ -271,7 +275,7 @@ void HeldIslands::report_rows(const Island& island, GroupSystem& system, double 
     if (book.work) (*book.work)[island.manager] -= book.sign * work;
 }
 
-/// 1/(kg m^2) of the train that a shaft carries.
+/// 1/(kg m^2): inverse inertia of the gear train whose root is this shaft.
 double HeldIslands::mobility_of(std::uint32_t root) const
 {
     const Shafts& shafts = step_.world.host().shafts;
@@ -280,8 +284,9 @@ double HeldIslands::mobility_of(std::uint32_t root) const
     return inertia > 0 ? 1 / inertia : 0.0;
 }
 
-/// Each force component's part of what the kicks did: its power at the mean speeds of the kicks.
-void HeldIslands::book_forces(GroupSystem& system, std::span<Island*> islands, double h)
+/// Books the work of each force component: its power at the mean velocities of the moves. For this the forces are evaluated once more, and
+/// the state is put back afterwards.
+void HeldIslands::book_forces(GroupSystem& system, std::span<HeldIsland*> islands, double h)
 {
     world::HostTables& host = step_.world.host();
     Bodies& bodies = host.bodies;
@@ -296,7 +301,7 @@ void HeldIslands::book_forces(GroupSystem& system, std::span<Island*> islands, d
     for (const std::uint32_t s : system.roots()) kept_speeds_.push_back(host.shafts.speed[s]), kept_angles_.push_back(host.shafts.angle[s]);
     const std::span<double> speeds = system.speeds();
     const auto put = [&](std::size_t at, const Vec3& v) { speeds[at] = v.x, speeds[at + 1] = v.y, speeds[at + 2] = v.z; };
-    for (const Island* island : islands)
+    for (const HeldIsland* island : islands)
     {
         const auto& means = island->motion.means();
         for (std::size_t k = 0; k < island->members.size(); ++k)

@@ -1,12 +1,18 @@
-/// Islands of contacts that are rows: what a manager (Phase::Solve) gets to
-/// see, and what becomes of it.
+/// Islands of persistent contacts that a manager solves: what the manager (Phase::Solve, for example Manager/SoftStep) is given, and what
+/// happens to its result.
 ///
-/// The groups that standing contacts hold together are one island, with the
-/// joints of its members. Forces are taken once, at the start; the manager says
-/// how far they kick, when bodies move, and answers contacts and rows in
-/// between.
+/// A group is a set of objects that interactions such as joints couple. Groups that persistent contacts hold together form one island: all
+/// its contacts and joint rows have to be solved at once, as an impulse on one of them changes all others, while different islands are
+/// independent. In each step this class
+///   1. collects the persistent contacts, from the end of the last step if nothing has moved since, or by a new detection;
+///   2. joins groups to islands with disjoint sets, and hands each island its contacts, joint rows and members;
+///   3. evaluates the forces once, at the start of the step, or at the midpoint for bodies on curved surfaces (midway_contacts.h);
+///   4. calls the island's manager. The manager decides the order of substeps through IslandMotion: kick() applies the forces for a time h,
+///      move() integrates the poses, and in between it solves contacts and rows for impulses;
+///   5. books the work in the energy ledger, and keeps the impulses to warm-start the next step.
 ///
-///   work of forces    F . (way that the bodies go)
+/// The ledger splits the change of kinetic energy into
+///   work of forces    F . (distance that the bodies move)
 ///   work of manager   the rest of the change of kinetic energy
 #pragma once
 
@@ -22,8 +28,7 @@
 namespace plab::simulation
 {
 
-/// How the bodies of one island move. What is kicked twice without a move
-/// between was kicked once: the last time.
+/// The motion of the bodies of one island, as the manager controls it. Of two kicks without a move in between only the last one counts.
 class HeldMotion final : public IslandMotion
 {
 public:
@@ -33,18 +38,18 @@ public:
     void kick(double h) override;
     void move(double h) override;
     void move_mean(double h) override;
-    /// m/s: of separation, of a contact's two points where they have come to.
+    /// m/s: separation speed of a contact's two material points at their present positions.
     double separation_speed(std::size_t contact) const;
     void refresh_rows() override;
     void refresh_depths() override;
 
-    /// J: what the forces did on the way that the bodies went.
+    /// J: work of the forces along the distance that the bodies moved.
     double work_of_forces() const { return worked_; }
     double kinetic_energy() const;
-    /// J, against the forces: what bodies have moved beside the moves, where overlap was parted. Counted as their way from then on.
+    /// J: work against the forces by displacements other than the moves, which is position correction. From then on these displacements
+    /// count as part of the distance moved.
     double count_corrections();
-    /// Mean speeds of the kicks times the time they took, by member, and of
-    /// roots.
+    /// Mean velocities times time, summed over the moves; one for each member, then one for each root shaft.
     struct Mean
     {
         Vec3 velocity;  ///< m
@@ -92,36 +97,35 @@ public:
     void rebuild();
     /// Whether any contacts or joints are held by managers.
     bool any() const { return any_; }
-    /// Some rows may let go in this step, so that only a manager can hold them.
+    /// Some joint rows are one-sided (limits) or have a bounded impulse (motors, friction) in this step, so that only a manager can solve
+    /// them.
     bool holds_joints() const { return holds_joints_; }
     bool holds_joints_of(std::uint32_t group) const { return holds_joints_ && yields_[group] != 0; }
-    /// At the start of a step: contacts where the bodies are now, unless they are
-    /// known from the end of the last step; pairs that stand from now on.
+    /// At the start of a step: detects the contacts at the present state, unless they are known from the end of the last step, and adds
+    /// the pairs that are new.
     void begin_step();
-    /// Pairs of detectors whose contacts stand at once, where nobody knew of
-    /// them; told as contact.begin.
+    /// Adds pairs that are not known yet, of detectors whose contacts are persistent at once (Detector::persists); reports each as
+    /// contact.begin.
     void adopt(std::vector<FoundContact>& found, double time);
-    /// At the end of a step, with the pair's contacts: whether it does not touch, but may within the next step. A pair that
-    /// touches for the first time is told.
+    /// At the end of a step, with the pair's contacts: whether it does not touch but may do so within the next step (speculative contact).
+    /// A pair that touches for the first time is reported.
     bool keeps_ahead(PairState& pair, bool touches, std::span<const FoundContact> found, double time) const;
-    /// What contacts held that are gone now goes to those that came in their
-    /// place: corners that lie on one another change their names with every
-    /// tremor. The first `known` contacts of the pair are old.
+    /// Passes the warm-start impulses of contacts that have disappeared on to those that replace them: for corners that lie on one another,
+    /// the feature ids change with every small motion. The first `known` contacts of the pair are old.
     void pass_on(PairState& pair, std::uint32_t known, std::span<const FoundContact> found) const;
-    /// The contacts in `found` are those of the present state.
+    /// Notes that the found contacts belong to the present state.
     void note_state();
-    /// Takes the groups that managers advance out of `groups`; both
-    /// ascending.
+    /// Takes the groups that managers advance out of `groups` (ascending).
     void take(std::vector<std::uint32_t>& groups, DisjointSets& islands);
     bool holds_any() const { return !held_.empty(); }
     void advance(std::span<const std::uint32_t> observed, DisjointSets& islands, double from, double to, WorkBook book, bool trial);
 
 private:
-    struct Island
+    struct HeldIsland
     {
         std::uint32_t manager = kNoIndex;  ///< component
         bool has_rows = false;
-        bool turns = false;  ///< somebody moves along a curve
+        bool turns = false;  ///< some body moves along a curved surface
         std::vector<std::uint32_t> groups;
         std::vector<std::uint32_t> members,
             roots;                                  ///< indices into the system's lists
@@ -138,48 +142,48 @@ private:
     void fill(FoundContact& f, PairState& pair, const SurfaceLaw& law);
     void make_islands(DisjointSets& islands);
     void share_contacts(double h);
-    void set_approach(Island& island, const GroupSystem& system, double h);
-    void run(std::span<Island*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from,
+    void set_approach(HeldIsland& island, const GroupSystem& system, double h);
+    void run(std::span<HeldIsland*> islands, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from,
              double to, WorkBook book, bool trial);
-    void solve(Island& island, GroupSystem& system, double from, double to, WorkBook book, bool trial);
-    void lead(std::span<Island*> islands, GroupSystem& system, double h);
-    void book_contacts(Island& island, double gained, WorkBook book);
-    void keep(const Island& island);
+    void solve(HeldIsland& island, GroupSystem& system, double from, double to, WorkBook book, bool trial);
+    void lead(std::span<HeldIsland*> islands, GroupSystem& system, double h);
+    void book_contacts(HeldIsland& island, double gained, WorkBook book);
+    void keep(const HeldIsland& island);
     void tell_begin(const PairState& pair, const Contact& contact, double time) const;
-    void tell_impacts(const Island& island, double time);
-    void note_releases(Island& island, double from, double h) const;
+    void tell_impacts(const HeldIsland& island, double time);
+    void note_releases(HeldIsland& island, double from, double h) const;
     void find_yielding_rows();
-    static void report_rows(const Island& island, GroupSystem& system, double h, WorkBook book);
+    static void report_rows(const HeldIsland& island, GroupSystem& system, double h, WorkBook book);
     double mobility_of(std::uint32_t root) const;
-    void book_forces(GroupSystem& system, std::span<Island*> islands, double h);
+    void book_forces(GroupSystem& system, std::span<HeldIsland*> islands, double h);
 
     StepState& step_;
     GroupMotion& motion_;
     ContactBook& contacts_;
     bool any_ = false, holds_joints_ = false;
-    std::vector<std::uint32_t> manager_of_group_;   ///< of joints that name one; kNoIndex: none
-    std::vector<std::uint32_t> yielding_groups_;    ///< those that have one
-    std::vector<std::uint8_t> yields_;              ///< by group: such a joint may let go in this step
+    std::vector<std::uint32_t> manager_of_group_;   ///< by group: manager that one of its joints names; kNoIndex: none
+    std::vector<std::uint32_t> yielding_groups_;    ///< groups with such a manager
+    std::vector<std::uint8_t> yields_;              ///< by group: such a joint has one-sided or bounded rows in this step
     std::vector<std::uint32_t> manager_of_island_;  ///< by representative group
     std::vector<std::uint32_t> held_;
     std::vector<std::uint32_t> island_of_group_;
-    std::vector<std::unique_ptr<Island>> islands_;
+    std::vector<std::unique_ptr<HeldIsland>> islands_;
     std::size_t island_count_ = 0;
     MidwayContacts midway_;
-    std::vector<Island*> plain_, jointed_;
+    std::vector<HeldIsland*> plain_, jointed_;
     std::vector<std::uint32_t> led_places_;
     std::vector<std::uint32_t> plain_groups_;
     std::vector<FoundContact> touching_;
     std::vector<PairState*> pair_of_contact_;
     std::vector<PairState> fresh_;
-    std::vector<std::size_t> first_found_;  ///< beside fresh_
+    std::vector<std::size_t> first_found_;  ///< parallel to fresh_
     std::vector<double> shaft_mobility_;
-    std::vector<double> given_speed_;  ///< m/s, by body: what forces give it in the step
-    // What the state was that the found contacts are of.
+    std::vector<double> given_speed_;  ///< m/s, by body: speed that forces give it in the step
+    // The state to which the found contacts belong.
     std::vector<Vec3> known_positions_, known_velocities_, known_spins_;
     std::vector<Quat> known_orientations_;
     bool known_ = false;
-    // Kept while forces are booked.
+    // The state that is put back after the forces have been booked.
     std::vector<Vec3> kept_positions_, kept_velocities_, kept_spins_, kept_momenta_;
     std::vector<Quat> kept_orientations_;
     std::vector<double> kept_speeds_, kept_angles_;

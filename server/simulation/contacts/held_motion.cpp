@@ -1,4 +1,4 @@
-// How the bodies of an island move while a manager steps it.
+// The motion of the bodies of an island while a manager steps it.
 #include <cmath>
 
 #include "plab/rotation.h"
@@ -39,7 +39,7 @@ double HeldMotion::count_corrections()
     {
         const std::uint32_t b = system_->bodies()[members_[k]];
         const Vec3 shift = bodies_->position[b] - started_[k] - means_[k].velocity;
-        // Less than a rounding error of the place is none.
+        // A displacement below the rounding error of the position is not a correction.
         if (length(shift) <= 0x1p-48 * (length(started_[k]) + length(means_[k].velocity))) continue;
         means_[k].velocity += shift;
         lifted -= bodies_->mass[b] * dot(system_->acceleration(members_[k]), shift);
@@ -59,7 +59,7 @@ void HeldMotion::kick(double h)
     }
 }
 
-/// Books the way of a move, before the attitudes change: mean speeds of the move times its time.
+/// Books the displacement of a move before the orientations change: mean velocities of the move times its duration h (s).
 void HeldMotion::commit(double h, bool mean)
 {
     since_start_ += h;
@@ -101,7 +101,7 @@ void HeldMotion::refresh_rows()
     RowSystem* system = system_->rows();
     if (!system) return;
     system->collect(system_->context());
-    // A row that is not told of any more is far from acting. Both lists stand in one order.
+    // A row that is not listed any more is far from acting. Both lists have the same order.
     std::size_t at = 0;
     const auto fresh = system->rows();
     const auto same = [](const ConstraintRow& x, const ConstraintRow& y) { return x.component == y.component && x.feature == y.feature; };
@@ -124,7 +124,7 @@ Vec3 HeldMotion::moved(std::uint32_t body, const Vec3& arm_B, const Vec3& point)
 {
     if (bodies_->dynamic(body)) return (bodies_->position[body] - point) + rotate(bodies_->orientation[body], arm_B);
     if (bodies_->motion[body] == Motion::Static) return {};
-    // Whoever moves as told is still where the step began.
+    // The pose of a kinematic body is still that of the start of the step, so its displacement follows from its velocity.
     return bodies_->velocity_at(body, point) * since_start_;
 }
 

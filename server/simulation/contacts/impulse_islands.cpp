@@ -7,7 +7,7 @@
 namespace plab::simulation
 {
 
-/// Whether corners of a standing pair reach the other body within the step, faster than forces alone would take them there.
+/// Whether corners of a persistent pair reach the other body within the step, faster than forces alone would move them there.
 bool ImpulseIslands::meets_any(const GroupSystem& system, double h) const
 {
     double given = 0;
@@ -21,12 +21,13 @@ bool ImpulseIslands::meets_any(const GroupSystem& system, double h) const
     return std::any_of(touching_.begin(), touching_.end(), meets);
 }
 
-/// Such corners meet it without bounce, ahead of the step: a mean of the speeds before and after would carry them through.
+/// Stops such corners without a bounce before the step: moving with the mean of the velocities before and after the impact would carry
+/// them into the other body.
 void ImpulseIslands::stop_closing(double h, WorkBook book)
 {
     for (FoundContact& f : touching_) f.contact.impulse = {};
     contacts_.respond(touching_, ImpactMode::Rest, h, book);
-    // What a blow took does not tell how hard the contact will press; the last step's impulse does.
+    // The impulse of the impact is not an estimate of how hard the contact will press; that of the last step is.
     for (FoundContact& f : touching_) f.contact.impulse = contacts_.known_contact(f).impulse;
 }
 
@@ -54,7 +55,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     if (!trial) positions_.note_forces(system);
     contacts_.respond(touching_, ImpactMode::Rest, h, book);
     if (!trial) keep_impulses(touching_, from, h);
-    system.join();  // an impulse knows nothing of joints
+    system.join();  // contact impulses ignore joints: project the velocities onto them
     const double work = moved_.move_mean(h);
     if (led) midway_.take_back();
     if (book.work && !system.rows()) book_rest(work, book);
@@ -64,7 +65,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     motion_.finish_advance(system, system.all_finite(), to, trial);
 }
 
-/// Who goes along a curve and meets nobody is led half a step ahead.
+/// Advances an island to the midpoint if a body moves along a curved surface and there is no impact.
 bool ImpulseIslands::lead_touching(GroupSystem& system, double h)
 {
     const auto turns = [&](const FoundContact& f) { return midway_.turns(f.contact, h); };
@@ -84,8 +85,9 @@ void ImpulseIslands::bend_touching(double h)
     midway_.bend(places_, touching_, h);
 }
 
-/// What resting contacts did on the way that the bodies went: no more than nothing where nobody else moves. What it is more stays
-/// unexplained; ContactBook::respond() has booked it with the mean speeds of the impulses alone.
+/// Corrects the booked work of resting contacts. Along the actual displacements it must not be positive if no kinematic body takes part.
+/// Any excess is energy that the method created: it is moved to ContactEnergy::made, so that it remains unexplained in the ledger.
+/// ContactBook::respond() has booked the impulses at their mean velocities.
 void ImpulseIslands::book_rest(double work, WorkBook book)
 {
     const Bodies& bodies = step_.world.host().bodies;

@@ -1,7 +1,7 @@
-/// Islands that rest or slide on impulses of a response (ImpactMode::Rest): time stepping.
+/// Islands of persistent contacts whose response applies impulses (ImpactMode::Rest): time stepping without a manager.
 ///
-/// Speeds first, then impulses that keep contacts from closing, then positions with the mean of old and new speeds, so that a body that
-/// slides at constant deceleration is exact.
+/// Forces change the velocities first, then impulses keep the contacts from closing, then positions are integrated with the mean of the old
+/// and new velocities, which is exact for a body that slides with constant deceleration.
 #pragma once
 
 #include "simulation/contacts/kicked_bodies.h"
@@ -19,7 +19,7 @@ public:
     {
     }
 
-    /// `island`: groups, ascending, that standing contacts hold together.
+    /// `island`: groups, ascending, that persistent contacts hold together. `observed`: groups whose state the forces read.
     void advance(std::span<const std::uint32_t> island, std::span<const std::uint32_t> observed, double from, double to, WorkBook book,
                  bool trial);
 

@@ -20,7 +20,8 @@ void turn_freely(Bodies& bodies, std::uint32_t b, const Vec3& lacking, double h)
     const RigidMember member{start, bodies.inertia_B[b], bodies.inverse_inertia_B[b], bodies.mass[b], needle};
     const PrincipalAxes principal = principal_axes(member);
     const auto to_P = [&](const Vec3& v_W) { return transposed_times(principal.axes, rotate_back(start, v_W)); };
-    // A needle's spin is its state: its smallest inertia times that has all digits, its momentum in W has not.
+    // For a needle the state is its angular velocity: the smallest moment of inertia times it keeps all digits, whereas the momentum in W
+    // would lose them.
     const Vec3 own = needle ? scaled(principal.moment, to_P(bodies.angular_velocity[b])) : to_P(bodies.angular_momentum[b]);
     const Vec3 lack = to_P(lacking), turning = own - lack;
     if (turning == Vec3{} || !is_finite(turning)) return;

@@ -1,8 +1,9 @@
-/// How bodies move through a step of time stepping: kicked by forces, pushed by contacts and joints, then moved.
+/// Motion of bodies through a step of time stepping: forces kick the velocities, contacts and joints apply impulses, then poses move.
 ///
-/// Between impulses a body turns as torque-free motion does, by Euler's equations in closed form (plab/free_rotation.h). The momentum
-/// L that it turns with keeps its kinetic energy, T(L, q1) = T(L, q0), whatever the step. A turn with another momentum than the
-/// body's leaves L with another part along the body's thin axis, and L^2 / (2 I) of that part is what slender bodies explode by.
+/// Between impulses a body rotates as in torque-free motion, by the closed-form solution of Euler's equations (plab/free_rotation.h). The
+/// rotation with the momentum L conserves the kinetic energy, T(L, q1) = T(L, q0), for any step size. Rotating with a momentum other than
+/// the body's own would change the component of L along the body's thin axis, where the inertia I is small, and the energy L^2 / (2 I) of
+/// that component makes simulations of slender bodies explode.
 #pragma once
 
 #include <span>
@@ -13,7 +14,7 @@
 namespace plab::simulation
 {
 
-/// Turns body b for h (s) with its angular momentum less `lacking` (N m s, W); its own momentum stays what it is.
+/// Rotates body b for h (s) with its angular momentum minus `lacking` (N m s, W); the stored momentum does not change.
 void turn_freely(Bodies& bodies, std::uint32_t b, const Vec3& lacking, double h);
 
 class KickedBodies
@@ -22,25 +23,26 @@ public:
     struct Speeds
     {
         Vec3 velocity;  ///< m/s
-        Vec3 momentum;  ///< N m s, W; or the spin in B of needles: speeds 3..5 of a GroupSystem
+        Vec3 momentum;  ///< N m s, W; for needles the angular velocity in B, rad/s: speeds 3..5 of a GroupSystem
         Vec3 spin;      ///< rad/s, W
     };
 
-    /// Changes speeds by what forces do in h (s). `members`: indices into system.bodies(). What is kicked twice without a move
-    /// between was kicked once: the last time.
+    /// Changes velocities by the forces over h (s). `members`: indices into system.bodies(). Of two kicks without a move in between only
+    /// the last one counts.
     void kick(GroupSystem& system, Bodies& bodies, std::span<const std::uint32_t> members, double h);
-    /// Moves with the present speeds; h < 0 takes such a move back.
+    /// Moves with the present velocities; h < 0 undoes such a move.
     void move(double h);
-    /// Moves with the mean of the present speeds and those before the kick: exact for constant forces. Where what contacts and
-    /// joints did was an impact, with which that would make energy, bodies turn with the momentum after it.
-    /// J: what contacts and joints did since the kick, with what the turn made of it.
+    /// Moves with the mean of the present velocities and those before the kick: exact for constant forces. If rotating with the mean
+    /// momentum would create energy, as after an impact, bodies rotate with the momentum after it instead.
+    /// Returns J: work of contacts and joints since the kick, including the energy error of the rotation.
     double move_mean(double h);
 
-    /// Now, or the means of those before the kick and now.
+    /// The present velocities, or the means of those before the kick and now.
     Speeds speeds(std::size_t member, bool mean) const;
-    /// W: of the forces of the kick at these speeds.
+    /// W: power of the forces of the kick at these velocities.
     double power(std::size_t member, const Speeds& speeds) const;
-    /// J, since the kick: what contacts and joints did to the members, the forces' work on the mean way left out.
+    /// J: work of contacts and joints on the members since the kick, which is the change of kinetic energy minus the work of the forces at
+    /// the mean velocities.
     double work_of_contacts(double h) const;
 
 private:

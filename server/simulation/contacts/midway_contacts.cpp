@@ -11,9 +11,10 @@ namespace plab::simulation
 namespace
 {
 
-/// Of the smaller body's radius: who goes less than this along a curve in a step is off it by 2^-27 of the radius at most.
+/// In units of the smaller body's radius: a body that moves less than this along a curve in a step leaves it by at most 2^-27 of the
+/// radius, so the midpoint is not needed.
 constexpr double kNoDisplacement = 0x1p-13;
-/// Normals that turn further than this (its cosine) in half a step are no longer of one curve.
+/// Cosine of the largest angle between a normal at the start and at the midpoint; beyond it the two belong to different surfaces.
 constexpr double kSameCurve = 0.9;
 
 bool is_round(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
@@ -66,7 +67,7 @@ void MidwayContacts::lead(GroupSystem& system, std::span<const std::uint32_t> me
     }
 }
 
-/// The same pairs half way, with what the curves open by: less than way^2 / 2r.
+/// Detects the same pairs at the midpoint, with a margin for the gap that the curvature opens: less than displacement^2 / 2r.
 void MidwayContacts::query(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all)
 {
     midway_.clear();
@@ -115,7 +116,7 @@ void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<Fou
         const bool same = found != midway_.end() && key(*found) == key(all[place]) && dot(found->contact.normal, c.normal) > kSameCurve;
         if (!same)
         {
-            // It goes along with who is led.
+            // Not found at the midpoint: keep the normal, and let the contact point move with the led bodies.
             const Vec3 a = displacement_of(c.a), b = displacement_of(c.b);
             c.point += bodies.dynamic(c.a.index) && bodies.dynamic(c.b.index) ? (a + b) * 0.5 : a + b;
             continue;

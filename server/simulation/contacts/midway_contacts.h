@@ -1,17 +1,25 @@
-/// Contacts of bodies that roll or slide along one another's curves, half way through the step.
+/// Midpoint contacts: second-order time stepping for bodies that roll or slide along curved surfaces.
 ///
-/// Time stepping with the normal of the step's start is of first order there: at the end of the step the bodies move square to a normal
-/// that is no longer theirs, and are off the curve. So bodies are led half a step ahead, in a straight line with the speeds v0 that they
-/// have; forces, normals n and points are taken there; impulses change the speeds, and poses go on by h (v0 + v1) / 2 from where the step
-/// began. Of a gap g that is g0 at the start and gm half way,
+/// Consider a ball that rolls in a bowl. Time stepping that uses the contact normal at the start of the step keeps the velocity tangential
+/// to a surface that has turned away by the end of the step. The body leaves the curve by O(h^2) in every step, which gives a method of
+/// first order. The midpoint rule avoids this: evaluate the constraint in the middle of the step.
+///   1. Advance the bodies by half a step in a straight line with their velocities v0 (lead).
+///   2. Detect the contacts there; take normals n, contact points and forces from the midpoint (bend).
+///   3. Solve for the impulses, which change v0 to v1.
+///   4. Move the poses by h (v0 + v1) / 2, starting from the start of the step (take_back removes the lead).
+/// What remains is the curvature itself. If the gap is g0 at the start and gm at the midpoint,
 ///
-///   c = gm - g0 - (h / 2) n0 . (vb0 - va0)      what the curves alone open it by,
-///   n . u1 >= -4 c / h                          is motion square to the normal of the step's end (Contact::turning),
+///   c = gm - g0 - (h / 2) n0 . (vb0 - va0)      is what the curvature alone opens the gap by in half a step, and
+///   n . u1 >= -4 c / h                          requires the velocity u1 at the end of the step to be tangential to the curve there
+///                                               (Contact::turning).
 ///
-/// so a body that starts along the curve ends along it, keeps its speed, and its gap, to third order in h a step: the midpoint rule on the
-/// curve, of order 2. Where that asks for an impulse that pulls, there is none: the body leaves the curve, at the right time to order 2.
-/// Attitudes are led for forces, and not for contacts: what turns with its curve (a capsule that tumbles) gets order 1 as before. Forces
-/// that depend on speeds are taken with v0. Joints would not hold half way, and who moves as told is not led: nor are islands with such.
+/// So a body that starts along the curve ends along it and keeps its speed and its gap, with an error of third order in h per step: the
+/// midpoint rule on the curve, of order 2. If the condition would need a pulling impulse, the impulse is zero: the body leaves the curve,
+/// at a time that is correct to order 2.
+///
+/// Limits: orientations are advanced for the forces but not for the contacts, so a curve that rotates with its body (a tumbling capsule)
+/// stays at order 1. Forces that depend on velocities are evaluated with v0. Joints would not be satisfied at the midpoint, and kinematic
+/// bodies are not advanced to it, so islands that contain either are stepped without this.
 ///
 /// Source: the midpoint rule for constrained motion, Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), VII.1.
 #pragma once
@@ -29,17 +37,18 @@ class MidwayContacts
 public:
     MidwayContacts(StepState& step, ContactBook& contacts) : step_(step), contacts_(contacts) {}
 
-    /// Whether two round bodies move along one another so far in h (s) that their normal turns.
+    /// Whether two round bodies move along one another so far in h (s) that the rotation of their normal matters.
     bool turns(const Contact& contact, double h) const;
-    /// Whether a body of it moves as told. It is not led, so nobody of its island may be.
+    /// Whether one of the bodies is kinematic. It cannot be advanced to the midpoint, so no body of its island may be.
     bool is_driven(const Contact& contact) const;
-    /// After system.begin(), for each island: its members (indices into system.bodies()) are half a step ahead in the evaluation that
-    /// follows.
+    /// To be called after system.begin(), for each island: the next evaluation puts its members (indices into system.bodies()) half a step
+    /// ahead.
     void lead(GroupSystem& system, std::span<const std::uint32_t> members, double h);
-    /// After the evaluation: gives the contacts at `places` (ascending) of `all`, those of who was led, their normals, points and
-    /// Contact::turning half way. Attitudes are those of the start again, places stay half way.
+    /// To be called after that evaluation: gives the contacts at the indices `places` (ascending) of `all`, which are those of the led
+    /// bodies, their normals, points and Contact::turning of the midpoint. Orientations are reset to those of the start; positions stay
+    /// at the midpoint.
     void bend(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h);
-    /// When the step is made: places less the lead.
+    /// To be called when the step is made: removes the lead from the positions.
     void take_back();
 
 private:

@@ -1,4 +1,4 @@
-/// A small motion of a body that leaves its speeds alone: how overlap is taken out.
+/// A small displacement of a body that leaves its velocities unchanged; used to remove overlap.
 #pragma once
 
 #include "plab/body_turn.h"
@@ -8,7 +8,7 @@
 namespace plab::simulation
 {
 
-/// Pushes (kg m, along some direction at some point) add up; apply() moves the body.
+/// Accumulates positional impulses (kg m, in some direction at some point); apply() moves the body.
 struct Nudge
 {
     Vec3 arm_origin;  ///< p_WC

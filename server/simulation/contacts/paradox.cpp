@@ -9,10 +9,10 @@ namespace plab::simulation
 namespace
 {
 
-/// Slower than this share of the radius of gyration a step nothing slides.
+/// A contact that slides less than this fraction of the radius of gyration in a step counts as sticking.
 constexpr double kNoSlip = 0x1p-24;
 
-/// What an impulse j at p changes in the speed there, seen along n and -- by symmetry of K -- an impulse along n along j.
+/// n . K j: the change of the velocity at p along n by an impulse j there. K is symmetric, so n and j may be exchanged.
 double coupling(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n, const Vec3& j)
 {
     if (!bodies.dynamic(b)) return 0;

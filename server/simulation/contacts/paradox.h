@@ -1,8 +1,13 @@
-/// Painleve's paradox: a body that slides on a point can be so long, and friction so large, that pressing there harder turns
-/// it into the ground. Rigid bodies then have no acceleration, or two; only an impulse that ends the slip answers.
+/// Painleve's paradox: rigid bodies with Coulomb friction may have no consistent sliding motion.
 ///
-/// Contact coordinates, s = direction of slip, K = collision matrix: sliding, du_n/dj_n = K_nn - mu K_nt . s. The paradox is
-/// there where this is not positive. A slender rod at angle theta: 1 + 3 cos^2 - 3 mu sin cos <= 0, not below mu = 4/3.
+/// Imagine a slender rod that slides on one end, like a piece of chalk pushed over a board. A normal force at the tip pushes the tip away
+/// from the board. The friction force that comes with it has a lever arm about the centre of mass and rotates the tip towards the board.
+/// If the rod is long enough and mu large enough, the rotation wins: pressing harder drives the contact further in. The equations of
+/// motion then have no solution for the acceleration, or two. Only an impulse that ends the sliding resolves the contact.
+///
+/// In contact coordinates, with the unit direction s of the tangential velocity and the collision matrix K (Delassus operator of the
+/// contact), a sliding contact has du_n/dj_n = K_nn - mu K_nt . s. The paradox occurs if this is not positive. For a slender rod at angle
+/// theta: 1 + 3 cos^2 - 3 mu sin cos <= 0, which is impossible for mu < 4/3.
 ///
 /// Source: Champneys, Varkonyi, The Painleve paradox in contact mechanics, IMA J. Appl. Math. 81 (2016), section 2.
 #pragma once
@@ -13,7 +18,8 @@
 namespace plab::simulation
 {
 
-/// (K_nn - mu K_nt . s) / K_nn of a contact at the present speeds; 1 where it does not slip in a step of h (s), or nothing moves there.
+/// (K_nn - mu K_nt . s) / K_nn of a contact at the present velocities: <= 0 means the paradox. 1 if the contact does not slide in a step
+/// of h (s), or if neither body can move.
 double pressing_share(const Bodies& bodies, const Contact& contact, double h);
 
 }  // namespace plab::simulation

@@ -14,7 +14,7 @@ constexpr int kCorrectionSweeps = 8, kEasingSweeps = 100;
 
 }  // namespace
 
-/// Parts one pair.
+/// Removes the overlap of one pair.
 void PositionCorrection::part(std::span<const FoundContact> contacts)
 {
     Bodies& bodies = step_.world.host().bodies;
@@ -46,7 +46,7 @@ void PositionCorrection::note_forces(const GroupSystem& system)
     }
 }
 
-/// N, of this step; what has just met others has not been advanced with them yet.
+/// N, in this step. A pair that has only just met has not been advanced as an island yet, so its forces are evaluated here.
 Vec3 PositionCorrection::force_on(Ref body)
 {
     if (!step_.world.host().bodies.dynamic(body.index)) return {};
@@ -76,10 +76,11 @@ void PositionCorrection::correct_positions()
     }
 }
 
-/// How much of the overlap that a spring left behind stays after a step: it shrinks at a twentieth of the speed that falling
-/// through it would give,
-///   d' = -max(sqrt(a d) / 20, d / 2 s),   a: what presses the pair together over its mass,
-/// and no further than it is. All contacts of a pair shrink alike, so that a face stays as it lies.
+/// Fraction of the overlap left behind by a spring that remains after a step. The overlap d shrinks at a twentieth of the speed of a fall
+/// through it,
+///   d' = -max(sqrt(a d) / 20, d / 2 s),   a: pressing force over mass, m/s^2,
+/// and the remaining depth is never above the actual one. All contacts of a pair shrink by the same factor, so that a face keeps its
+/// inclination.
 double PositionCorrection::share_of_overlap_left(const PairState& pair, std::span<const Eased> eased) const
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -128,7 +129,7 @@ void PositionCorrection::ease_pair(PairState& pair)
             b.push(c.point, push), a.push(c.point, -push);
         }
     a.apply(bodies, pair.a.index), b.apply(bodies, pair.b.index);
-    // Found where it was: the correction of other overlaps has nothing to add.
+    // The remaining depth counts as zero overlap for this step, so that correct_positions() does not remove it as well.
     for (const Eased& e : eased) e.found->contact.rest_depth = e.found->contact.depth;
 }
 

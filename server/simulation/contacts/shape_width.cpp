@@ -26,7 +26,7 @@ double least_half_width(const Geometry& g)
 namespace
 {
 
-/// Half of the way through a box along a direction.
+/// Half of the longest chord through a box along a direction.
 double through_box(const Vec3& half_extents, const Vec3& d)
 {
     const auto through = [](double half, double share) { return share != 0 ? half / std::fabs(share) : HUGE_VAL; };

@@ -1,4 +1,4 @@
-/// How thick shapes are: what could pass through what unseen.
+/// Thickness of shapes, which decides whether one body could pass through another within a time step (tunnelling).
 #pragma once
 
 #include "plab/tables.h"
@@ -6,10 +6,10 @@
 namespace plab::simulation
 {
 
-/// Half the least width of a shape, m; 0 where it is not known (hulls, planes).
+/// Half of the smallest width of a shape, m; 0 if it is not known (hulls, planes).
 double least_half_width(const Geometry& shape);
-/// Half of the longest way through a shape along a direction (unit, in the shape's frame), m: of a hull that through the box around it;
-/// infinite for a plane.
+/// Half of the longest chord through a shape along a direction (unit, in the shape's frame), m; for a hull the chord through its bounding
+/// box; infinite for a plane.
 double half_width_along(const Geometry& shape, const Vec3& direction);
 
 }  // namespace plab::simulation

@@ -1,5 +1,5 @@
-/// Speculative contacts: gaps that may close within a step, so that a manager stops bodies at the surface instead of
-/// behind it. Nothing goes back; what the manager does with a gap is to let it close and no more.
+/// Speculative contacts: pairs whose gap may close within the step are contacts already, so that a manager stops the bodies at the surface
+/// instead of behind it. Nothing is rewound; the manager lets the gap close but not turn into overlap (n . u >= -gap / h).
 ///
 /// Source: Catto, Continuous collision, GDC (2013); Stewart, Trinkle, IJNME 39 (1996): gaps enter as depth / h.
 #pragma once
@@ -12,15 +12,15 @@
 namespace plab::simulation
 {
 
-/// m: no gap wider than this closes within h (s), whoever meets whom. `radius_of_body` (m, about C) is infinite for
-/// planes; `acceleration` (m/s^2) is the most that forces are expected to give.
+/// m: no gap wider than this closes within h (s), for any pair of the bodies. `radius_of_body` (m, about the centre of mass) is infinite
+/// for planes; `acceleration` (m/s^2) is the largest that forces are expected to cause.
 double speculative_margin(const Bodies& bodies, std::span<const double> radius_of_body, double acceleration, double h);
 
-/// Whether a found gap (depth < 0) may close within h. What overlaps or touches always counts.
+/// Whether a detected gap (depth < 0) may close within h (s). Contacts that overlap or touch always count.
 bool may_close(const Bodies& bodies, std::span<const double> radius_of_body, const Contact& contact, double acceleration, double h);
 
-/// m: no gap along `normal` (a to b) wider than this closes within h at the present speeds, turning included; and no more
-/// than half of the smaller body's radius, beyond which what was seen now says nothing of then.
+/// m: no gap along `normal` (a to b) wider than this closes within h (s) at the present velocities, rotation included. At most half of the
+/// smaller body's radius: over longer distances the present contact geometry does not predict the later one.
 double closing_margin(const Bodies& bodies, std::span<const double> radius_of_body, Ref a, Ref b, const Vec3& normal, double h);
 
 }  // namespace plab::simulation

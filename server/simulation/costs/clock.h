@@ -1,4 +1,4 @@
-/// The clock that costs are measured with.
+/// The clock that measures costs.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@
 namespace plab::simulation
 {
 
-/// Monotonic time, ns. A call costs about 20 ns: nothing finer than a block of rows is measured.
+/// Monotonic time, ns. One call takes about 20 ns, so nothing smaller than a block of rows is measured.
 inline std::uint64_t now_ns() { return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count()); }
 
 }  // namespace plab::simulation

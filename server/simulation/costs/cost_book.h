@@ -1,4 +1,4 @@
-/// What steps cost: sums since the scene was built, and the last steps one by one for medians with their spread.
+/// Statistics of the cost of steps: sums since the scene was built, and a window of the latest steps for medians and their spread.
 #pragma once
 
 #include "simulation/costs/cost_meter.h"
@@ -7,7 +7,7 @@
 namespace plab::simulation
 {
 
-/// The last costs of one account, ns a step.
+/// A ring buffer with the latest costs of one account, ns per step.
 class CostWindow
 {
 public:
@@ -29,24 +29,24 @@ private:
 class CostBook
 {
 public:
-    /// After a change of structure. `owners`: by component, the table of those that are timed by themselves, else kNoIndex.
-    /// Who is new, or of another type than before, begins anew.
+    /// To be called after a structural change. `owners`: by component, the table if the component is timed on its own, else kNoIndex. A
+    /// component that is new, or that has changed its type, starts with empty statistics.
     void rebuild(std::span<const std::uint32_t> owners, std::size_t tables);
-    /// A component has gone; whoever gets its place begins anew.
+    /// The component was removed; a new component that reuses its index starts with empty statistics.
     void forget(std::uint32_t component)
     {
         if (component < own_.size()) own_[component] = {};
     }
-    /// A step is over; takes the accounts and clears them.
+    /// To be called at the end of a step: adds the accounts to the statistics and clears them.
     void book(CostAccounts& accounts);
 
-    std::uint64_t steps() const { return steps_; }  ///< booked
-    /// Mean since the scene was built, ns a step: of the whole step (all threads), and of what is no component's.
+    std::uint64_t steps() const { return steps_; }  ///< number of booked steps
+    /// Mean since the scene was built, ns per step: of the whole step (all threads), and of the work that belongs to no component.
     double mean() const { return mean_of(total_); }
     double mean_of_host() const { return mean_of(host_total_); }
     double mean_of_component(std::uint32_t i) const { return i < own_.size() ? mean_of(own_[i].total) : 0.0; }
     double mean_of_table(std::uint32_t t) const { return t < tables_.size() ? mean_of(tables_[t].total) : 0.0; }
-    /// Of the last steps.
+    /// Median and spread over the latest steps.
     Spread step() const { return step_.spread(); }
     Spread host() const { return host_.spread(); }
     Spread of_component(std::uint32_t i) const { return owns(i) ? own_[i].window.spread() : Spread{}; }

@@ -1,5 +1,5 @@
-/// Where the time of a step goes. One meter for each thread that steps: what it measures is exclusive, so that all accounts
-/// together are the time between start() and stop().
+/// Where the time of a step goes. Each thread that steps has one meter. Measured times are exclusive (a nested scope is not counted in
+/// the scope around it), so all accounts together add up to the time between start() and stop().
 #pragma once
 
 #include <array>
@@ -13,13 +13,14 @@
 namespace plab::simulation
 {
 
-/// ns by account. Commands of dear types are timed for each component; those of cheap ones by type, and its rows share that.
+/// Nanoseconds by account. Commands of expensive types are timed for each component; those of cheap types by type, and the rows share the
+/// sum.
 struct CostAccounts
 {
     std::vector<std::int64_t> by_component;
     std::vector<std::int64_t> by_table;
-    std::vector<std::uint32_t> phases;  ///< by table: which phases ran, as bits; never cleared
-    std::int64_t host = 0;              ///< whatever is no component's: contacts over time, mementos, the loop
+    std::vector<std::uint32_t> phases;  ///< by table: bit mask of the phases that ran; never cleared
+    std::int64_t host = 0;              ///< work that belongs to no component: contact caching, mementos, the step loop
 
     void fit(std::size_t components, std::size_t tables)
     {
@@ -38,10 +39,10 @@ public:
     const CostAccounts& accounts() const { return accounts_; }
 
     void start() { depth_ = 0, current_[0] = &accounts_.host, since_ = now(); }
-    /// All scopes have ended.
+    /// To be called after all scopes have ended.
     void stop() { accounts_.host += now() - since_; }
 
-    /// From now on time is that account's, until leave(). Two clock calls, some 40 ns, for each pair.
+    /// Books the time from now on to `account`, until leave(). A pair of enter() and leave() costs two clock calls, about 40 ns.
     void enter(std::int64_t& account)
     {
         const std::int64_t at = now();
@@ -50,7 +51,8 @@ public:
         assert(depth_ + 1 < kDeepest);
         current_[++depth_] = &account;
     }
-    /// `weight`: one call of so many is measured; the others' share is taken off whoever calls.
+    /// `weight`: only one of `weight` calls is measured, and its time counts for all of them. What the unmeasured calls took was booked
+    /// to the enclosing account, so it is subtracted there.
     void leave(std::int64_t weight = 1)
     {
         const std::int64_t at = now(), passed = at - since_;
@@ -73,7 +75,7 @@ private:
     std::int64_t since_ = 0;
 };
 
-/// Time of a scope goes to an account.
+/// RAII scope whose time is booked to an account.
 class CostScope
 {
 public:

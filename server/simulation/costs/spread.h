@@ -1,4 +1,4 @@
-/// Costs as what they are: samples with a spread.
+/// Costs as samples with a spread.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 namespace plab::simulation
 {
 
-/// Median and quartiles of samples, the least and the largest; of none all are 0.
+/// Median, quartiles, minimum and maximum of some samples; all 0 if there are none.
 struct Spread
 {
     double median = 0, low = 0, high = 0;
     double least = 0, most = 0;
     std::uint32_t samples = 0;
 
-    /// Whether there are enough of them for a median to mean something.
+    /// Whether there are enough samples for a meaningful median.
     bool is_known() const { return samples >= 3; }
 };
 
@@ -29,8 +29,8 @@ inline Spread spread_of(std::span<const double> values)
     return {at(2), at(1), at(3), sorted.front(), sorted.back(), static_cast<std::uint32_t>(sorted.size())};
 }
 
-/// Whether two medians differ by more than chance: from eight samples each whose quartiles do not overlap, or from four that do not overlap
-/// at all. Samples of one and the same cost do so in less than 6 of 100 cases.
+/// Whether two medians differ significantly: with at least eight samples each, if the interquartile ranges do not overlap; with at least
+/// four each, if the full ranges do not overlap. Two sets of samples of the same cost pass this test in less than 6 of 100 cases.
 inline bool differ(const Spread& a, const Spread& b)
 {
     constexpr std::uint32_t kForQuartiles = 8, kForAll = 4;

@@ -1,4 +1,4 @@
-// An event is answered: whom it touches is taken to its time, impulses act, and what happened is told.
+// Answers an event: the bodies that it affects are advanced to its time, the response applies impulses, and the events are reported.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,26 +11,22 @@ namespace plab::simulation
 namespace
 {
 
-/// Impacts in one step of a pair of which one stands or lies on others, before it stops bouncing: what holds him may press him back as
-/// often as he bounces. Bounces of a hundredth of the step rise by g h^2 / 8e4 at most.
+/// Largest number of impacts per step of a pair in which a body is supported by others; then it stops bouncing. The supporting contacts
+/// may push the body back as often as it bounces, so the sequence need not end by itself. A bounce that lasts a hundredth of the step
+/// rises by at most g h^2 / 8e4, so little is lost.
 constexpr std::uint32_t kMostOfHeldPair = 100;
-/// Share of what it closed with, and of what forces give in the step: slower than this nobody who stopped bouncing leaves.
+/// Fraction of the closing speed plus the speed that forces give in a step: a pair that has stopped bouncing and separates more slowly
+/// than this rests.
 constexpr double kStays = 0x1p-24;
-/// Rounding of a position, as a share of the bodies' sizes and distances from the origin.
-constexpr double kRounding = 4e-15;
-/// Share of the speeds that a closing speed is a difference of, below which it is none.
+/// Rounding error of a position, relative to the bodies' sizes and distances from the origin.
+constexpr double kAnswerRounding = 4e-15;
+/// A closing speed below this fraction of the two speeds that it is the difference of counts as zero.
 constexpr double kStill = 0x1p-30;
-
-/// What an event says of a contact: point, normal, impulse, depth (server/docs/step.md).
-std::vector<double> values_of(const Contact& c, const Vec3& impulse)
-{
-    return {c.point.x, c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, impulse.x, impulse.y, impulse.z, c.depth};
-}
 
 }  // namespace
 
-/// Takes a group from where its piece began to `time`. One that nothing stands on and that reads nobody needs no more
-/// than its solver.
+/// Advances a group from the start of its piece to `time`. A group without persistent contacts that observes no other group needs only
+/// its solver.
 void EventLocator::advance_group(std::uint32_t g, double time, WorkBook book, bool trial)
 {
     motion_.rewind(g);
@@ -45,14 +41,15 @@ void EventLocator::advance_scope(double time, WorkBook book, bool trial)
 {
     const double before = sweeps_and_queries();
     move_scope(time, book, trial);
-    const bool stands = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
-    if (stands) budget_.spend(WorkBudget::kGoneThrough * static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()));
+    const bool any_rests = std::any_of(scope_.begin(), scope_.end(), [&](std::uint32_t g) { return rests_[g] != 0; });
+    if (any_rests)
+        budget_.spend(WorkBudget::kGoneThrough * static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()));
     budget_.spend(static_cast<double>(scope_.size()) + sweeps_and_queries() - before);
 }
 
 void EventLocator::move_scope(double time, WorkBook book, bool trial)
 {
-    // Pieces that began together advance together; usually all of them did.
+    // Groups whose pieces began at the same time advance together; usually all of them did.
     bool together = true, rests = false;
     for (const std::uint32_t g : scope_)
         together = together && motion_.segment_begin(g) == motion_.segment_begin(scope_.front()), rests = rests || rests_[g] != 0;
@@ -68,7 +65,7 @@ void EventLocator::move_scope(double time, WorkBook book, bool trial)
         for (const std::uint32_t& g : scope_) advance_.advance(std::span(&g, 1), motion_.segment_begin(g), time, book, trial);
 }
 
-/// Puts the scope where it is at `time`; both ends of a piece are known.
+/// Puts the groups of the scope to their state at `time`. Both ends of a piece are stored; other times take an advance.
 void EventLocator::advance_groups_to(double time)
 {
     if (time == step_.frame.step)
@@ -85,7 +82,7 @@ void EventLocator::advance_groups_to(double time)
     for (const std::uint32_t g : scope_) motion_.rewind(g);
 }
 
-/// From `time`, where a new piece begins, to the end of the step.
+/// Advances the scope from `time`, where a new piece begins, to the end of the step.
 void EventLocator::go_on(double time)
 {
     if (!any_certifies_)
@@ -98,17 +95,17 @@ void EventLocator::go_on(double time)
     advance_scope(step_.frame.step, step_.book(), false);
 }
 
-/// m: of where two bodies are.
+/// m: rounding error of the positions of two bodies.
 double EventLocator::rounding_of(Ref a, Ref b) const
 {
     const Bodies& bodies = step_.world.host().bodies;
-    return kRounding * (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]));
+    return kAnswerRounding * (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]));
 }
 
 void EventLocator::contacts_from_clear_side(Candidate& candidate)
 {
-    // The contacts were seen a rounding error later: see them where the answer will act, pushed together by no more
-    // than the way from there, so that arms and normals fit the state.
+    // The contacts were detected on the overlapping side of the bracket. Detect them again at the clear side, where the impulses will act,
+    // with the bodies shifted together by no more than the distance across the bracket, so that lever arms and normals fit the state.
     double closing = 0;
     for (const FoundContact& f : candidate.contacts) closing = std::max(closing, std::fabs(contacts_.normal_velocity(f.contact)));
     const double margin = 4 * closing * candidate.bracket + rounding_of(candidate.a, candidate.b);
@@ -120,7 +117,8 @@ void EventLocator::contacts_from_clear_side(Candidate& candidate)
     candidate.contacts = seen_;
 }
 
-/// The contacts of a pair that was found by its gap, with the bodies where the event is. A sensor's stay as they are.
+/// Fills in the contact points of a pair that was located by its gap, with the bodies at the time of the event. For a sensor the bodies
+/// are put there for the query and back to the end of the step.
 void EventLocator::complete(Candidate& candidate)
 {
     if (!candidate.certified) return;
@@ -129,7 +127,7 @@ void EventLocator::complete(Candidate& candidate)
     const Bodies& bodies = step_.world.host().bodies;
     const GapQuery q = measure(candidate, candidate.time);
     const double closing = std::fabs(dot(bodies.velocity_at(q.b.index, q.point_b) - bodies.velocity_at(q.a.index, q.point_a), q.normal));
-    // Corners that land a rounding error later belong to the same impact.
+    // Corners that land a rounding error later belong to the same impact, hence the margin.
     const double margin =
         std::max(0.0, q.gap) * 2 + 4 * closing * candidate.bracket + rounding_of(q.a, q.b) + closing * 0x1p-44 * step_.frame.step;
     candidate.contacts.clear();
@@ -147,7 +145,7 @@ void EventLocator::complete(Candidate& candidate)
 
 void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double at)
 {
-    // Normal acceleration of the contact points under the forces alone; it tells bouncing from coming to rest.
+    // Normal acceleration of the contact points under the forces alone; it distinguishes bouncing from coming to rest.
     accelerated_.clear();
     const Bodies& bodies = step_.world.host().bodies;
     for (const std::uint32_t g : scope_)
@@ -172,7 +170,7 @@ void EventLocator::rate_of_approach(std::vector<FoundContact>& contacts, double 
         const auto found = std::lower_bound(accelerated_.begin(), accelerated_.end(), body,
                                             [](const Accelerated& x, std::uint32_t wanted) { return x.body < wanted; });
         if (found == accelerated_.end() || found->body != body) return {};
-        // Without w x (w x r): a rolling ball's point turns away from the ground, its gap does not.
+        // Without w x (w x r): the contact point of a rolling ball rotates away from the ground, but the gap does not open.
         return found->linear + cross(found->spin_up, p - bodies.position[body]);
     };
     for (FoundContact& f : contacts)
@@ -187,9 +185,7 @@ void EventLocator::announce_rest(const FoundContact& f, PairState& pair)
     pair.bounces = {};
     for (const Ref r : {pair.a, pair.b})
         if (const std::uint32_t g = step_.groups.of(r); g != kNoIndex) rests_[g] = 1;
-    Event e = contacts_.contact_event("contact.rest", pair, rest_time_);
-    e.values = values_of(f.contact, f.contact.impulse);
-    step_.emit(std::move(e));
+    step_.emit(contacts_.contact_event("contact.rest", pair, rest_time_, f.contact, f.contact.impulse));
 }
 
 void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>& contacts, double time)
@@ -204,24 +200,20 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
         if (f.detector != candidate.detector || f.contact.a != candidate.a || f.contact.b != candidate.b) continue;
         if (std::exchange(added, false))
         {
-            // Impulses are told by the impacts that follow.
-            Event begin = contacts_.contact_event("contact.begin", pair, time);
-            begin.values = values_of(f.contact, {});
-            step_.emit(std::move(begin));
+            // The impulses are reported by the impact events that follow.
+            step_.emit(contacts_.contact_event("contact.begin", pair, time, f.contact));
         }
         pair.normal = f.contact.normal;
         (void)contacts_.cache().contact_of(pair, f.contact.feature);
         if (!detector.responds) continue;
-        Event e = contacts_.contact_event("contact.impact", pair, time);
-        e.values = values_of(f.contact, f.contact.impulse);
-        step_.emit(std::move(e));
+        step_.emit(contacts_.contact_event("contact.impact", pair, time, f.contact, f.contact.impulse));
         if (paradox_[i]) contacts_.tell_paradox(f.contact, pair, time);
         announce_rest(f, pair);
     }
 }
 
-/// Bodies that touch, and close no faster than forces make them in a step, may be in Painleve's paradox; an impact that closes
-/// has an answer of its own, however it jams.
+/// Bodies that touch, and close no faster than forces make them in a step, may be in Painleve's paradox (paradox.h). An impact with a
+/// larger closing speed always has a solution, even if the contact jams, so it is not reported as one.
 void EventLocator::note_paradoxes()
 {
     paradox_.clear();
@@ -236,7 +228,8 @@ void EventLocator::note_paradoxes()
 
 void EventLocator::suppress_resting_bounce(std::vector<FoundContact>& contacts) const
 {
-    // Answered late, a resting body seems to arrive with the speed that it gathered in up to two steps: that is no bounce.
+    // An answer at the end of the step is late: a resting body seems to arrive with the speed that forces gave it in up to two steps. With
+    // restitution it would bounce for ever, so such slow contacts get none.
     for (FoundContact& f : contacts)
         if (f.contact.normal_acceleration < 0 &&
             contacts_.normal_velocity(f.contact) >= 2 * f.contact.normal_acceleration * step_.frame.step)
@@ -245,14 +238,14 @@ void EventLocator::suppress_resting_bounce(std::vector<FoundContact>& contacts) 
 
 void EventLocator::keep_if_it_cannot_leave(Contact& c) const
 {
-    // It overlapped from the start: a rebound that does not clear the overlap would be answered again and again.
+    // The pair overlapped where its piece began: a rebound too slow to get out of the overlap would be answered again and again.
     const double speed = contacts_.normal_velocity(c);
     const double height = std::max(c.depth, overlap_tolerance(c.a, c.b));
     if (speed <= 0 || (c.normal_acceleration < 0 && speed * speed < -2 * c.normal_acceleration * height)) c.resting = true;
 }
 
-/// Whether the pair's bounces come to their end within the step, or have become too many: then it does not bounce now.
-/// Gives the time at which they end, s.
+/// Whether the pair's sequence of bounces ends within the step (zeno.h), or has become too long: then restitution is set to zero and
+/// the pair comes to rest instead of bouncing. Gives the time at which the sequence ends, s.
 bool EventLocator::stop_bouncing(const Candidate& candidate, double time, double& ends)
 {
     ends = time;
@@ -340,7 +333,7 @@ void EventLocator::answer()
     ++step_.report.events;
 }
 
-/// Tells what became of a chosen pair, which may have bounced for the last time.
+/// Records and reports the outcome for a chosen pair, which may have bounced for the last time.
 void EventLocator::record_answered(Candidate& candidate, double time)
 {
     const std::uint32_t slot = static_cast<std::uint32_t>(&candidate - candidates_.data());

@@ -1,4 +1,5 @@
-// Pairs that may meet anywhere inside their present smooth pieces: courses of bodies, the broad look, the first bounds.
+// Candidates of resolutions that certify: motion bounds of all bodies, a broad phase over the swept boxes, and the first lower bounds on
+// the times of impact.
 #include <algorithm>
 
 #include "simulation/events/event_locator.h"
@@ -11,7 +12,7 @@ void EventLocator::begin_motion_bounds()
     const world::HostTables& host = step_.world.host();
     const Bodies& bodies = host.bodies;
     const double step = step_.frame.step;
-    // The stepper makes a new locator when anything but motion has changed.
+    // The sizes need no update: the stepper makes a new locator when anything but the motion has changed.
     if (motions_.size() != bodies.size())
     {
         motions_.assign(bodies.size(), {});
@@ -61,7 +62,7 @@ void EventLocator::find_near(bool only_rewound)
     const auto activate = [&](std::uint8_t flag)
     {
         for (const std::uint32_t g : scope_)
-            if (rewound_[g] != 0)
+            if (disturbed_[g] != 0)
                 for (const std::uint32_t b : step_.groups.all[g].bodies) active_[b] = flag;
     };
     if (only_rewound) activate(1);
@@ -71,7 +72,7 @@ void EventLocator::find_near(bool only_rewound)
         if (!detector.certifies) continue;
         near_.clear();
         NearCollector sink(step_.world, motion_margin_, near_);
-        contacts_.sample(detector, sink, only_rewound ? std::span<const std::uint8_t>(active_) : std::span<const std::uint8_t>());
+        contacts_.query(detector, sink, only_rewound ? std::span<const std::uint8_t>(active_) : std::span<const std::uint8_t>());
         budget_.spend(WorkBudget::kListedPair * static_cast<double>(near_.size()));
         for (const NearCollector::Pair& pair : near_)
             if (bodies.dynamic(pair.a.index) || bodies.dynamic(pair.b.index)) consider_near(d, pair.a, pair.b);
@@ -79,7 +80,8 @@ void EventLocator::find_near(bool only_rewound)
     if (only_rewound) activate(0);
 }
 
-/// The contacts of one pair, as if b were `shift` further. The detection knows the bodies from the look at all.
+/// Detects the contacts of one pair as if b were displaced by `shift` (m). Only these two bodies are active in the detection, which knows
+/// all of them from its broad phase.
 void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, std::vector<FoundContact>& found)
 {
     const Detector& detector = contacts_.detectors()[candidate.detector];
@@ -87,7 +89,7 @@ void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, st
     active_[candidate.a.index] = active_[candidate.b.index] = 1;
     ContactCollector sink(step_.world, found);
     sink.begin_query(candidate.detector, std::span(&pair, 1), true);
-    contacts_.sample(detector, sink, active_);
+    contacts_.query(detector, sink, active_);
     step_.report.further_pairs += sink.further_pairs();
     active_[candidate.a.index] = active_[candidate.b.index] = 0;
     sort_contacts(found, step_.world);
@@ -95,7 +97,7 @@ void EventLocator::detect_pair(const Candidate& candidate, const Vec3& shift, st
 
 void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
 {
-    // Rounding, where a course starts again inside the step, is far below this share of what moves a body.
+    // If a piece begins inside the step, the rounding error of its bound is far below this fraction of the acceleration.
     constexpr double kExact = 0x1p-32;
     const MotionBound &ca = motions_[a.index], &cb = motions_[b.index];
     const double begin = std::max(ca.begin, cb.begin), left = step_.frame.step - begin;
@@ -103,7 +105,7 @@ void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
     const Bodies& bodies = step_.world.host().bodies;
     const Shapes& shapes = step_.world.host().shapes;
     double clear = 0;
-    // Where one began earlier, it is where its course says, unless its forces change.
+    // If one piece began earlier, the position at `begin` follows from its motion bound, provided that its forces are constant.
     const auto is_exact = [&](const MotionBound& c)
     { return c.begin == begin || c.deviation <= kExact * (length(c.acceleration) + length(c.first.velocity) / (c.end - c.begin)); };
     if (is_exact(ca) && is_exact(cb))
@@ -113,7 +115,7 @@ void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
         };
         const Clearance clearance(bodies, shapes, at_begin(a.index, ca), at_begin(b.index, cb), left);
         clear = clearance.of_balls();
-        // The attitude is known where the course begins.
+        // The orientation is known only at the start of a piece.
         const auto known = [&](std::uint32_t body, const MotionBound& c) { return c.begin == begin || extents_[body].arm == 0; };
         if (known(a.index, ca) && known(b.index, cb)) clear = std::max(clear, clearance.of_half_space());
         if (clear >= left) return;
@@ -132,7 +134,7 @@ void EventLocator::consider_near(std::uint32_t detector, Ref a, Ref b)
 
 void EventLocator::query_known_pairs(std::vector<FoundContact>& found)
 {
-    // Everything else is known to be apart.
+    // All other pairs are certain to be apart.
     found.clear();
     for (std::uint32_t d = 0; d < contacts_.detectors().size(); ++d)
     {

@@ -1,7 +1,8 @@
-// Impacts of bodies that joints hold. A response knows contacts only; what it does to speeds is joined after it, until neither
-// changes anything (block Gauss-Seidel). So the end of the compression is found; the restitution gives back e times the normal
-// impulses of that, and all of what slides (Poisson's hypothesis), which joints then share out. Without friction that is
-// Newton's law, u' = -e u, and e = 1 keeps the energy: joining is an orthogonal projection in the metric of M.
+// Impacts of bodies that joints hold. A response knows contacts only, so after its impulses the velocities of the group are projected
+// onto the joint constraints again, and both are repeated in turn until neither changes anything (block Gauss-Seidel). That gives the
+// end of the compression phase. The restitution phase then applies e times the normal impulses of the compression, and at sliding
+// contacts e times the whole impulse (Poisson's hypothesis), and the joints distribute them by another projection. Without friction
+// this is Newton's law, u' = -e u, and e = 1 conserves the energy: the projection is orthogonal in the metric of M.
 //
 // Source: F. Pfeiffer, C. Glocker, "Multibody dynamics with unilateral contacts", 1996, ch. 8.
 #include <algorithm>
@@ -13,13 +14,14 @@ namespace plab::simulation
 namespace
 {
 
-constexpr int kMostRounds = 50;
-/// Share of the approach at which compression is over, and at which a contact slides.
+constexpr int kMostRowSearches = 50;
+/// kOver: compression is over below this fraction of the first closing speed. kSlides: a contact slides if its tangential speed is above
+/// this fraction of the body's speed.
 constexpr double kOver = 1e-12, kSlides = 1e-9;
 
 }  // namespace
 
-/// The groups of the impact that have joints, and all whose speeds change.
+/// Lists the groups of the impact that have joints, and all bodies and shafts whose velocities change. False if no group has joints.
 bool EventLocator::find_jointed()
 {
     Jointed& j = jointed_;
@@ -50,7 +52,8 @@ bool EventLocator::find_jointed()
     return true;
 }
 
-/// As if there were no joints, and taken back: who comes to rest is asked of the whole impact.
+/// Asks the response which contacts come to rest: it answers the whole impact as if there were no joints, then the velocities are put
+/// back. Compression and restitution by themselves would not show it.
 void EventLocator::note_who_rests()
 {
     Jointed& j = jointed_;
@@ -75,7 +78,7 @@ void EventLocator::note_who_rests()
     }
 }
 
-/// At `time` (s since the start of the step).
+/// Projects the velocities of the jointed groups onto their joints, at `time` (s since the start of the step).
 void EventLocator::join(double time)
 {
     for (const std::uint32_t g : jointed_.groups)
@@ -102,7 +105,8 @@ void EventLocator::compress_once(double time)
     join(time);
 }
 
-/// Adds `share` times the last impulses, or of those so far what is normal, with friction where they slide.
+/// Applies `share` times the last impulses. With `of_all`: `share` times the restitution times the sum so far, of which only the normal
+/// part counts where the contact does not slide.
 void EventLocator::add_impulses(double share, bool of_all)
 {
     Bodies& bodies = step_.world.host().bodies;
@@ -128,7 +132,9 @@ void EventLocator::add_impulses(double share, bool of_all)
     }
 }
 
-/// Until nothing closes any more. After a first answer what is left is proportional to it: exactly, where one contact is hit.
+/// Compresses until no contact closes any more. Response and projection are linear while no contact switches, so after a first round the
+/// remaining closing speed shrinks by a constant factor, and the geometric series can be summed at once. For a single contact that is
+/// exact.
 void EventLocator::compress(double time)
 {
     const double before = closing(), over = kOver * before;
@@ -140,7 +146,7 @@ void EventLocator::compress(double time)
         add_impulses(left / (before - left), false);
         join(time);
     }
-    for (int round = 0; round < kMostRounds && closing() > over; ++round) compress_once(time);
+    for (int round = 0; round < kMostRowSearches && closing() > over; ++round) compress_once(time);
 }
 
 void EventLocator::give_back(double time)
@@ -149,7 +155,7 @@ void EventLocator::give_back(double time)
     add_impulses(1, true);
     for (std::size_t i = 0; i < impact_.size(); ++i) jointed_.impulse[i] += jointed_.last[i];
     join(time);
-    compress(time);  // who was pressed against others
+    compress(time);  // the restitution may have pressed bodies against others
 }
 
 void EventLocator::respond(double time)

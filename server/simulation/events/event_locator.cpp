@@ -8,14 +8,14 @@ namespace plab::simulation
 {
 namespace
 {
-/// Events this share of the step apart happen at one time where a body takes part in both.
+/// Two events that are less than this fraction of the step apart count as simultaneous if one body takes part in both.
 constexpr double kSameTime = 1e-13;
 
 }  // namespace
 
 bool EventLocator::Entry::operator<(const Entry& other) const
 {
-    // A heap has its largest on top.
+    // A heap keeps its largest element on top, so the earliest entry has to compare as the largest.
     return std::tie(time, detector_rank, a_rank, b_rank) > std::tie(other.time, other.detector_rank, other.a_rank, other.b_rank);
 }
 
@@ -52,7 +52,7 @@ void EventLocator::push(std::uint32_t slot)
     std::push_heap(queue_.begin(), queue_.end());
 }
 
-/// The first that is not stale.
+/// The earliest candidate that is not stale.
 bool EventLocator::pop(std::uint32_t& slot)
 {
     while (!queue_.empty())
@@ -66,7 +66,7 @@ bool EventLocator::pop(std::uint32_t& slot)
     return false;
 }
 
-/// Pairs that stand in the queue, for is_live().
+/// Lists the pairs in the queue that are not stale, for is_live().
 void EventLocator::note_live()
 {
     live_.clear();
@@ -83,7 +83,7 @@ bool EventLocator::is_live(std::uint32_t detector, Ref a, Ref b) const
 bool EventLocator::acts(const Detector& detector, const PairState* pair, bool approaching) const
 {
     if (pair && pair->resting) return false;
-    // A sensor only wants the time of the first touch.
+    // A sensor needs only the time of the first contact.
     if (!detector.responds) return !pair;
     if (!detector.locates) return approaching;
     return approaching || !(pair && pair->overlapping);
@@ -128,7 +128,7 @@ void EventLocator::collect(const std::vector<FoundContact>& found)
 void EventLocator::note_resting_groups()
 {
     rests_.assign(step_.groups.all.size(), 0);
-    if (forces_.any()) forces_.flag_near(rests_);  // springs hold together as well
+    if (forces_.any()) forces_.flag_near(rests_);  // springs couple groups as well
     for (const PairState& p : contacts_.cache().pairs())
     {
         if (!p.resting) continue;
@@ -139,7 +139,7 @@ void EventLocator::note_resting_groups()
 
 void EventLocator::close_over_resting_pairs()
 {
-    // Whatever rests on a member goes with it: an impact passes through standing contacts.
+    // Whatever rests on a member is rewound with it, because an impact propagates through persistent contacts.
     for (bool grown = true; grown;)
     {
         grown = forces_.any() && forces_.close_over(in_scope_);
@@ -154,7 +154,7 @@ void EventLocator::close_over_resting_pairs()
     }
 }
 
-/// m: an overlap where a piece begins that is no more than this is closed or opened like a gap of 0.
+/// m: an overlap up to this at the start of a piece is treated like a gap of 0.
 double EventLocator::overlap_tolerance(Ref a, Ref b) const { return contacts_.overlap_tolerance(a, b); }
 
 void EventLocator::scope_of(const Candidate& candidate, bool local)
@@ -167,8 +167,9 @@ void EventLocator::scope_of(const Candidate& candidate, bool local)
     if (rests) close_over_resting_pairs();
 }
 
-/// Chooses an event. Where its pair is pressed together, one of them stops: what stands on that one is looked at again, as if it had
-/// been stopped already. So a stack that is let go stands after one event, not after one for each body.
+/// Adds a candidate to the present event. If forces press its pair together, the event stops one of the two bodies; a contact on that
+/// body, which was not pressed while both were falling, is then tested again as if the body had been stopped already. So a stack of
+/// bodies that is released comes to rest in one event instead of one event per body.
 void EventLocator::take(std::uint32_t slot, double until)
 {
     chosen_.push_back(slot);
@@ -176,17 +177,18 @@ void EventLocator::take(std::uint32_t slot, double until)
     const Ref a = candidates_[slot].a, b = candidates_[slot].b;
     for (const Ref r : {a, b})
         if (bodies.dynamic(r.index) && !std::exchange(met_[r.index].chosen, true)) met_bodies_.push_back(r.index);
-    // Rows answer an island as one anyway.
+    // A response by rows solves an island as a whole anyway.
     if (!candidates_[slot].pressed || contacts_.detectors()[candidates_[slot].detector].by_rows) return;
-    const auto stands = [&](Ref r) { return !bodies.dynamic(r.index) || met_[r.index].relief != Vec3{}; };
-    if (stands(a) == stands(b)) return;
-    const Ref stopped = stands(a) ? b : a;
+    const auto is_fixed = [&](Ref r) { return !bodies.dynamic(r.index) || met_[r.index].relief != Vec3{}; };
+    if (is_fixed(a) == is_fixed(b)) return;
+    const Ref stopped = is_fixed(a) ? b : a;
     met_[stopped.index].relief = stopped == b ? candidates_[slot].relief : -candidates_[slot].relief;
     recall_unpressed(stopped, until);
 }
 
-/// The pair of a body that touched without being pressed, up to a time, goes back into the queue. Several stay where they are: in a wall
-/// one event would grow to all of it, and an answer to very many pairs at once takes longer than answers to a few at a time.
+/// Puts the pair of a body that touched without being pressed, up to the given time, back into the queue. If there are several such
+/// pairs, they are left alone: in a wall of bricks one event would grow to all of it, and one answer for very many pairs takes longer
+/// than several answers for a few pairs each.
 void EventLocator::recall_unpressed(Ref stopped, double until)
 {
     std::erase_if(unpressed_, [&](const UnpressedPair& t) { return t.version != version_of(t.a, t.b); });
@@ -200,7 +202,7 @@ void EventLocator::recall_unpressed(Ref stopped, double until)
     unpressed_.erase(found);
 }
 
-/// Takes the first event, and with it whatever happens at the same time to the same bodies.
+/// Collects the first event and all candidates that happen at the same time to the same bodies.
 void EventLocator::gather(std::uint32_t first)
 {
     chosen_.clear();
@@ -237,7 +239,7 @@ void EventLocator::gather_until(double until)
         else
         {
             take(slot, until);
-            // Who was passed over may know the new one.
+            // Candidates that were set aside may share a body with the new one: consider them again.
             const auto stays = [&](std::uint32_t s) { return !meets_chosen(s); };
             const auto known = std::partition(set_aside_.begin(), set_aside_.end(), stays);
             std::for_each(known, set_aside_.end(), [&](std::uint32_t s) { push(s); });
@@ -256,27 +258,28 @@ void EventLocator::process()
     rewound_ = false;
     if (!detector.responds)
     {
-        // A sensor disturbs nobody: the time is known, nothing goes back.
+        // A sensor changes no motion: the time is known, and nothing has to be rewound.
         complete(candidates_[chosen_.front()]);
         record(candidates_[chosen_.front()], candidates_[chosen_.front()].contacts, step_.frame.start_time + time);
         return;
     }
     in_scope_.assign(step_.groups.all.size(), 0);
     for (const std::uint32_t slot : chosen_) scope_of(candidates_[slot], true);
-    rewound_ = in_scope_;
+    disturbed_ = in_scope_;
     if (!detector.local && !first.at_end) scope_of(first, false);
     scope_.clear();
     for (std::uint32_t g = 0; g < in_scope_.size(); ++g)
         if (in_scope_[g]) scope_.push_back(g);
     if (first.at_end)
     {
-        // Answered where the step ends: nobody goes back, only speeds change.
+        // Answered where the step ends: nothing is rewound, only velocities change.
         answer();
         for (const std::uint32_t g : scope_) motion_.save_end(g);
         return;
     }
     rewound_ = true;
-    // What the pieces booked up to the end of the step is taken back, then booked again in two parts.
+    // The work that was booked for the pieces up to the end of the step is taken back, then booked again in two parts: up to the event
+    // here, and from it in go_on().
     advance_scope(step_.frame.step, {&step_.work, -1}, true);
     advance_scope(time, step_.book(), true);
     for (const std::uint32_t g : scope_) motion_.begin_segment(g, time);
@@ -287,13 +290,13 @@ void EventLocator::process()
     for (const std::uint32_t g : scope_) motion_.save_segment(g);
     if (any_certifies_) start_pieces(time);
     if (time < step_.frame.step) go_on(time);
-    for (const std::uint32_t g : scope_) motion_.save_end(g), versions_[g] += rewound_[g];
+    for (const std::uint32_t g : scope_) motion_.save_end(g), versions_[g] += disturbed_[g];
     if (any_certifies_) end_pieces();
 }
 
 void EventLocator::detect_again(std::vector<FoundContact>& found)
 {
-    // Only pairs with a member that went back can have changed; the rest of what was known stands.
+    // Only pairs with a rewound member can have changed; all other candidates stay valid.
     if (any_certifies_) find_near(true);
     if (all_certify_) return;
     const double before = sweeps_and_queries();
@@ -302,19 +305,20 @@ void EventLocator::detect_again(std::vector<FoundContact>& found)
     collect(found);
 }
 
-/// What responses, managers and looks took in this step so far, in units of the budget.
+/// What responses, managers and distance queries have cost in this step so far, in units of the budget.
 double EventLocator::sweeps_and_queries() const
 {
     return WorkBudget::kSweptRow * static_cast<double>(step_.report.swept_rows) + WorkBudget::kFurtherPair * step_.report.further_pairs;
 }
 
-/// What the step takes without locating: groups, pairs that are known, and what rows and looks took so far.
+/// Sets the budget to a multiple of what the step costs without event location: its groups, its known pairs, and the rows and queries
+/// so far.
 void EventLocator::begin_budget()
 {
     const double plain = static_cast<double>(step_.groups.all.size() + contacts_.cache().pairs().size()) + sweeps_and_queries();
     double multiple = 0;
     for (const Detector& d : contacts_.detectors())
-        if (d.locates) multiple = std::max(multiple, contacts_.number_of(d.resolution, "max_work"));
+        if (d.locates) multiple = std::max(multiple, d.max_work.value_or(0));
     budget_.begin(plain, multiple > 0 ? multiple : WorkBudget::kMultiple);
 }
 
@@ -325,15 +329,15 @@ void EventLocator::tell_too_many(std::size_t left)
     const auto locates =
         std::find_if(contacts_.detectors().begin(), contacts_.detectors().end(), [](const Detector& d) { return d.locates; });
     e.component = (locates == contacts_.detectors().end() ? contacts_.detectors().front() : *locates).component;
-    e.message = "locating events took more than a step may (" + std::to_string(std::llround(budget_.allowed())) +
-                " looks and advances) after " + std::to_string(step_.report.events) + " impacts; " + std::to_string(left) +
+    e.message = "event location exceeded the work budget of the step (" + std::to_string(std::llround(budget_.allowed())) +
+                " distance queries and advances) after " + std::to_string(step_.report.events) + " impacts; " + std::to_string(left) +
                 " pairs are answered at the end of the step; take shorter steps, Resolution/None, or a larger max_work";
     e.values = {static_cast<double>(left)};
     step_.emit(std::move(e));
 }
 
-/// The work of the step is spent: everybody is where the step ends, and what overlaps there is answered there, each heap of bodies at once,
-/// as Resolution/None does.
+/// The work budget is spent. All bodies are at the end of the step, and what overlaps is answered there, one island of bodies at a time,
+/// as with Resolution/None.
 void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& found)
 {
     tell_too_many(left);

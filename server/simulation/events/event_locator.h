@@ -1,11 +1,24 @@
-/// Finds the first contact event inside a step, rewinds whom it touches, lets the response act, and goes on.
+/// Event location: finds the first impact inside a step, rewinds the bodies that it affects to its time, lets the response apply its
+/// impulses, advances the bodies to the end of the step again, and repeats until the step contains no further impact.
 ///
-/// Local scope: only the groups of the pair (and what rests on them) go back; everybody else keeps its end-of-step state,
-/// bit for bit. World scope, the paper's: everything goes back. Each group remembers where its present smooth piece began.
+/// All groups have been advanced to the end of the step before this starts. Between two impacts a group moves along a smooth piece of
+/// its trajectory; each group remembers the state at which its present piece began (GroupMotion), so that any time inside the piece can
+/// be reached by advancing from there again. How much is rewound for an impact depends on the resolution:
+///   - local scope: only the groups of the colliding pair, and whatever rests on them. All other groups keep their state at the end of
+///     the step, bit for bit.
+///   - world scope, the paper's algorithm: all groups go back.
 ///
-/// Candidates stand in a queue by time. Those of resolutions that look at the end of the step only are pairs that overlap
-/// there; those of resolutions that certify are pairs that may meet anywhere in the piece, and their time is at first a
-/// bound: nothing happens before. Only the first of the queue is looked at more closely.
+/// Candidate pairs are kept in a priority queue ordered by time. There are two kinds of candidates:
+///   - A resolution that tests only the end of the step supplies pairs that overlap there. The overlap gives a bracket (clear at the
+///     start of the piece, overlapping at its end), and bisection or a similar method narrows it down to the time of impact. Bodies that
+///     pass through each other within the step are missed.
+///   - A resolution that certifies supplies all pairs that may meet anywhere in the piece (swept bounding boxes). The time of such a
+///     candidate starts as a lower bound: motion_bound.h proves that the pair cannot meet before. From there conservative advancement
+///     goes on: measure the distance, compute how long the pair is certain to stay apart, advance by that time, and repeat until the
+///     gap is zero within rounding. No impact is missed as far as the bounds on the accelerations hold.
+/// Only the candidate at the front of the queue is located more precisely. If its time becomes later, it goes back into the queue; if it
+/// is still the earliest, it is the next event. An answer changes the trajectories of the rewound groups, so it raises their version
+/// number: candidates made with an older version are stale and are dropped, and the pairs of the rewound bodies are detected again.
 #pragma once
 
 #include <vector>
@@ -24,7 +37,7 @@ public:
         : step_(step), motion_(motion), contacts_(contacts), forces_(forces), advance_(advance)
     {
     }
-    /// Until the step holds no event any more. Leaves the contacts of the end of the step in `found`.
+    /// Locates and answers events until the step contains none any more. Leaves the contacts at the end of the step in `found`.
     void run(std::vector<FoundContact>& found);
 
 private:
@@ -32,20 +45,20 @@ private:
     {
         std::uint32_t detector = 0;
         Ref a, b;
-        std::uint64_t version = 0;  ///< of both groups, when it was made: later it is stale
-        bool certified = false;     ///< located by looking inside the step
+        std::uint64_t version = 0;  ///< sum over both groups when the candidate was made; if it has changed, the candidate is stale
+        bool certified = false;     ///< located by distance queries inside the step (conservative advancement)
         bool located = false;
         bool nothing = false;                ///< located: they do not meet
-        bool stuck = false;                  ///< overlaps where the piece begins: there is nothing to bracket
-        bool at_end = false;                 ///< no event location: answered where the step ends
-        bool pressed = false;                ///< located: it touches without closing, and is pressed together
-        Vec3 relief;                         ///< m/s^2, where it is pressed: by how much b, held, falls less towards a
-        double ignored = 0;                  ///< m: overlaps up to this are what it slides along
-        double bracket = 0;                  ///< s between the last clear and the first overlapping trial
-        double time = 0;                     ///< s since the start of the step, on the clear side; a bound until located
-        std::vector<FoundContact> contacts;  ///< as seen on the overlapping side
+        bool stuck = false;                  ///< overlaps already where the piece begins: there is no clear side to bracket from
+        bool at_end = false;                 ///< not located: answered where the step ends
+        bool pressed = false;                ///< located: it touches without closing, and forces press it together
+        Vec3 relief;                         ///< m/s^2, if pressed: change of b's acceleration if b is stopped by a
+        double ignored = 0;                  ///< m: overlaps up to this depth belong to surfaces that the pair only slides along
+        double bracket = 0;                  ///< s, time between the last clear and the first overlapping trial
+        double time = 0;                     ///< s since the start of the step, on the clear side; a lower bound until located
+        std::vector<FoundContact> contacts;  ///< as detected on the overlapping side
     };
-    /// Ties go by the order of ids.
+    /// Queue entry. Equal times are ordered by ids, so that the result does not depend on the order of detection.
     struct Entry
     {
         double time;
@@ -53,26 +66,26 @@ private:
         std::uint32_t slot;
         bool operator<(const Entry& other) const;
     };
-    /// One look at a pair at one time.
+    /// The result of one distance query: gap and closing speed of a pair at one time.
     struct DistanceSample
     {
         double time = 0;
         GapQuery query;
-        double rate = 0;         ///< m/s, of the gap
-        double speed = 0;        ///< m/s, size of the speeds that the rate is a difference of
-        double contact_gap = 0;  ///< m: gaps up to this are none
-        double slack = 0;        ///< m: what touches and sinks no deeper than this in the rest of the step is no event
+        double rate = 0;         ///< m/s, time derivative of the gap
+        double speed = 0;        ///< m/s, sum of the two speeds whose difference is the rate: the scale of its rounding error
+        double contact_gap = 0;  ///< m: gaps up to this size count as contact (rounding)
+        double slack = 0;        ///< m: a pair that touches and sinks in no deeper than this in the rest of the step is not an event
     };
-    /// A shape of one body and one of the other.
+    /// The distance between a shape of one body and a shape of the other.
     struct ShapeGap
     {
         const ShapeExtent *shape_a = nullptr, *shape_b = nullptr;
-        double gap = 0;  ///< m: they are no nearer than this
-        Vec3 normal;     ///< from a to b: the direction in which they are so far apart
+        double gap = 0;  ///< m, lower bound of their distance
+        Vec3 normal;     ///< from a to b: the direction along which they are separated by the gap
         Vec3 point_a, point_b;
-        bool exact = false;  ///< the gap is that of the shapes, and the points are the nearest ones
+        bool exact = false;  ///< the gap is the distance of the shapes, and the points are the closest ones
     };
-    /// A pair that touched at `time`, and that nothing pressed together then.
+    /// A pair that touched at `time` while no force pressed it together.
     struct UnpressedPair
     {
         std::uint32_t detector;
@@ -80,13 +93,13 @@ private:
         double time;
         std::uint64_t version;
     };
-    /// A body of the present event.
+    /// Whether a body takes part in the present event.
     struct Met
     {
         bool chosen = false;
-        Vec3 relief;  ///< m/s^2: by how much the event changes what forces do to it, where it stops it
+        Vec3 relief;  ///< m/s^2: if the event stops the body, the change of its acceleration
     };
-    /// A pair of one detector, by number.
+    /// A pair of bodies of one detector, by index.
     struct PairKey
     {
         std::uint32_t detector, a, b;
@@ -119,7 +132,7 @@ private:
     void tell_too_many(std::size_t left);
     double overlap_tolerance(Ref a, Ref b) const;
 
-    // event_courses.cpp: pairs that may meet anywhere in the piece.
+    // event_candidates.cpp: pairs that may meet anywhere in the piece.
     void begin_motion_bounds();
     void find_near(bool only_rewound);
     void consider_near(std::uint32_t detector, Ref a, Ref b);
@@ -179,7 +192,7 @@ private:
     void announce_rest(const FoundContact& f, PairState& pair);
     void note_paradoxes();
 
-    // event_joints.cpp: impacts of who is held by joints.
+    // event_joints.cpp: impacts of bodies that joints hold.
     bool find_jointed();
     void respond(double time);
     void note_who_rests();
@@ -197,39 +210,39 @@ private:
     Advance& advance_;
     std::vector<Candidate> candidates_;  ///< slots
     std::vector<std::uint32_t> free_;
-    std::vector<Entry> queue_;                      ///< heap, first event on top
-    std::vector<std::uint64_t> versions_;           ///< by group: counts the pieces of the step
-    std::vector<std::uint32_t> chosen_;             ///< slots answered together
-    std::vector<std::uint32_t> set_aside_;          ///< slots
-    std::vector<std::uint32_t> scope_;              ///< groups that go back, ascending
-    std::vector<std::uint8_t> in_scope_, rewound_;  ///< by group; touched: reached by the last answer's impulses
-    std::vector<std::uint8_t> rests_;               ///< by group: something stands on it or it on something that moves
-    bool stands_ = false;                           ///< somebody in the scope of the present answer rests on something
-    bool rewound_ = false;                          ///< the last answer moved somebody
-    bool answers_at_end_ = false;                   ///< the budget is spent: nothing is located any more
+    std::vector<Entry> queue_;                        ///< heap, earliest event on top
+    std::vector<std::uint64_t> versions_;             ///< by group: number of its present smooth piece within the step
+    std::vector<std::uint32_t> chosen_;               ///< slots that are answered together
+    std::vector<std::uint32_t> set_aside_;            ///< slots
+    std::vector<std::uint32_t> scope_;                ///< groups that are rewound, ascending
+    std::vector<std::uint8_t> in_scope_, disturbed_;  ///< by group; disturbed_: belongs to the last answer's pairs or rests on them
+    std::vector<std::uint8_t> rests_;                 ///< by group: it takes part in a persistent contact
+    bool stands_ = false;                             ///< a group in the scope of the present answer takes part in a persistent contact
+    bool rewound_ = false;                            ///< the last answer rewound groups
+    bool answers_at_end_ = false;                     ///< the work budget is spent: nothing is located any more
     WorkBudget budget_;
     std::vector<PairKey> live_;          ///< pairs in the queue, sorted
-    std::vector<ShapeGap> shape_gaps_;   ///< of the last look, where a body has several shapes
+    std::vector<ShapeGap> shape_gaps_;   ///< of the last distance query, if a body has several shapes
     std::vector<FoundContact> pressed_;  ///< one contact
     std::vector<UnpressedPair> unpressed_;
-    std::vector<Met> met_;                   ///< by body; nobody is outside gather()
-    std::vector<std::uint32_t> met_bodies_;  ///< those that are
+    std::vector<Met> met_;                   ///< by body; reset outside gather()
+    std::vector<std::uint32_t> met_bodies_;  ///< the bodies that take part in the present event
     DisjointSets left_islands_;
     bool any_certifies_ = false, all_certify_ = false;
 
     struct Jointed
     {
         std::vector<std::uint32_t> groups, bodies, shafts;
-        std::vector<Vec3> velocity, spin, momentum;  ///< beside bodies
-        std::vector<double> speed;                   ///< beside shafts
-        std::vector<double> restitution;             ///< beside the contacts
+        std::vector<Vec3> velocity, spin, momentum;  ///< parallel to `bodies`
+        std::vector<double> speed;                   ///< parallel to `shafts`
+        std::vector<double> restitution;             ///< parallel to the contacts in impact_
         std::vector<std::uint8_t> rests;
-        std::vector<Vec3> impulse, last;  ///< N s: so far; by the last answer
+        std::vector<Vec3> impulse, last;  ///< N s: sum so far; by the last call of the response
     };
     Jointed jointed_;
     std::vector<MotionBound> motions_;   ///< by body
     std::vector<BodyExtent> extents_;    ///< by body
-    std::vector<double> motion_margin_;  ///< m, by body
+    std::vector<double> motion_margin_;  ///< m, by body: how far its AABB is expanded by its motion
     std::vector<std::uint8_t> active_;   ///< by body
     std::vector<NearCollector::Pair> near_;
     struct Accelerated
@@ -242,11 +255,11 @@ private:
     {
         std::uint32_t slot;
         double ends;
-        double stays;  ///< m/s: slower than this it does not leave
+        double stays;  ///< m/s: a pair that separates more slowly than this stays in contact
     };
-    std::vector<Stopped> stopped_;       ///< of the chosen ones: those that have bounced for the last time
-    double rest_time_ = 0;               ///< s, when the pair being recorded comes to rest
-    std::vector<std::uint8_t> paradox_;  ///< beside impact_: no impact, but the answer to Painleve's paradox
+    std::vector<Stopped> stopped_;       ///< those of the chosen pairs that have bounced for the last time
+    double rest_time_ = 0;               ///< s, time at which the pair that is being recorded comes to rest
+    std::vector<std::uint8_t> paradox_;  ///< parallel to impact_: not an impact, but the answer to Painleve's paradox
     bool meets_force_contact_ = false;
     std::vector<PersistentPair> persistent_;
     std::vector<FoundContact> seen_, impact_, at_end_;

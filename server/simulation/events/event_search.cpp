@@ -1,4 +1,11 @@
-// When, within its piece, a pair meets: by halving between a clear and an overlapping end, or from the clear side only.
+// Finds the time within its piece at which a pair meets. There are two ways:
+//   - locate() with a bracket: the pair is clear at the start of the piece and overlaps at the end of the step; the resolution (a
+//     bisection, for instance) says which time to try next.
+//   - search() by conservative advancement from the clear side: each distance query gives a time span in which nothing can meet
+//     (motion_bound.h), and the pair is advanced by that span until the gap is zero within rounding. As soon as a sample overlaps, the
+//     two last samples are a bracket.
+// Pairs that touch without closing need care: a body that slides or rests must not produce an event in every step, but one that forces
+// press into the surface must. presses() decides from the relative normal acceleration.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,14 +19,14 @@ namespace
 {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// m: a gap of exactly 0 counts as an overlap, and a resolution is told so by the sign.
+/// m: a gap of exactly 0 counts as an overlap; as a resolution tells the two apart by the sign, it gets this much below 0.
 constexpr double kNothing = 1e-300;
-/// A rate below this share of the speeds that it is a difference of is none.
-constexpr double kStill = 1e-14;
-/// Share of the rest of a piece for which a pair that touches and does not close is let go where no bound says for how long; twice as
-/// long each time, so that a piece is over after some twenty looks.
+/// A closing or separation speed below this fraction of the two speeds that it is the difference of counts as zero.
+constexpr double kNoGapRate = 1e-14;
+/// If a pair touches and does not close, and no bound says for how long it stays so, it is advanced by this fraction of the rest of the
+/// piece without a guarantee; twice as far each time, so that the end of the piece is reached after about twenty queries.
 constexpr double kLetGo = 0x1p-20;
-/// Steps towards a contact before the end of the piece is looked at for a bracket.
+/// Number of advancement steps towards a contact before the end of the piece is sampled, to find a bracket.
 constexpr int kFirstSteps = 4;
 
 }  // namespace
@@ -72,7 +79,7 @@ void EventLocator::locate(Candidate& candidate)
     if (candidate.certified) return search(candidate);
     candidate.time = step_.frame.step;
     if (candidate.at_end) return;
-    // Trials need the pair alone, whoever is rewound for its answer: the rest does not feel it.
+    // Trials advance the groups of the pair only, whatever is rewound for the answer: the others are not affected by them.
     scope_of_pair(candidate);
     Trial trial;
     trial.begin = begin_of_scope(), trial.end = trial.step = step_.frame.step;
@@ -82,7 +89,7 @@ void EventLocator::locate(Candidate& candidate)
     bool overlaps = overlaps_at(candidate, trial.begin);
     if (overlaps && slides(candidate.contacts))
     {
-        // What it slides along is no event; something else of it may be.
+        // The surface along which the pair slides causes no event, but other shapes of the two bodies may.
         for (const FoundContact& f : candidate.contacts) candidate.ignored = std::max(candidate.ignored, f.contact.depth);
         overlaps = false;
         candidate.contacts = at_end_;
@@ -95,8 +102,8 @@ void EventLocator::locate(Candidate& candidate)
     }
     else
     {
-        // Overlapping where the piece begins: nothing to bracket. A pair that closes is answered there; one that parts is
-        // left alone until the end of the step.
+        // Overlapping where the piece begins: there is no bracket. A pair that closes is answered there; one that separates is left alone
+        // until the end of the step.
         const auto closes = [&](const FoundContact& f) { return contacts_.normal_velocity(f.contact) <= 0; };
         candidate.stuck = std::any_of(candidate.contacts.begin(), candidate.contacts.end(), closes);
         candidate.at_end = !candidate.stuck;
@@ -109,7 +116,7 @@ void EventLocator::locate(Candidate& candidate)
     candidate.located = !budget_.is_spent();
 }
 
-/// The pair's own groups, and what stands on them.
+/// The scope of trials: the pair's own groups, and what rests on them.
 void EventLocator::scope_of_pair(const Candidate& candidate)
 {
     scope_.clear();
@@ -139,7 +146,7 @@ EventLocator::DistanceSample EventLocator::sample_at(const Candidate& candidate,
     const Vec3 va = bodies.velocity_at(q.a.index, q.point_a), vb = bodies.velocity_at(q.b.index, q.point_b);
     sample.rate = dot(vb - va, q.normal);
     sample.speed = length(va) + length(vb);
-    // Rounding of positions, and the way in the least time that can be told apart.
+    // Rounding of the positions, plus the distance covered in the shortest time that can be resolved.
     const double size = length(bodies.position[q.a.index]) + length(bodies.position[q.b.index]) + length(q.point_a - q.point_b);
     sample.contact_gap = 4e-16 * size + 2e-16 * length(bodies.position[q.b.index] - bodies.position[q.a.index]) +
                          0x1p-50 * step_.frame.step * std::fabs(sample.rate);
@@ -147,17 +154,17 @@ EventLocator::DistanceSample EventLocator::sample_at(const Candidate& candidate,
     return sample;
 }
 
-/// rad/s: how the normal turned from one look to a later one.
+/// rad/s: angular velocity of the normal between one distance query and a later one.
 Vec3 EventLocator::turn_between(const DistanceSample& first, const DistanceSample& then)
 {
     return cross(first.query.normal, then.query.normal) / (then.time - first.time);
 }
 
-/// Overlap, or touching without parting, where the search begins. True if that settles it.
+/// Handles a pair that overlaps already where the search begins. True if that decides the candidate.
 bool EventLocator::settle_at_begin(Candidate& candidate, const DistanceSample& sample)
 {
     if (sample.query.gap >= -sample.contact_gap - overlap_tolerance(candidate.a, candidate.b)) return false;
-    // Nothing to find: a pair that closes is answered here; one that parts is left alone until the end of the step.
+    // There is no time of impact to find: a pair that closes is answered here; one that separates is left alone until the end of the step.
     candidate.time = sample.time;
     candidate.stuck = sample.rate <= 0 || !contacts_.detectors()[candidate.detector].responds;
     candidate.at_end = !candidate.stuck;
@@ -168,7 +175,8 @@ bool EventLocator::settle_at_begin(Candidate& candidate, const DistanceSample& s
     return true;
 }
 
-/// Time of a zero between a clear and an overlapping look, by the resolution. With `certify`: only if nothing met before.
+/// Lets the resolution find the zero of the gap between a clear and an overlapping sample. With `certify` it succeeds only if the pair is
+/// certain not to have met earlier.
 bool EventLocator::settle_in_bracket(Candidate& candidate, const DistanceSample& clear, const DistanceSample& over, bool certify)
 {
     Trial trial;
@@ -195,7 +203,7 @@ bool EventLocator::settle_in_bracket(Candidate& candidate, const DistanceSample&
     return was_clear(candidate, clear, sample_at(candidate, trial.begin));
 }
 
-/// The resolution gave up: what shows at the end of the step is all that is known.
+/// The resolution gave up: only an overlap at the end of the step is known then.
 bool EventLocator::found_when_given_up(Candidate& candidate, const DistanceSample& sample)
 {
     const DistanceSample last = sample_at(candidate, step_.frame.step);
@@ -212,7 +220,7 @@ void EventLocator::search(Candidate& candidate)
     for (const std::uint32_t g : scope_) motion_.restore_end(g);
 }
 
-/// Whether the pair has had an impact at this very time: what did not part it then will not now.
+/// Whether the pair has had an impact at exactly this time: a second answer would not separate it either.
 bool EventLocator::answered_at(const Candidate& candidate, double time) const
 {
     const PairState* pair =
@@ -220,7 +228,8 @@ bool EventLocator::answered_at(const Candidate& candidate, double time) const
     return pair && pair->impacts_tick == step_.frame.tick && pair->bounces.time == step_.frame.start_time + time;
 }
 
-/// Whether forces press together what touches and moves along: so that it would sink in by more than rounding. Once: what presses rests.
+/// Whether forces press a touching pair together so strongly that it would sink in by more than rounding during the rest of the step.
+/// This is asked once per contact time: after the answer the pair is at rest.
 bool EventLocator::presses(Candidate& candidate, const DistanceSample& sample)
 {
     if (answered_at(candidate, sample.time)) return false;
@@ -231,10 +240,11 @@ bool EventLocator::presses(Candidate& candidate, const DistanceSample& sample)
     const auto held = [&](Ref r) { return step_.groups.of(r) != kNoIndex && rests_[step_.groups.of(r)] != 0; };
     if (held(c.a) || held(c.b))
     {
-        // Who stands does not fall as forces alone would make it; where the step ends is known.
+        // A supported body does not fall as forces alone would make it. Its mean acceleration follows from the known end of the step.
         const Bodies& bodies = step_.world.host().bodies;
         const Vec3 arm_a = c.point - bodies.position[c.a.index], arm_b = c.point - bodies.position[c.b.index];
-        // Arms go along with their bodies, and do not turn: a rolling ball's point turns away, its gap does not open.
+        // The lever arms move with their bodies but do not rotate: the contact point of a rolling ball rotates away from the ground, yet
+        // the gap does not open.
         const auto rate = [&]
         {
             const Vec3 a = bodies.velocity[c.a.index] + cross(bodies.angular_velocity[c.a.index], arm_a);
@@ -268,24 +278,25 @@ bool EventLocator::meets(Candidate& candidate)
         if (step_.frame.give_up()) return false;
         candidate.time = sample.time;
         const double left = step - sample.time;
-        const bool touches = sample.query.gap <= sample.contact_gap, closes = sample.rate < -kStill * sample.speed;
+        const bool touches = sample.query.gap <= sample.contact_gap, closes = sample.rate < -kNoGapRate * sample.speed;
         if (touches && (!responds || (closes && !(left > 0 && -sample.rate * left <= sample.slack)))) return true;
         if (!(left > 0)) return false;
-        // What touches one that is stopped now may be stopped with it.
-        if (touches && !met_bodies_.empty() && !(sample.rate > kStill * sample.speed) && presses(candidate, sample)) return true;
-        // Sliding along one another, for the rest of the step, is no event.
+        // A pair that touches a body which the present event stops may be stopped with it.
+        if (touches && !met_bodies_.empty() && !(sample.rate > kNoGapRate * sample.speed) && presses(candidate, sample)) return true;
+        // Sliding along one another for the rest of the step is not an event.
         double clear = clear_for(candidate, sample, turn, touches ? sample.slack : 0.0, trial.closing);
         if (sample.time + clear >= step)
         {
             if (touches && responds) unpressed_.push_back({candidate.detector, candidate.a, candidate.b, sample.time, candidate.version});
             return false;
         }
-        // What parts comes back at a gap of 0, not a rounding error later: there it is bracketed.
+        // A pair that separates and comes back meets at a gap of 0, not a rounding error below it, so the bound for its return has no
+        // slack.
         if (touches) clear = clear_for(candidate, sample, turn, 0.0, trial.closing);
-        // Closing, and nearer than times can be told apart.
+        // It is closing, and the remaining time is shorter than times can be resolved: this is the impact.
         if (!touches && clear < shortest && sample.rate < 0) return true;
-        // What parts is let go; so is what nothing presses, though no bound says that it does not sink in.
-        if (touches && !(sample.rate > kStill * sample.speed) && presses(candidate, sample)) return true;
+        // A pair that separates is advanced further; so is one that no force presses together, although no bound excludes that it sinks in.
+        if (touches && !(sample.rate > kNoGapRate * sample.speed) && presses(candidate, sample)) return true;
         if (touches) clear = std::max(clear, std::min(let_go, 1.0) * left), let_go *= 2;
         if (trial.iteration == kFirstSteps) over = sample_at(candidate, step);
         const bool bracketed = trial.iteration >= kFirstSteps && over.query.gap < -over.contact_gap;
@@ -298,21 +309,21 @@ bool EventLocator::meets(Candidate& candidate)
         else
         {
             ask(candidate, trial);
-            // What parts, however narrow the gap is still, is no impact: it goes on.
+            // A pair that separates has no impact, however narrow its gap still is: go on.
             if (trial.decision == Trial::Decision::Accept && (!responds || sample.rate < 0)) return true;
             if (trial.decision == Trial::Decision::Accept)
                 trial.next = sample.time + (clear = std::max(clear, std::min(let_go, 1.0) * left)), let_go *= 2;
             if (trial.decision == Trial::Decision::GiveUp) return found_when_given_up(candidate, sample);
-            // A resolution that knows of an overlap may jump to where it thinks the zero is.
+            // With a known overlap ahead, the resolution may jump to its estimate of the zero.
             if (bracketed && trial.next > sample.time + clear && (trial.iteration & 7) == kFirstSteps &&
                 settle_in_bracket(candidate, sample, over, true))
                 return true;
         }
         const double next = std::min(trial.next, sample.time + clear);
-        // Closer than times can be told apart; what parts there goes into the next step.
-        if (!(next > sample.time)) return !(sample.rate > kStill * sample.speed);
+        // The next time cannot be told from the present one; a pair that separates here is left to the next step.
+        if (!(next > sample.time)) return !(sample.rate > kNoGapRate * sample.speed);
         const DistanceSample ahead = sample_at(candidate, std::min(next, step));
-        // The bound is as good as what is known of the forces.
+        // The bound relies on estimated accelerations, so an overlap is possible after all. Then the two samples are a bracket.
         if (ahead.query.gap < -ahead.contact_gap) return settle_in_bracket(candidate, sample, ahead, false);
         turn = turn_between(sample, ahead);
         sample = ahead;

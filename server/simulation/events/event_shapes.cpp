@@ -1,6 +1,6 @@
-// How far two bodies are apart and until when they stay so, for bodies of several shapes too. A detection measures the two shapes that are
-// nearest; of the others the host knows how wide they are apart along some direction, which is no more than their gap: exact against
-// planes.
+// How far two bodies are apart, and until when they stay apart, also for bodies of several shapes. A detection measures only the closest
+// two shapes. For all other pairs of shapes the host computes a lower bound of their distance: the gap between their projections onto a
+// suitable direction (a separating axis). Against planes this is the exact distance.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace plab::simulation
 namespace
 {
 
-/// Directions square to the faces of a box, which is where it is likely to be apart from others.
+/// Face normals of a box: likely separating axes.
 std::array<Vec3, 3> face_normals(const Shapes& shapes, const Mover& m)
 {
     const ShapeExtent& e = *m.extent;
@@ -25,7 +25,7 @@ std::array<Vec3, 3> face_normals(const Shapes& shapes, const Mover& m)
 
 }  // namespace
 
-/// m/s: sum of the speeds of a point of each.
+/// m/s: sum of the speeds of one point of each body.
 double EventLocator::speeds_at(Ref a, const Vec3& point_a, Ref b, const Vec3& point_b) const
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -34,7 +34,7 @@ double EventLocator::speeds_at(Ref a, const Vec3& point_a, Ref b, const Vec3& po
 
 double EventLocator::smaller_radius(Ref a, Ref b) const { return contacts_.smaller_radius(a, b); }
 
-/// m: overlaps up to this, and sinking so far in a step, are rounding of where the two are and how they move.
+/// m: overlaps up to this, and sinking in by up to this in a step, are explained by rounding of positions and velocities.
 double EventLocator::slack_of(Ref a, Ref b, double speed) const
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -42,7 +42,7 @@ double EventLocator::slack_of(Ref a, Ref b, double speed) const
            (smaller_radius(a, b) + length(bodies.position[a.index]) + length(bodies.position[b.index]) + speed * step_.frame.step);
 }
 
-/// Contacts that overlap, and close within a whole step, by rounding only.
+/// Whether all contacts overlap, and sink in within a whole step, by rounding only.
 bool EventLocator::slides(std::span<const FoundContact> contacts) const
 {
     return std::all_of(contacts.begin(), contacts.end(),
@@ -55,7 +55,7 @@ bool EventLocator::slides(std::span<const FoundContact> contacts) const
                        });
 }
 
-/// Two shapes that touch, and sink no deeper than rounding in the rest of the step.
+/// Whether two shapes touch, and sink in by no more than rounding in the rest of the step.
 bool EventLocator::slides(const Candidate& candidate, const ShapeGap& g, double time) const
 {
     const double slack = slack_of(candidate.a, candidate.b, speeds_at(candidate.a, g.point_a, candidate.b, g.point_b));
@@ -63,7 +63,7 @@ bool EventLocator::slides(const Candidate& candidate, const ShapeGap& g, double 
     return std::fabs(g.gap) <= slack && left > 0 && clearance_of(candidate, g, left).along(g.normal, slack) >= left;
 }
 
-/// Of the two bodies where they are now, or of two shapes of them.
+/// The clearance of the two bodies at their present state; the overload below takes one shape of each.
 Clearance EventLocator::clearance_of(const Candidate& candidate, double left) const
 {
     const Bodies& bodies = step_.world.host().bodies;
@@ -80,7 +80,7 @@ Clearance EventLocator::clearance_of(const Candidate& candidate, const ShapeGap&
     return {bodies, step_.world.host().shapes, a, b, left};
 }
 
-/// The direction along which two shapes are widest apart, of those that are likely to be it.
+/// Tries likely separating axes of two shapes, and returns the one with the widest gap.
 EventLocator::ShapeGap EventLocator::gap_of_shapes(const Candidate& candidate, const ShapeExtent& shape_a, const ShapeExtent& shape_b,
                                                    const Vec3& hint) const
 {
@@ -117,7 +117,8 @@ EventLocator::ShapeGap EventLocator::gap_of_shapes(const Candidate& candidate, c
     return out;
 }
 
-/// Of two bodies of which one has several shapes: how far each of the one is from each of the other. Which two are nearest is measured.
+/// If one of two bodies has several shapes: lists the gaps between all pairs of shapes. The closest pair goes first, with its measured
+/// gap.
 void EventLocator::list_shape_gaps(const Candidate& candidate, const GapQuery& nearest)
 {
     shape_gaps_.clear();
@@ -130,7 +131,7 @@ void EventLocator::list_shape_gaps(const Candidate& candidate, const GapQuery& n
         {
             if (a.shape == kNoIndex || b.shape == kNoIndex || (a.is_plane && b.is_plane)) continue;
             ShapeGap& g = shape_gaps_.emplace_back(gap_of_shapes(candidate, a, b, nearest.normal));
-            // No two others are as near along the normal of the nearest.
+            // The measurement does not name its two shapes; they are the ones whose gap along the measured normal equals the measured gap.
             const double width = g.exact ? (g.normal == nearest.normal ? g.gap : HUGE_VAL)
                                          : clearance_of(candidate, g, step_.frame.step).width_along(nearest.normal);
             if (const double off = std::fabs((std::isfinite(width) ? width : g.gap) - nearest.gap); off < least)
@@ -143,8 +144,8 @@ void EventLocator::list_shape_gaps(const Candidate& candidate, const GapQuery& n
     std::swap(shape_gaps_.front(), g);
 }
 
-/// How far the pair is apart where it is now, at `time`. Where the shapes that are nearest just slide along one another, it is the planes
-/// beside them that may be met.
+/// Measures the gap of the pair at its present state, at `time`. If the closest shapes just slide along one another, their gap stays zero
+/// and hides all others; the pair may meet a plane next to them, so the gap to the nearest such plane is returned.
 GapQuery EventLocator::measure(const Candidate& candidate, double time)
 {
     const Detector& detector = contacts_.detectors()[candidate.detector];
@@ -163,7 +164,8 @@ GapQuery EventLocator::measure(const Candidate& candidate, double time)
     return query;
 }
 
-/// s from the last look until which they cannot come nearer than `slack` (m) deep; `closing`: the first-order bound on their speed, m/s.
+/// s: time from the last query during which the pair cannot come to overlap by more than `slack` (m). `closing`: bound on the closing
+/// speed, m/s.
 double EventLocator::clear_for(const Candidate& candidate, const DistanceSample& sample, const Vec3& turn, double slack,
                                double& closing) const
 {
@@ -176,7 +178,7 @@ double EventLocator::clear_for(const Candidate& candidate, const DistanceSample&
     for (const ShapeGap& g : shape_gaps_)
     {
         const Clearance clearance = clearance_of(candidate, g, left);
-        // None is nearer than the nearest.
+        // No pair of shapes is closer than the closest one, which is first in the list.
         double of_shapes = std::max(clearance.in_any_direction(std::max(g.gap, shape_gaps_.front().gap)), clearance.of_balls());
         const bool is_nearest = g.normal == sample.query.normal && g.gap == sample.query.gap;
         const double allowed = is_nearest ? slack : std::fabs(g.gap) <= sample.slack ? sample.slack : 0.0;
@@ -187,7 +189,7 @@ double EventLocator::clear_for(const Candidate& candidate, const DistanceSample&
     return std::max(balls, clear);
 }
 
-/// Whether nothing of the pair met between two looks, `last` the last one.
+/// Whether no shapes of the pair can have met between two queries, of which `last` is the later one.
 bool EventLocator::was_clear(const Candidate& candidate, const DistanceSample& clear, const DistanceSample& last) const
 {
     const double left = step_.frame.step - last.time, ago = last.time - clear.time;

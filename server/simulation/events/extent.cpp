@@ -12,7 +12,7 @@ namespace plab::simulation
 namespace
 {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 double largest_radius(const Geometry& g, const Shapes& shapes)
 {
@@ -24,7 +24,7 @@ double largest_radius(const Geometry& g, const Shapes& shapes)
         case GeometryKind::Box:
             return length(g.size);
         case GeometryKind::Plane:
-            return kForever;
+            return kUnbounded;
         case GeometryKind::Capsule:
             return g.size.x + g.size.z;
         case GeometryKind::Cylinder:
@@ -42,7 +42,7 @@ double largest_radius(const Geometry& g, const Shapes& shapes)
     return 0;
 }
 
-/// max of m . p over the points of a shape whose frame is at (p, q), from the origin of m.
+/// max of m . p over the points of a shape whose frame is at X.
 double support_of_shape(const Geometry& g, const Shapes& shapes, const Pose& X, const Vec3& m)
 {
     const double at = dot(m, X.p);
@@ -59,13 +59,13 @@ double support_of_shape(const Geometry& g, const Shapes& shapes, const Pose& X, 
             return at + std::fabs(l.z) * g.size.z + g.size.x * std::hypot(l.x, l.y);
         case GeometryKind::Mesh:
         {
-            double most = -kForever;
+            double most = -kUnbounded;
             for (const Vec3& v : g.vertices) most = std::max(most, dot(l, v));
             return at + most;
         }
         case GeometryKind::Compound:
         {
-            double most = -kForever;
+            double most = -kUnbounded;
             for (const std::uint32_t part : g.parts)
             {
                 const Geometry& p = shapes.geometry[part];
@@ -77,7 +77,7 @@ double support_of_shape(const Geometry& g, const Shapes& shapes, const Pose& X, 
         case GeometryKind::None:
             break;
     }
-    return -kForever;
+    return -kUnbounded;
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ BodyExtent extent_of(const Bodies& bodies, const Shapes& shapes, std::uint32_t b
 
 double support(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, const Quat& q, const Vec3& m)
 {
-    double most = -kForever;
+    double most = -kUnbounded;
     for (const Ref shape : bodies.shapes[b])
     {
         const Geometry& g = shapes.geometry[shape.index];
@@ -146,7 +146,7 @@ Vec3 support_point(const Bodies& bodies, const Shapes& shapes, std::uint32_t b, 
         case GeometryKind::Mesh:
         {
             Vec3 best;
-            double most = -kForever;
+            double most = -kUnbounded;
             for (const Vec3& v : g.vertices)
                 if (const double d = dot(l, v); d > most) most = d, best = v;
             return from + rotate(turn, best);

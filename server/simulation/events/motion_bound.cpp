@@ -12,9 +12,9 @@ namespace plab::simulation
 namespace
 {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
-/// Estimates of changing accelerations from the two ends are taken this many times.
-constexpr double kReserve = 2;
+constexpr double kNeverMeets = std::numeric_limits<double>::infinity();
+/// Safety factor on changes of the acceleration, which are estimated from the two ends of a piece only.
+constexpr double kDeviationReserve = 2;
 
 }  // namespace
 
@@ -24,12 +24,13 @@ MotionBound motion_bound_of(const Bodies& bodies, std::uint32_t b, const BodyExt
     MotionBound c{begin, end, first, last, {}, 0, {}};
     const double T = end - begin;
     if (!(T > 0)) return c;
-    // x = x0 + v0 T + k T^2/2 defines k; were x cubic, the speeds at the end would differ by j T^2/6 from v0 + k T.
+    // x = x0 + v0 T + k T^2/2 defines k. If x were cubic, the speed at the end would differ by j T^2/6 from v0 + k T.
     c.acceleration = (last.position - first.position - first.velocity * T) * (2 / (T * T));
-    c.deviation = kReserve * 4 / T * length(last.velocity - first.velocity - c.acceleration * T);
+    c.deviation = kDeviationReserve * 4 / T * length(last.velocity - first.velocity - c.acceleration * T);
     const auto momentum = [&](const BodyState& s)
     { return rotate(s.orientation, bodies.inertia_B[b] * rotate_back(s.orientation, s.spin)); };
-    c.turning = free_turning(extent.principal, extent.arm, {momentum(first), momentum(last)}, {first.spin, last.spin}, T, kReserve);
+    c.turning =
+        free_turning(extent.principal, extent.arm, {momentum(first), momentum(last)}, {first.spin, last.spin}, T, kDeviationReserve);
     return c;
 }
 
@@ -60,27 +61,27 @@ Clearance::Clearance(const Bodies& bodies, const Shapes& shapes, const Mover& a,
     }
 }
 
-/// m/s, most of the mover's points about the body's centre: a shape's is no more than the body's.
+/// m/s, bound on the speed of the mover's points about the body's centre; the bound of a shape is at most that of its body.
 double Clearance::sweep_of(const Mover& m)
 {
     const TurningBound& t = m.motion->turning;
     return m.extent->arm == 0 || t.spin == 0 ? 0 : std::min(t.sweep, t.spin * m.extent->arm);
 }
 
-/// m/s^2, likewise.
+/// m/s^2, the same bound for the accelerations.
 double Clearance::sweep_up_of(const Mover& m)
 {
     const TurningBound& t = m.motion->turning;
     return m.extent->arm == 0 || t.spin == 0 ? 0 : std::min(t.sweep_up, (t.spin * t.spin + t.spin_up) * m.extent->arm);
 }
 
-/// First zero of gap + rate s + acceleration s^2/2, gap >= 0; `left_` if there is none before.
+/// s: first zero of gap + rate s + acceleration s^2/2, gap >= 0; `left_` if there is none before that.
 double Clearance::quadratic(double gap, double rate, double acceleration) const
 {
     const double square = rate * rate - 2 * acceleration * gap;
     if (square < 0) return left_;
     const double root = std::sqrt(square);
-    // Of both forms the one without cancellation.
+    // Both forms of the root are equal; each branch uses the one without cancellation.
     double s = left_;
     if (rate < 0)
         s = 2 * gap / (root - rate);
@@ -94,8 +95,8 @@ double Clearance::of_balls() const
     const double R = a_.extent->radius + b_.extent->radius;
     const double distance = length(apart_);
     if (!(distance > R)) return 0;
-    // A ball that is `bend` larger moves straight: bend is what accelerations do in the time that is left. Twice, since
-    // the first answer says how much time that is.
+    // Treat the motion as straight and enlarge the radius by the most that accelerations displace the centres in the time s. The time
+    // of entry is a better value for s, so the estimate is repeated with it.
     const double change = length(acceleration_) + unsure_;
     const double v2 = length_squared(speed_), along = dot(apart_, speed_);
     double s = left_;
@@ -112,7 +113,8 @@ double Clearance::of_balls() const
         if (along >= 0 || square < 0) return s;
         const double entry = c / (std::sqrt(square) - along);
         if (entry >= s) return s;
-        // Certain until `entry` with the bend of s; with less bend it may be later. The last pass stays on the safe side.
+        // With the radius enlarged for s, `entry` is certain; a shorter s gives a smaller radius and a later entry. The last pass returns
+        // the certain value.
         if (change * s * s == 0 || pass == 2) return std::min(entry, s);
         s = std::min(s, 1.5 * entry);
     }
@@ -129,7 +131,8 @@ Clearance::Frame Clearance::world_frame(const Vec3& n) const
     return {{}, std::min(0.0, dot(acceleration_, n) - unsure_ - (turning_ > 0 ? swirl_ : 0))};
 }
 
-/// The direction turns with one of the bodies: its own points stand still, the others' feel Coriolis' acceleration.
+/// The direction rotates with one of the bodies: in that frame its own points do not move, and the points of the other body have
+/// Coriolis and centrifugal accelerations.
 Clearance::Frame Clearance::frame_of(const Mover& m) const
 {
     const Mover& other = &m == &a_ ? b_ : a_;
@@ -141,7 +144,7 @@ Clearance::Frame Clearance::frame_of(const Mover& m) const
     return {m.now.spin, -(pull + swirl + 2 * w * speed + (w * w + m.motion->turning.spin_up) * distance)};
 }
 
-/// Any direction will do, also one that turns as it likes, at constant rate.
+/// Any direction gives a valid bound, also one that rotates at an arbitrary constant rate.
 Clearance::Frame Clearance::frame_turning(const Vec3& turn) const
 {
     const double w = length(turn), pull = length(acceleration_) + unsure_;
@@ -150,8 +153,8 @@ Clearance::Frame Clearance::frame_turning(const Vec3& turn) const
     return {turn, -(pull + swirl_ + 2 * w * speed + w * w * distance)};
 }
 
-/// l(s), m. With n' = W x n in the frame, a point r from the centre of b approaches by r . ((W - w_b) x n), one of a alike.
-/// s < 0: where they were.
+/// l(s), m. With n' = W x n in the frame, a point at r from the centre of b approaches with r . ((W - w_b) x n), and a point of a
+/// correspondingly. s < 0 gives earlier times.
 double Clearance::linear_width(const Frame& frame, const Vec3& n, double gap, double s) const
 {
     double width = gap + (dot(speed_, n) + dot(cross(frame.spin, n), apart_)) * s;
@@ -167,12 +170,13 @@ double Clearance::linear_width(const Frame& frame, const Vec3& n, double gap, do
 
 double Clearance::by_points(const Vec3& n, double gap, const Vec3& turn) const
 {
-    // A half-space that turns takes its only direction with it.
+    // A half-space has one separating direction, its normal. If it rotates, the direction rotates with it.
     for (const Mover* m : {&a_, &b_})
         if (m->extent->is_plane && m->motion->turning.spin > 0) return by_points_in(frame_of(*m), n, gap);
     if (turning_ == 0) return quadratic(gap, dot(speed_, n), dot(acceleration_, n) - unsure_);
     double clear = by_points_in(world_frame(n), n, gap);
-    // A half-space knows no other direction than its own. Else: a face that turns sweeps along its own normal.
+    // Against a half-space no other direction helps. Otherwise try directions that rotate with a body: for a rotating face its own normal
+    // gives the best bound.
     if (a_.extent->is_plane || b_.extent->is_plane) return clear;
     for (const Mover* m : {&a_, &b_})
         if (clear < left_ && m->extent->arm > 0) clear = std::max(clear, by_points_in(frame_of(*m), n, gap));
@@ -183,7 +187,8 @@ double Clearance::by_points(const Vec3& n, double gap, const Vec3& turn) const
 double Clearance::by_points_in(const Frame& frame, const Vec3& n, double gap) const
 {
     const auto width = [&](double s) { return linear_width(frame, n, gap, s) + 0.5 * frame.bend * s * s; };
-    // Concave: positive at both ends means positive between them. The zero from its clear side, by halving and secants.
+    // The width is concave: positive at both ends means positive between them. Otherwise approach its zero from the clear side by
+    // bisection and secants.
     double high = left_, at_high = width(high);
     if (at_high > 0) return left_;
     double low = high, at_low = at_high;
@@ -195,7 +200,7 @@ double Clearance::by_points_in(const Frame& frame, const Vec3& n, double gap) co
     if (!(at_low > 0)) return 0;
     for (int i = 0; i < 24 && high - low > 1e-9 * high; ++i)
     {
-        // The chord of a concave function lies below it: its zero is on the clear side.
+        // The chord of a concave function lies below the function, so its zero is on the clear side.
         const double chord = low + (high - low) * at_low / (at_low - at_high);
         const double middle = 0.5 * (low + high);
         const double at_chord = width(chord);
@@ -213,7 +218,7 @@ double Clearance::by_points_in(const Frame& frame, const Vec3& n, double gap) co
 
 double Clearance::by_chord(const Vec3& n, double gap) const
 {
-    // Width along the same n where both courses end.
+    // Width along the same n at the end of the piece.
     const Vec3 end_a = a_.motion->last.position, end_b = b_.motion->last.position;
     double width = gap + dot((end_b - end_a) - apart_, n);
     const auto grow = [&](const Mover& m, const Vec3& outward)
@@ -252,7 +257,8 @@ double Clearance::of_ball_in_round(const Vec3& n, double gap) const
     const Mover &round = first ? a_ : b_, &ball = first ? b_ : a_;
     const double radius = round_radius(round);
     if (radius == 0 || ball.extent->arm > 0 || round.motion->turning.spin > 0) return 0;
-    // Seen from the middle the way outwards bends by v^2 / distance; within a tenth of the distance that changes little.
+    // The distance from the centre has a second derivative of at most v^2 / distance. As long as the ball travels less than a tenth of
+    // the distance, that value changes little (the factor 0.9).
     const double distance = radius - ball.extent->radius - gap, pull = length(acceleration_) + unsure_;
     const double speed = length(speed_) + pull * left_;
     if (!(distance > 0)) return 0;
@@ -300,7 +306,7 @@ double Clearance::of_half_space() const
 
 double Clearance::width_along(const Vec3& n) const
 {
-    if (a_.extent->is_plane || b_.extent->is_plane) return -kForever;
+    if (a_.extent->is_plane || b_.extent->is_plane) return -kNeverMeets;
     return dot(apart_, n) - support_of(a_, a_.now.orientation, n) - support_of(b_, b_.now.orientation, -n);
 }
 

@@ -1,16 +1,20 @@
-/// How a body moves over a smooth piece of a step, with bounds on everything in between: what it takes to say that two
-/// bodies do not meet before a time, though nobody has looked there.
+/// Bounds on the motion of a body over a smooth piece of a step, and conservative advancement with them: until what time are two bodies
+/// certain not to meet, without testing the times in between?
 ///
-/// For a direction n the width of the gap between two bodies is f(t) = min over their points of n . (p_b - p_a). Points move
-/// smoothly, so between two looks
+/// Two convex bodies are apart as long as a direction n exists along which they are separated. The width of the gap along n is
+///   f(t) = min over the points of both bodies of n . (p_b - p_a),
+/// a difference of support functions. Given one distance query at t (normal n, gap f(t) > 0), and bounds on the accelerations of all
+/// points, f is bounded from below for the rest of the piece, and the first zero of the bound is a time before which nothing meets:
 ///
-///   f(t + s) >= l(s) - E s^2 / 2,            l: each point by its present velocity; l is concave, a support function;
-///                                            n fixed in the world or turning with one of the bodies, whatever says more
-///   f(t + s) >= chord - (k + E) s (T - s)/2, between looks at t and t + T
-///   |p + v s + k s^2/2| - E s^2/2 > R        for the balls around two bodies
+///   f(t + s) >= l(s) - E s^2 / 2             l(s): the width if each point went on with its present velocity. l is concave, as it is
+///                                            a minimum of linear functions. n is fixed in the world or turns with one of the bodies;
+///                                            each choice gives a valid bound, and the largest one is taken.
+///   f(t + s) >= chord - (k + E) s (T - s)/2  chord: linear interpolation between the widths at t and at t + T, the end of the piece.
+///   |p + v s + k s^2/2| - E s^2/2 > R        bounding spheres: p, v = relative position and velocity of the centres, R = sum of radii.
 ///
-/// with the relative acceleration k of the centres and a bound E of what other points and forces add. At the time of a
-/// first zero nothing has met. Close to a contact the first bound is Newton's method, but never goes too far.
+/// k is the relative acceleration of the centres, and E bounds what other points (rotation) and changes of the forces add to it.
+/// The locator advances both bodies to that zero, queries the distance again, and repeats. Close to a contact the first bound becomes
+/// Newton's method for the time of impact, with quadratic convergence, but it never steps beyond the impact.
 /// Sources: Mirtich, Impulse-based Dynamic Simulation, PhD thesis (1996), 2.3; Zhang, Redon, Lee, Kim, Continuous
 /// collision detection for articulated models using Taylor models and temporal culling, SIGGRAPH (2007).
 #pragma once
@@ -34,14 +38,14 @@ struct BodyState
     }
 };
 
-/// A body between the two ends of a piece. Accelerations are estimated from the ends: exact for constant forces; what a
-/// force does faster than the piece is long is not seen.
+/// The motion of a body between the two ends of a piece. Accelerations are estimated from the states at both ends. This is exact for
+/// constant forces; a force that varies on a shorter time scale than the piece is not captured.
 struct MotionBound
 {
     double begin = 0, end = 0;  ///< s, since the start of the step
     BodyState first, last;
-    Vec3 acceleration;     ///< m/s^2, constant part: leads from one position to the other
-    double deviation = 0;  ///< m/s^2, what the acceleration of C may differ from it
+    Vec3 acceleration;     ///< m/s^2, constant part: the one that leads from the first position to the last
+    double deviation = 0;  ///< m/s^2, bound on how far the acceleration of the centre of mass C differs from it
     TurningBound turning;
 
     Vec3 position_at(double t) const
@@ -51,16 +55,16 @@ struct MotionBound
     }
     Vec3 velocity_at(double t) const { return first.velocity + acceleration * (t - begin); }
 };
-/// Of a dynamic body. `begin` < `end`.
+/// The bound for a dynamic body. Times in s since the start of the step; `begin` < `end`.
 MotionBound motion_bound_of(const Bodies& bodies, std::uint32_t b, const BodyExtent& extent, double begin, const BodyState& first,
                             double end, const BodyState& last);
-/// Of a body whose motion is prescribed, or that stands still.
+/// The bound for a kinematic or static body.
 MotionBound prescribed_motion_bound(const BodyExtent& extent, double begin, const BodyState& first, double end, const BodyState& last);
 
-/// m: how far a point of the body gets, over its course, from where it is at its end.
+/// m: the largest distance that a point of the body has, during the piece, from its position at the end of the piece.
 double swept_distance(const MotionBound& motion, const BodyExtent& extent);
 
-/// One of two bodies, or a shape of it, as seen at the time from which a bound is asked.
+/// One of two bodies, or a shape of it, with its state at the time from which the bound starts.
 struct Mover
 {
     std::uint32_t body = 0;
@@ -69,37 +73,38 @@ struct Mover
     BodyState now;
 };
 
-/// Until when two bodies cannot meet. Times in s from `now`; never more than `left`, the rest of the piece.
+/// Computes until when two bodies cannot meet. Times in s from `now`; never more than `left`, the rest of the piece.
 class Clearance
 {
 public:
     Clearance(const Bodies& bodies, const Shapes& shapes, const Mover& a, const Mover& b, double left);
 
-    /// By the balls around both. 0 where those overlap.
+    /// By the bounding spheres of both. 0 if those overlap.
     double of_balls() const;
-    /// By the normal of a half-space, where one of them is one that does not turn. 0 where they overlap.
+    /// By the normal of a half-space, if one of the two is a half-space that does not rotate. 0 if they overlap.
     double of_half_space() const;
-    /// The normal from a to b of the one that is a half-space which does not turn, and how far the other one is from it, m.
+    /// If one of the two is a half-space that does not rotate: its normal, from a to b, and the distance of the other one from it, m.
     bool find_half_space(Vec3& n, double& gap) const;
-    /// m: how far they are apart along n; < 0: their widths overlap.
+    /// m: the gap between their projections onto n; < 0: the projections overlap.
     double width_along(const Vec3& n) const;
-    /// By a direction n from a to b (unit, W), `gap` (m) apart; of bodies that are not convex: along whatever direction. `turn` (rad/s):
-    /// how n was seen to turn, if it was; where two edges meet it turns with neither body.
+    /// By a direction n from a to b (unit, W) along which they are `gap` (m) apart. For bodies that are not convex the gap is taken as a
+    /// distance, whatever the direction. `turn` (rad/s): angular velocity of n as measured between two queries, if known; the normal of
+    /// two edges turns with neither body.
     double along(const Vec3& n, double gap, const Vec3& turn = {}) const;
-    /// For bodies that are not convex: `gap` over the largest closing speed in any direction.
+    /// For bodies that are not convex: `gap` (m) divided by the largest closing speed in any direction, accelerations included.
     double in_any_direction(double gap) const;
-    /// m/s, the largest closing speed along n over the rest of the piece: linear and turning.
+    /// m/s, bound on the closing speed along n over the rest of the piece, translation and rotation together.
     double fastest_closing(const Vec3& n) const;
-    /// Whether they were apart for `ago` before now, gap > 0 along n now.
+    /// Whether they are certain to have been apart during the last `ago` s, given a gap (m) > 0 along n now.
     bool was_clear(const Vec3& n, double gap, double ago, const Vec3& turn = {}) const;
 
 private:
-    /// By n, where all of one body lies behind the plane through its point of contact: then their convex hulls are no nearer.
+    /// By n, if the measured gap is also the gap of the projections onto n: then the convex hulls are as far apart as the bodies.
     double of_hulls(const Vec3& n, double gap) const;
-    /// Of a ball inside of a bowl or a bore that does not turn: gap'' >= -(v^2 / d + |a|), d from its middle.
+    /// For a ball inside a bowl or a bore that does not rotate: gap'' >= -(v^2 / d + |a|), d = distance from its centre or axis.
     double of_ball_in_round(const Vec3& n, double gap) const;
     double round_radius(const Mover& m) const;
-    /// Spin of the frame in which the direction stands still, and how fast widths may bend in it, m/s^2.
+    /// Angular velocity (rad/s) of the frame in which the direction is fixed, and bound on the second derivative of widths in it, m/s^2.
     struct Frame
     {
         Vec3 spin;
@@ -121,10 +126,10 @@ private:
     const Shapes& shapes_;
     Mover a_, b_;
     double left_;
-    Vec3 apart_, speed_, acceleration_;  ///< b's centre seen from a's
-    double unsure_ = 0;                  ///< m/s^2, deviations of both centres
-    double turning_ = 0;                 ///< m/s, most of points about their centres
-    double swirl_ = 0;                   ///< m/s^2, most of points about their centres
+    Vec3 apart_, speed_, acceleration_;  ///< b's centre relative to a's
+    double unsure_ = 0;                  ///< m/s^2, sum of the deviations of both centres
+    double turning_ = 0;                 ///< m/s, bound on the speed of points about their centres, summed over both bodies
+    double swirl_ = 0;                   ///< m/s^2, the same bound for accelerations
 };
 
 }  // namespace plab::simulation

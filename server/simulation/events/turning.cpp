@@ -88,7 +88,7 @@ TurningBound free_turning(const PrincipalExtent& body, double arm, const std::ar
     const double most_L = std::max(length(momentum[0]), length(momentum[1])) + turned;
     const double least_L = std::max(0.0, std::min(length(momentum[0]), length(momentum[1])) - turned);
     const double energy = 0.5 * std::max(dot(momentum[0], spin[0]), dot(momentum[1], spin[1]));
-    // |w|^2 <= 2 (T + turned |w|) (u_1 + u_3) - L^2 u_1 u_3, as torques that turn L by so much work on T at no more than |w|.
+    // |w|^2 <= 2 (T + turned |w|) (u_1 + u_3) - L^2 u_1 u_3, as torques that change L by `turned` do at most the work turned |w|.
     const double half = turned * both, square = 2 * energy * both - least_L * least_L * u[0] * u[2];
     TurningBound out;
     out.spin = std::max(ends, std::min(half + std::sqrt(std::max(0.0, half * half + square)), most_L * u[0]));
@@ -99,7 +99,7 @@ TurningBound free_turning(const PrincipalExtent& body, double arm, const std::ar
     for (std::size_t k = 0; k < 3; ++k)
     {
         const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-        // Rounding apart, a ball of inertia turns steadily.
+        // A body with a spherical inertia tensor, up to rounding, rotates steadily.
         const double spread = std::fabs(I[i] - I[j]) > 1e-12 * I[2] ? std::fabs(I[i] - I[j]) : 0.0;
         up[k] = reserve * turned / time * u[k] + spread * u[k] * std::min(w[i] * w[j], 0.5 * out.spin * out.spin);
         up2 += up[k] * up[k], sweep += w[k] * body.arm[k], sweep_up += up[k] * body.arm[k];

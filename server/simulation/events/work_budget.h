@@ -1,7 +1,7 @@
-/// How much a step may do to locate events: a multiple of what it does without, so that every step ends.
+/// Limits the work of event location in a step to a multiple of the work of the step without it, so that every step ends.
 ///
-/// Counted are operations, never seconds: the same run spends the same everywhere. The unit is one group of bodies advanced over one piece
-/// of the step, or one distance measured; what is cheaper counts as a share of it.
+/// The budget counts operations and never seconds, so that the same run gives the same result on every machine. The unit is one group of
+/// bodies advanced over one piece of the step, or one distance query; cheaper operations count as fractions of it.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace plab::simulation
 class WorkBudget
 {
 public:
-    /// Units that every step has, however small its scene: some thousand impacts of a few bodies.
+    /// Units that every step has, however small its scene: enough for some thousand impacts of a few bodies.
     static constexpr double kBase = 100'000;
     static constexpr double kMultiple = 20;
-    /// One sweep over one row of a contact or joint, and one pair that a list of neighbours names, in units.
+    /// Cost in units of one sweep over one row of a contact or joint, and of one pair that the broad phase lists.
     static constexpr double kSweptRow = 1.0 / 32, kListedPair = 1.0 / 16;
-    /// One group or known pair of the scene, gone through to find out what stands on what, in units.
+    /// Cost in units of visiting one group or known pair of the scene to find out what rests on what.
     static constexpr double kGoneThrough = 1.0 / 64;
 
-    /// One pair of shapes beyond the first of a pair of bodies, a triangle too, in units.
+    /// Cost in units of each pair of shapes of two bodies beyond the first one; a triangle of a mesh counts as a shape.
     static constexpr double kFurtherPair = 1.0 / 4;
 
-    /// `plain`: units that the step takes without locating.
+    /// `plain`: units that the step takes without event location.
     void begin(double plain, double multiple) { spent_ = 0, allowed_ = kBase + multiple * plain; }
     void spend(double units) { spent_ += units; }
     bool is_spent() const { return spent_ >= allowed_; }

@@ -7,8 +7,8 @@ namespace plab::simulation
 namespace
 {
 
-/// Two ratios are one if they differ by less than this share. Times of impact are known to 1e-16 of the time, intervals
-/// to less: the shortest that this serves are some 1e-6 s after a million seconds.
+/// Two ratios count as equal if they differ by less than this fraction. Times of impact have a relative rounding error of 1e-16, and
+/// their differences a larger one: after a million seconds, intervals down to about 1e-6 s can be compared this way.
 constexpr double kSameRatio = 1e-3;
 
 }  // namespace

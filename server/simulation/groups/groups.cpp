@@ -29,7 +29,7 @@ void DisjointSets::join(std::uint32_t a, std::uint32_t b)
 namespace
 {
 
-/// Who an interaction acts on and whom it reads, as ranks of components.
+/// The objects that an interaction acts on and those that it only reads. `joins`: it couples the objects that it acts on.
 struct Participation
 {
     std::vector<Ref> acts_on, reads;
@@ -50,7 +50,7 @@ Participation participation(const world::World& world, std::uint32_t component)
     return p;
 }
 
-/// Quantities that left the numbers stand still until somebody sets them, as bodies and shafts do.
+/// Quantities that became non-finite are quarantined and treated as static until a request sets them, just as bodies and shafts are.
 Motion motion_of(const world::World& world, Ref ref)
 {
     const world::HostTables& host = world.host();
@@ -77,7 +77,7 @@ public:
     }
 
 private:
-    /// Calls visit(component, block, row) for each force, coupling and connection, in order.
+    /// Calls visit(component, block, row) for each force, coupling, joint (Constrain) and graph connection, in this order.
     template <class Visit>
     void for_each_interaction(Visit visit) const
     {
@@ -147,7 +147,8 @@ private:
                          [&](std::uint32_t component, std::uint32_t block, Row row)
                          {
                              const Participation p = participation(world_, component);
-                             // Rows belong to who can follow them; if nobody can, somebody has to tell that they do not hold.
+                             // A constraint row belongs to the group of the dynamic participants, which can follow it. If no participant
+                             // is dynamic it stays with the prescribed ones, so that its violation can still be reported.
                              const bool somebody_moves =
                                  std::any_of(p.acts_on.begin(), p.acts_on.end(), [&](Ref r) { return is_dynamic(world_, r); });
                              for (const Ref ref : p.acts_on)
@@ -157,7 +158,8 @@ private:
                                  Group& group = groups_.all[groups_.of(ref)];
                                  auto& rows = phase == Phase::Force ? group.forces : phase == Phase::Couple ? group.couplings : group.rows;
                                  rows.push_back({block, world_.rank(component), row});
-                                 // A participant that is acted on is read as well: a force between two feels both.
+                                 // The objects that an interaction acts on are read as well: a force between two bodies depends on the
+                                 // state of both.
                                  for (const auto* others : {&p.reads, &p.acts_on})
                                      if (others == &p.reads || p.joins)
                                          for (const Ref other : *others)
@@ -203,7 +205,8 @@ private:
         return kNoIndex;
     }
 
-    /// One solver for each cluster: stage times must agree. A mixture takes the highest order, then the first by id.
+    /// All groups of a cluster share one solver because their stage times must agree. If members name different solvers, the one of the
+    /// highest order is taken; on a tie, the first one by id.
     void choose_solvers()
     {
         std::vector<std::uint32_t> best(groups_.clusters, kNoIndex);

@@ -1,7 +1,7 @@
-/// Solver groups: what is connected by force or coupling this step, and is therefore integrated as one.
+/// Solver groups: the objects that forces or couplings connect in this step, which are therefore integrated as one system.
 ///
-/// Fields that act on each body by itself connect nothing, nor do static and prescribed bodies; a role that only reads
-/// orders two groups without joining them: the reader's forces need the other's state, not the other way round.
+/// Fields that act on each body separately connect nothing, and neither do static and prescribed bodies. A role that only reads an object
+/// orders two groups without joining them: the forces of the reading group need the state of the other one, but not vice versa.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace plab::simulation
 struct BlockRow
 {
     std::uint32_t block = 0;
-    std::uint32_t rank = 0;  ///< of the component: the order within the block
+    std::uint32_t rank = 0;  ///< rank of the component, which is the order within the block
     Row row = 0;
     friend auto operator<=>(const BlockRow&, const BlockRow&) = default;
 };
@@ -26,12 +26,12 @@ struct Group
     std::vector<std::uint32_t> bodies;                                ///< dynamic, in id order
     std::vector<std::uint32_t> shafts;                                ///< dynamic, in id order
     std::vector<std::uint32_t> quantities;                            ///< in id order
-    std::vector<std::uint32_t> prescribed_bodies, prescribed_shafts;  ///< a group of its own for each
-    std::vector<std::uint32_t> upstream;                              ///< groups whose state its forces read, ascending
+    std::vector<std::uint32_t> prescribed_bodies, prescribed_shafts;  ///< each has a group of its own
+    std::vector<std::uint32_t> upstream;                              ///< groups whose state the forces of this group read, ascending
     std::vector<BlockRow> forces, couplings, rows;
     std::uint32_t solver = kNoIndex;  ///< component; kNoIndex for prescribed motion
-    bool mixed_solvers = false;       ///< members named different ones; the one of highest order was taken
-    std::uint32_t cluster = 0;        ///< groups joined by reading, advanced in one batch
+    bool mixed_solvers = false;       ///< members named different solvers; the one of the highest order was taken
+    std::uint32_t cluster = 0;        ///< groups that are connected by reading; advanced in one batch
 };
 
 struct Groups
@@ -39,7 +39,7 @@ struct Groups
     std::vector<Group> all;
     std::vector<std::uint32_t> group_of_body, group_of_shaft, group_of_quantities;  ///< kNoIndex: static
     std::uint32_t clusters = 0;
-    std::vector<std::uint8_t> cluster_has_couplings;  ///< by cluster: sweeps are needed
+    std::vector<std::uint8_t> cluster_has_couplings;  ///< by cluster: whether coupling sweeps are needed
 
     std::uint32_t of(Ref ref) const
     {
@@ -52,7 +52,7 @@ struct Groups
 
 Groups build_groups(const world::World& world, const Schedule& schedule);
 
-/// Disjoint sets with the lowest member as representative, so that the result depends on no order of joins.
+/// Disjoint sets (union-find) with the lowest member as representative, so that the result does not depend on the order of joins.
 class DisjointSets
 {
 public:

@@ -18,7 +18,7 @@ bool measured_alone(const TypeInfo& type)
 
 Schedule build_schedule(const world::World& world, const std::vector<std::uint8_t>* takes_part)
 {
-    // Keyed by type name and command number: an order that every run shares.
+    // Keyed by type name and command number: an order that is the same in every run.
     std::array<std::map<std::pair<std::string, std::size_t>, Block>, kPhaseCount> found;
     for (const std::uint32_t i : world.in_id_order())
     {

@@ -1,4 +1,4 @@
-/// Which rows take part in which phase: blocks of one type each, rows in the order of component ids.
+/// Which rows take part in which phase: blocks of rows of one type, in the order of component ids.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ struct Block
     std::uint32_t table = 0;
     const CommandInfo* command = nullptr;
     std::vector<Row> rows;
-    bool alone = false;  ///< rows are called, and timed, one by one (measured_alone)
+    bool alone = false;  ///< the command is called, and timed, for one row at a time (measured_alone)
 };
 
-/// Rebuilt whenever components come, go, are exchanged or quarantined.
+/// Rebuilt whenever components are added, removed, swapped or quarantined.
 struct Schedule
 {
     std::array<std::vector<Block>, kPhaseCount> blocks;
@@ -26,13 +26,13 @@ struct Schedule
     const std::vector<Block>& of(Phase phase) const { return blocks[static_cast<std::size_t>(phase)]; }
 };
 
-/// Whether components of this type are measured each by itself: whose commands the host calls for one at a time (solvers,
-/// managers, detections, responses), and what drives (scripts), whose calls take microseconds. The others' rows share what their
-/// type costs.
+/// Whether the components of this type are timed one by one. That holds for types whose commands the host calls for one component at a
+/// time (solvers, managers, detections, responses), and for drives (scripts), whose calls take microseconds. For all other types the rows
+/// share the measured time of the whole block.
 bool measured_alone(const TypeInfo& type);
 
-/// Blocks in the order of type names: neither load order nor row numbers reach the state.
-/// `takes_part`: by directory index; null: everybody.
+/// Blocks in the order of type names, so that neither load order nor row numbers influence the state. `takes_part`: by directory index;
+/// null: all components.
 Schedule build_schedule(const world::World& world, const std::vector<std::uint8_t>* takes_part = nullptr);
 
 }  // namespace plab::simulation

@@ -1,5 +1,5 @@
-/// A call of a component's commands within a step, with what each such call gets: time and number of the step, the rows of the component's
-/// table, and the host tables. What the phase is about (a sink, an island, an impact) the caller adds.
+/// A call of a component's commands within a step, with the arguments that each such call gets: time and number of the step, the rows of
+/// the component's table, and the host tables. The caller adds the argument of the phase (a sink, an island, an impact).
 #pragma once
 
 #include "simulation/motion/step_state.h"
@@ -24,7 +24,7 @@ public:
     ComponentCall& operator=(const ComponentCall&) = delete;
 
     Result<void> run(const CommandInfo& command) { return command.run(call, table_.rows()); }
-    /// All that its type has for a phase; what they return is not asked for.
+    /// Runs all commands of its type for a phase and ignores their results.
     void run(Phase phase)
     {
         for (const CommandInfo& command : table_.type().info.commands)

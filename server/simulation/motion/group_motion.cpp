@@ -54,10 +54,10 @@ bool GroupMotion::run_solver(GroupSystem& system, std::uint32_t solver, double f
     const CostScope scope(meter, solver != kNoIndex ? meter.of_component(solver) : meter.accounts().host);
     system.begin(from, to, book, events);
     if (!(to > from))
-        system.evaluate(0, 0);  // a piece of no length: forces are wanted, nobody moves, and no solver has to divide by it
+        system.evaluate(0, 0);  // a piece of zero length: only the forces are evaluated, so that no solver divides by it
     else if (system.needs_solver() && solver != kNoIndex)
     {
-        // Of the two that a solver may have, the last one is for any system.
+        // A solver may have two commands for this phase; the last one accepts any system.
         const auto& commands = step_.world.type_of(solver)->info.commands;
         const auto command =
             std::find_if(commands.rbegin(), commands.rend(), [](const CommandInfo& c) { return c.phase == Phase::Advance && c.run; });
@@ -85,15 +85,15 @@ bool GroupMotion::goes_alone(const Group& group) const
     if (group.solver == kNoIndex) return false;
     const TypeInfo& solver = step_.world.type_of(group.solver)->info;
     if (solver.elementwise) return false;
-    // Some solvers treat each body by itself where no force depends on time or state.
+    // Some solvers treat each body by itself if no force depends on time or state.
     const auto& forces = step_.schedule.of(Phase::Force);
     const auto is_uniform = [&](const BlockRow& force) { return step_.world.tables()[forces[force.block].table]->type().info.uniform; };
     const bool free = group.couplings.empty() && !extra_ && std::all_of(group.forces.begin(), group.forces.end(), is_uniform);
     return !(solver.uniform && free);
 }
 
-/// Groups that are advanced in one system without changing a bit: those of one elementwise solver; the members of one
-/// cluster where the solver looks at its system as a whole, or joints do.
+/// Collects the groups that can be advanced in one system without changing a bit of the result: all groups of one elementwise solver; and
+/// the members of one cluster, if the solver depends on its whole system or if there are joints.
 void GroupMotion::collect_units(std::span<const std::uint32_t> groups)
 {
     units_.clear();
@@ -185,7 +185,8 @@ void GroupMotion::freeze(const GroupSystem& system)
         Event e;
         e.time = step_.frame.start_time + step_.frame.step, e.kind = "state.not_finite", e.severity = Severity::Failure;
         e.component = host.component_of(ref), e.a = ref;
-        e.message = step_.world.id_of(ref) + " left the numbers that a step can compute with; it stays where the step began";
+        e.message =
+            step_.world.id_of(ref) + " left the range of numbers that a step can compute with; it is put back to the start of the step";
         step_.emit(std::move(e));
     };
     for (const std::uint32_t b : system.bodies())

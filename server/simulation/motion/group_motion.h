@@ -1,7 +1,8 @@
-/// How groups of objects move over a part of a step by their solvers, and how they go back to where a piece of it began.
+/// Advances groups of objects over a part of a step by their solvers, and rewinds them to the start of their present piece.
 ///
-/// A step is one smooth piece for most groups. Where an event cuts it, the groups that it touches begin a new piece at its time
-/// (`save_segment`); everybody remembers where the step ends for it (`save_end`), so that somebody else's trial can go back and return.
+/// For most groups a step is one smooth piece. An event divides it: the groups that it affects begin a new piece at its time
+/// (`save_segment`). The state at the end of the step is stored as well (`save_end`), so that a trial advance, made to locate another
+/// event, can be undone.
 #pragma once
 
 #include "simulation/motion/step_state.h"
@@ -11,7 +12,7 @@
 namespace plab::simulation
 {
 
-/// What else has a state by group that goes back and forth with it: contacts that are forces.
+/// Interface for other state that belongs to groups and is rewound and restored with them: force contacts.
 class GroupMemory
 {
 public:
@@ -28,41 +29,41 @@ class GroupMotion
 public:
     explicit GroupMotion(StepState& step) : step_(step) {}
 
-    /// As long as groups are moved it must live.
+    /// `memory` must outlive this object.
     void remember_with(GroupMemory* memory) { memory_ = memory; }
-    /// After any structural change. `rewinds`: somebody may go back within a step.
+    /// To be called after any structural change. `rewinds`: groups may be rewound within a step, so states have to be saved.
     void rebuild(bool rewinds);
-    /// What all systems that are set up now feel beside the forces of the schedule; null: nothing.
+    /// Forces that all systems set up from now on get in addition to those of the schedule; null: none.
     void feel(ExtraForces* extra) { extra_ = extra; }
     const ExtraForces* extra() const { return extra_; }
 
-    // Where the step, the present piece of each group, and the step's end are -------------------------------------------
+    // Saved states: start of the step, start of the present piece of each group, end of the step -------------------------
     void save_start();
     void save_ends();
     void rewind(std::uint32_t group);
     void save_segment(std::uint32_t group);
     void save_end(std::uint32_t group);
     void restore_end(std::uint32_t group);
-    /// s since the start of the step: where the group's present piece began.
+    /// s since the start of the step: time at which the group's present piece began.
     double segment_begin(std::uint32_t group) const { return segment_begin_[group]; }
     void begin_segment(std::uint32_t group, double time) { segment_begin_[group] = time; }
     const world::MotionMemento& start() const { return start_; }
     const world::MotionMemento& end() const { return end_; }
 
     // Moving --------------------------------------------------------------------------------------------------------
-    /// The system of these groups, ready for the present frame. `shadows`: whom they read.
+    /// The system of these groups, ready for the present frame. `observed`: groups whose state they read.
     GroupSystem& system_for(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed);
-    /// Each by its solver, from where it is. A trial emits no events and freezes nobody.
+    /// Advances each group by its solver, from its present state. A trial emits no events and freezes no object.
     void advance_smooth(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed, double from, double to,
                         WorkBook book, bool trial);
-    /// False: something is not finite any more.
+    /// False if some state is no longer finite.
     bool run_solver(GroupSystem& system, std::uint32_t solver, double from, double to, WorkBook book, EventSink* events);
     /// False if the command refused.
     bool call_solver(GroupSystem& system, std::uint32_t solver, const CommandInfo& command);
     void finish_advance(GroupSystem& system, bool finite, double to, bool trial);
-    /// Takes what its joints and couplings did over into reactions() and row_reports().
+    /// Adds the results of its joints and couplings to reactions() and row_reports().
     void take_reports(const GroupSystem& system);
-    /// Who is not finite stays where the step began, and is told.
+    /// Puts objects whose state is no longer finite back to the start of the step, at rest, and reports them.
     void freeze(const GroupSystem& system);
 
     void clear_reports();
@@ -70,14 +71,14 @@ public:
     const RowReportTable& row_reports() const { return row_reports_; }
     StageScratch& scratch() { return pool_.scratch(); }
 
-    /// Whether a group's solver may not advance it in one system with others.
+    /// Whether a group must not share a system with others, as that would change its result.
     bool goes_alone(const Group& group) const;
 
 private:
-    /// Groups that are advanced in one system.
+    /// Sort key: groups with the same solver and cluster are advanced in one system.
     struct Unit
     {
-        std::uint32_t solver_rank = 0, cluster = kNoIndex, group = 0;  ///< kNoIndex: whatever cluster
+        std::uint32_t solver_rank = 0, cluster = kNoIndex, group = 0;  ///< cluster kNoIndex: may share with any cluster
         friend auto operator<=>(const Unit&, const Unit&) = default;
     };
     void collect_units(std::span<const std::uint32_t> groups);

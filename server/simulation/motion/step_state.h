@@ -1,5 +1,4 @@
-/// What all rooms of a step share: the world, what was derived from its structure, the frame of the present step, and what the step
-/// reports.
+/// What all modules of a step share: the world, what was derived from its structure, the frame of the present step, and its report.
 #pragma once
 
 #include <vector>
@@ -9,7 +8,7 @@
 namespace plab::simulation
 {
 
-/// What a step did, beside moving the world.
+/// Statistics of a step.
 struct StepReport
 {
     int events = 0;   ///< impacts located and answered
@@ -17,21 +16,21 @@ struct StepReport
     int rewinds = 0;  ///< groups rewound
     int resting_pairs = 0;
     std::uint64_t swept_rows = 0;   ///< rows of contacts and joints times sweeps (or pivots) over them, trials included
-    double further_pairs = 0;       ///< of shapes, beyond one for each pair of bodies, that looks for contacts went through
+    double further_pairs = 0;       ///< pairs of shapes that detection went through, beyond one for each pair of bodies
     std::uint64_t evaluations = 0;  ///< of forces, summed over the systems that solvers advanced, trials included
-    double worst_residual = 0;      ///< m/s, left over by contact responses
+    double worst_residual = 0;      ///< m/s, largest residual of the contact responses
     double deepest = 0;             ///< m, overlap left at the end of the step
-    std::vector<Ref> frozen;        ///< objects whose state was not finite any more
+    std::vector<Ref> frozen;        ///< objects whose state was no longer finite
 };
 
-/// Energy that contacts put in on their own account, by component (manager or response), J, since the run began.
+/// Energy that contacts created, by component (manager or response), J, since the run began.
 struct ContactEnergy
 {
-    double made = 0;    ///< work of contacts that have none to do: no part of the ledger's work, so it stays unexplained there
-    double lifted = 0;  ///< against the forces of the step, where overlap was parted
+    double made = 0;    ///< by contacts that should only dissipate: not booked as work, so it shows up as unexplained in the ledger
+    double lifted = 0;  ///< by position correction, against the forces of the step
 };
 
-/// What events told of already and would tell again only when it ends and comes back.
+/// Conditions that have been reported by an event and are reported again only if they end and come back.
 struct Reported
 {
     bool stiff = false;                       ///< contact.stiff
@@ -44,13 +43,13 @@ struct StepState final : EventSink
     StepState(const StepState&) = delete;
     StepState& operator=(const StepState&) = delete;
 
-    /// The event is of this step's tick.
+    /// Gives the event the tick of this step.
     void emit(Event event) override
     {
         event.tick = frame.tick;
         events.push_back(std::move(event));
     }
-    /// Work of this step is booked here.
+    /// The account to which the work of this step is booked.
     WorkBook book() { return {&work, 1}; }
     /// Time, length and number of the step, for a call of a command.
     StepContext context() const
@@ -75,7 +74,7 @@ struct StepState final : EventSink
     std::vector<std::uint32_t> all_groups;  ///< their indices, ascending
     ConstraintGraph graph;
     StepFrame frame;
-    std::uint64_t serial = 0;  ///< counts steps that were begun, of whatever tick
+    std::uint64_t serial = 0;  ///< number of steps that were begun, repeated ones included
     StepReport report;
     std::vector<Event> events;
     CostMeter meter;

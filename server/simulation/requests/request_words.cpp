@@ -34,7 +34,7 @@ std::string text_of_costs(const TrialReport& trial)
     std::string out = "a step costs " + in_words(now);
     if (!before.is_known()) return out;
     out += ", " + in_words(before) + " before: ";
-    if (!costs_differ(before, now)) return out + "no difference that can be told";
+    if (!costs_differ(before, now)) return out + "no significant difference";
     return out + in_us(std::abs(now.median - before.median)) + (now.median > before.median ? " us more" : " us less");
 }
 

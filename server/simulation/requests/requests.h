@@ -1,7 +1,7 @@
-/// What can be asked of a running scene, and what is answered. The bus carries the same.
+/// The requests that can be made to a running scene, and their replies. The bus transmits the same contents.
 ///
-/// Names and values only: what a request does not name stays as it is. The operations of one request are one
-/// transaction: all of them take effect at one step boundary, or none does.
+/// Requests hold names and values only, and what a request does not name stays unchanged. The operations of one request form a
+/// transaction: either all of them take effect at one step boundary, or none does.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@
 namespace plab::simulation
 {
 
-/// A value as text (parsed by the field's own rules, units allowed) or as it is.
+/// A value, or a text that is parsed by the field's own rules (units allowed).
 using GivenValue = std::variant<std::string, Value>;
 
 struct NamedValue
@@ -32,20 +32,20 @@ struct AddOperation
 {
     model::SceneSpec fragment;
 };
-/// Adds what a blueprint means when the request takes effect: it may refer to what is there then.
+/// Adds the components of a blueprint. It is compiled when the request takes effect, so it may refer to components that exist then.
 struct AddBlueprintOperation
 {
     model::Blueprint blueprint;
 };
-/// Removes a component, or an object with all that is in it. Refused while others refer to it.
+/// Removes a component, or an object with everything inside it. Refused while other components refer to it.
 struct RemoveOperation
 {
     std::string id;
 };
-/// Exchanges a component for another type of its family; `values` are parameters of the new one.
+/// Replaces a component by one of another type of its family; `values` are parameters of the new one.
 struct SwapOperation
 {
-    std::string id;  ///< with * and ?: all of the type's family whose ids match, as they are before the request
+    std::string id;  ///< may contain * and ?: then all components of the type's family whose ids match, as they are before the request
     std::string type;
     std::vector<NamedValue> values;
 };
@@ -69,17 +69,17 @@ struct PauseOperation
 struct ResumeOperation
 {
 };
-/// Makes that many steps although paused, then pauses.
+/// Makes this many steps although the simulation is paused, then pauses again.
 struct StepOperation
 {
     std::int64_t steps = 1;
 };
-/// Real-time factor that the clock aims at; 0: as fast as it goes.
+/// Target real-time factor; 0: as fast as possible.
 struct RateOperation
 {
     double factor = 1;
 };
-/// Back to the scene as it was loaded; a new run begins.
+/// Returns to the scene as it was loaded; a new run begins.
 struct ResetOperation
 {
 };
@@ -87,56 +87,56 @@ struct LoadOperation
 {
     model::SceneSpec scene;
 };
-/// A new step length from this step on.
+/// Sets the step length, beginning with the next step.
 struct StepLengthOperation
 {
     model::StepLength dt;
 };
-/// Keeps the state at the boundary under a name; one that was kept under it before is replaced.
+/// Keeps the present state as a snapshot under a name, replacing an earlier snapshot of that name.
 struct SnapshotOperation
 {
     std::string name;
 };
-/// Goes on from a snapshot that was kept; a new run begins. Pause and rate stay as they are.
+/// Continues from a named snapshot; a new run begins. Pause and rate stay as they are.
 struct RestoreOperation
 {
     std::string name;
 };
-/// Gives up a snapshot that was kept.
+/// Deletes a named snapshot.
 struct ForgetOperation
 {
     std::string name;
 };
-/// Back to a time of this run; a new run begins there, and what was asked at that time or later is forgotten.
+/// Returns to an earlier time of this run. A new run begins there, and requests made at that time or later are dropped.
 struct RewindOperation
 {
     double time = 0;    ///< s
-    bool back = false;  ///< `time` counts back from the present
+    bool back = false;  ///< `time` is measured backwards from the present
 };
 
 using Operation = std::variant<AddOperation, AddBlueprintOperation, RemoveOperation, SwapOperation, SetOperation, PushOperation,
                                PauseOperation, ResumeOperation, StepOperation, RateOperation, ResetOperation, LoadOperation,
                                StepLengthOperation, SnapshotOperation, RestoreOperation, ForgetOperation, RewindOperation>;
 
-/// False for what only concerns the clock, or what is kept: pause, rate, snapshot, ...
+/// False for operations on the clock or on named snapshots only: pause, rate, snapshot, ...
 bool affects_the_run(const Operation& operation);
-/// reset, load, restore, rewind.
+/// True for reset, load, restore and rewind.
 bool begins_a_run(const Operation& operation);
 
-/// How a request is proved before it takes effect: by a trial of its first step.
+/// How a request is tried before it takes effect: by a trial of its first step.
 struct TrialChoice
 {
     enum class Budget : std::uint8_t
     {
         Unlimited,
-        Automatic,  ///< the larger of ten steps' mean cost and 5 ms
+        Automatic,  ///< the larger of 5 ms and ten times the mean cost of a step
         Given,
         None,  ///< no trial
     };
     Budget budget = Budget::Unlimited;
     double ns = 0;               ///< of Budget::Given
-    bool must = false;           ///< without the proof it is refused
-    double energy_factor = 100;  ///< a swap whose first step multiplies the energy by more is refused; infinite: none is
+    bool must = false;           ///< refuse the request if the trial cannot be completed
+    double energy_factor = 100;  ///< a swap whose first step multiplies the kinetic energy by more is refused; infinite: no limit
 
     bool is_wanted() const { return budget != Budget::None; }
 };
@@ -146,7 +146,7 @@ struct Request
     std::uint64_t id = 0;
     std::vector<Operation> operations;
     std::optional<Tick> at;                 ///< takes effect before this step; one that has passed is refused as late
-    std::optional<std::uint64_t> revision;  ///< refused if structural requests came between
+    std::optional<std::uint64_t> revision;  ///< refused if other structural requests were carried out in between
     TrialChoice trial;
 };
 
@@ -167,15 +167,15 @@ struct TransferredField
     FieldTransfer transfer = FieldTransfer::Kept;
 };
 
-/// Energy, momentum and error over the first step after a swap, beside what the old component would have given; of those whom the swap can
-/// touch. NaN: not tried.
+/// Energy, momentum and error after the first step with a component, of the objects that the swap can affect. A swap reports them for the
+/// old and for the new component. NaN: not tried.
 struct StepOutcome
 {
     double energy = 0;  ///< J, kinetic and stored, at the end of the step
     Vec3 momentum;      ///< N s
     double error = 0;   ///< largest reported error of the component
-    /// Median of their step, made again and again; NaN: not told. The old one's is told only where it differs from the new one's by more
-    /// than chance (TrialReport has what was measured of both).
+    /// Median time of that step over several repetitions; NaN: not given. For the old component it is given only where it differs
+    /// significantly from that of the new one (TrialReport has both measurements).
     double cost_ns = 0;
 };
 
@@ -187,29 +187,29 @@ struct SwapReport
     StepOutcome with_old, with_new;
 };
 
-/// What became of a request's trial.
+/// The result of a request's trial.
 struct TrialReport
 {
     enum class Outcome : std::uint8_t
     {
-        None,  ///< not wanted, or the request changes nothing that could be tried
+        None,  ///< not wanted, or the request changes nothing that can be tried
         Made,
-        WithoutOld,  ///< the old component's step took too long: only the new one was tried
+        WithoutOld,  ///< the old component's step took too long, so only the new one was tried
         GivenUp,     ///< it took longer than its budget
     };
     Outcome outcome = Outcome::None;
-    double ns = 0, budget_ns = 0;  ///< the budget is infinite where there is none
-    std::size_t objects = 0;       ///< bodies, shafts and quantities that it stepped
-    bool everything = false;       ///< and they are all that there are
-    Spread with_old, with_new;     ///< ns, of its step in a swap: of repeats, caches warm; no samples: not measured
+    double ns = 0, budget_ns = 0;  ///< the budget is infinite if there is no limit
+    std::size_t objects = 0;       ///< number of bodies, shafts and quantities in the trial step
+    bool everything = false;       ///< these are all objects of the scene
+    Spread with_old, with_new;     ///< ns, of repeated trial steps of a swap, with warm caches; no samples: not measured
 };
 
-/// What requests did to the structure and to parameters, for those who keep a copy of the catalogue.
+/// Changes that requests made to the structure and to parameters, for those who keep a copy of the catalogue.
 struct Changes
 {
     bool everything = false;             ///< a new run
-    std::vector<std::string> touched;    ///< ids that came, went or changed; may repeat
-    std::set<std::uint32_t> by_scripts;  ///< components whose parameters scripts set; perhaps at each step
+    std::vector<std::string> touched;    ///< ids that were added, removed or changed; may contain duplicates
+    std::set<std::uint32_t> by_scripts;  ///< components whose parameters were set by scripts, possibly in each step
 
     bool any() const { return everything || !touched.empty() || !by_scripts.empty(); }
 };
@@ -219,9 +219,9 @@ struct Reply
     std::uint64_t request = 0;
     bool done = false;
     bool late = false;           ///< refused: the named step has passed
-    Errors errors;               ///< why it was refused; nothing has changed then
+    Errors errors;               ///< why it was refused; then nothing has changed
     Tick step = 0;               ///< boundary at which it took effect
-    double pause_ns = 0;         ///< how long it held the loop up
+    double pause_ns = 0;         ///< how long the step loop was stopped for it
     std::uint64_t revision = 0;  ///< afterwards
     std::vector<SwapReport> swaps;
     TrialReport trial;

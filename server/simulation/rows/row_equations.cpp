@@ -11,12 +11,12 @@ namespace
 
 constexpr int kMostRefinements = 6;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// Where refinement has nothing more to gain, relative to the largest terms of a sum.
+/// Refinement cannot improve a residual below this share of the largest terms of a sum.
 constexpr double kResidualFloor = 4 * kEpsilon;
 constexpr double kIdleShare = 1e-6;
-/// Refinement that leaves less than this has done its work.
+/// A relative residual below this needs no further treatment (sharpen()).
 constexpr double kSettled = 1e-14;
-/// By this share the square of the members' accelerations may differ by rounding and by what was left.
+/// Relative tolerance for comparing x . M x of two solutions: rounding and the remaining residual.
 constexpr double kSameSpeed = 1e-3;
 
 }  // namespace
@@ -40,7 +40,7 @@ void RowEquations::fill(Slot& slot, const ConstraintRow& row)
     for (std::uint32_t k = 0; k < row.count; ++k)
     {
         if (!pattern_[slot.held].who[k].mobile) continue;
-        // Blocks on the same member share an entry: two shafts of one train.
+        // Blocks on the same member share one entry, for example two shafts of one train.
         std::uint32_t e = 0;
         while (e < next && members_[entries[e].member].who != row.blocks[k].who) ++e;
         if (e == next) ++next;
@@ -106,7 +106,7 @@ void RowEquations::factor(double implied, double others)
             const std::uint32_t columns = size_of(members_[entry.member]);
             for (std::uint32_t c = 0; c < columns; ++c) factors_.add(entry.edge, slot.place, c, entry.j[c]);
         }
-        // A row that moves nobody (a train geared to itself) gets a compliance of its own, and does nothing.
+        // A row that can move nothing (a train geared to itself) gets a compliance of 1: its multiplier then has no effect.
         const double soft = !joint.compliant ? 0.0 : slot.mobility > 0 ? compliance * slot.mobility : 1.0;
         factors_.diagonal(first_joint + slot.joint)[slot.place * (joint.rows + 1)] = -soft;
         factors_.set_floor(unknown_of(slot), 0.1 * soft, soft);
@@ -131,7 +131,8 @@ double RowEquations::moved(std::size_t s) const
     return sum;
 }
 
-/// Takes J^T y from the members' residuals, and makes the rows' own; the scale of each is that of the terms of its sum.
+/// Subtracts J^T y from the residuals of the members, and computes the residuals of the rows. The scale of each residual is the sum of
+/// the magnitudes of its terms.
 void RowEquations::subtract_rows()
 {
     std::fill(joint_error_.begin(), joint_error_.end(), 0.0);
@@ -159,7 +160,7 @@ void RowEquations::subtract_rows()
 
 double RowEquations::worst_of_rows() const
 {
-    // A joint at which nothing happens has no scale of its own; a share of the busiest one's stands in for it.
+    // A joint without load has no scale of its own; a small share of the largest scale is used instead.
     double busiest = 0, worst = 0;
     for (const double scale : joint_scale_) busiest = std::fmax(busiest, scale);
     for (std::size_t j = 0; j < joints_.size(); ++j)
@@ -175,7 +176,7 @@ double RowEquations::worst_of_members() const
     double worst = 0;
     for (std::uint32_t i = 0; i < members_.size(); ++i)
     {
-        // By whole vectors: a component in which nothing happens has no scale of its own.
+        // Per 3-vector rather than per component, because a component that is not loaded has no scale of its own.
         const std::uint32_t u = factors_.offset(i), n = size_of(members_[i]);
         for (std::uint32_t c = 0; c < n; c += 3)
         {
@@ -227,7 +228,7 @@ RowEquations::Norms RowEquations::norms() const
     return {std::sqrt(loads), std::sqrt(std::fmax(0.0, reactions))};
 }
 
-/// r = rhs - K x without compliance. The largest element, relative to the terms of its sum.
+/// r = rhs - K x with C = 0. Returns the largest element relative to the size of its terms.
 double RowEquations::residual()
 {
     for (std::uint32_t i = 0; i < members_.size(); ++i)
@@ -295,7 +296,7 @@ bool RowEquations::rank_fell() const
     return false;
 }
 
-/// x . M x of the members.
+/// x . M x summed over the members.
 double RowEquations::speed_of_result() const
 {
     double sum = 0;

@@ -1,12 +1,22 @@
-/// The linear equations of constrained motion: M x - J^T lambda = g, J x = b, over the bodies and shafts that rows touch.
+/// The linear equations of constrained motion over the bodies and shafts that constraint rows touch:
 ///
-/// One solve serves accelerations (g: forces), speeds and positions (g = 0). Unknowns of a body: velocity in W and angular
-/// velocity in B, so that its inertia is a constant; of a shaft: the speed of its train's root.
+///   M x - J^T lambda = g,   J x = b         x: accelerations, speeds or displacements;  lambda: one multiplier per row
 ///
-/// Rows of loops carry a small compliance (kCompliance of their own mobility): where rows depend on one another, that picks
-/// the multipliers of least norm, and nothing has to be decided about the rank. Iterative refinement against the equations
-/// without compliance takes its effect away (the proximal point iteration: R. T. Rockafellar, SIAM J. Control Optim. 14,
-/// 1976).
+/// The same solver serves accelerations (g: forces) and the corrections of speeds and positions (g = 0). The unknowns of a body are its
+/// velocity in W and its angular velocity in B, where its inertia is constant; the unknown of a shaft is the speed of the root of its
+/// train.
+///
+/// With y = -lambda the equations become one symmetric matrix, K = [M J^T; J -C] (x; y) = (g; b), where C >= 0 is a small diagonal
+/// compliance. M is positive definite and -C is negative (semi)definite; such a quasi-definite matrix has a factorisation L D L^T with a
+/// diagonal D in a fixed order of elimination, without pivoting for size (sparse_ldlt.h). Nodes of K are members (bodies, shafts) and
+/// joints: rows between the same members form one joint of up to six rows. Mass and Jacobian are never multiplied out to J M^-1 J^T:
+/// along a tree of joints, elimination from the leaves causes no fill, takes linear time, and keeps its digits at large mass ratios.
+///
+/// A tree of joints gets C = 0, because its rows are independent of one another. Rows that may depend on one another (joints on a closed
+/// loop, or several components between the same members) get C = kCompliance times the row's own mobility J M^-1 J^T. That makes K
+/// regular whatever the rank of J is, and selects the multipliers of least norm, so no decision about the rank is needed. Iterative
+/// refinement against the equations with C = 0 then removes the effect of the compliance (this is the proximal point iteration: R. T.
+/// Rockafellar, SIAM J. Control Optim. 14, 1976).
 #pragma once
 
 #include <array>
@@ -21,7 +31,7 @@
 namespace plab::simulation
 {
 
-/// The rows of one component: a piece of the list of rows.
+/// The rows of one component: a contiguous part of the list of rows.
 struct RowPiece
 {
     std::uint32_t component = 0;
@@ -32,78 +42,80 @@ struct RowPiece
 class RowEquations
 {
 public:
-    /// Share of a row's own mobility. Close to a singular configuration rounding errors e of rows become movements of
-    /// e / (2 sqrt(kCompliance)) at most.
+    /// Compliance of rows that may be dependent, relative to the row's own mobility. Close to a singular configuration, rounding errors e
+    /// of rows cause displacements of at most e / (2 sqrt(kCompliance)).
     static constexpr double kCompliance = 1e-8;
-    /// The same where rows contradict one another: least squares, at a cost in digits that does not matter there.
+    /// Compliance when rows contradict one another: the solution is then one of least squares, where the loss of digits does not matter.
     static constexpr double kSoftCompliance = 1e-6;
-    /// The same for rows that nothing but a singular configuration makes depend on others: see sharpen().
+    /// Compliance of rows that become dependent only in a singular configuration: see sharpen().
     static constexpr double kSharpCompliance = 1e-12;
-    /// A row is redundant if others leave it less than this share of its own mobility.
+    /// A row is redundant if the other rows leave it less than this share of its own mobility.
     static constexpr double kRedundant = 1e-6;
 
-    /// A body or shaft that rows move. Its node in the matrix has the same number.
+    /// A body or shaft that rows can move. Its node in the matrix has the same index.
     struct Member
     {
         Ref who;
-        double inertia = 0;       ///< of a shaft's train at its root, kg m^2
+        double inertia = 0;       ///< of a shaft's whole train, reduced to its root, kg m^2
         double inverse_mass = 0;  ///< 1/kg
     };
 
     void bind(const world::HostTables& host, const ConstraintGraph& graph) { host_ = &host, graph_ = &graph; }
-    /// Takes the rows in at the tables' present state; shafts stand for their roots. Rows that may yield are skipped.
-    /// Analyses anew if who takes part in what has changed.
+    /// Takes over the rows at the present state of the host tables. Shafts are represented by the roots of their trains. Rows that may
+    /// yield (limits, motors with a bounded force) are skipped. The symbolic analysis is repeated only if the participants of the rows
+    /// have changed.
     void set_rows(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces);
-    /// That part of set_rows() alone. True if rows may depend on one another: compliant().
+    /// Only the symbolic part of set_rows(). Returns compliant(): whether rows may depend on one another.
     bool analyse(std::span<const ConstraintRow> rows, std::span<const RowPiece> pieces);
     void factor(double compliance = kCompliance) { factor(compliance, compliance); }
-    /// Of the last factorisation.
+    /// Compliance of the last factorisation, relative to the rows' mobilities.
     double compliance() const { return compliance_; }
 
     void clear_right_hand_side();
-    /// g of a member: force in W (N) and torque in B (N m), or the torque on a train (N m).
+    /// g of a member: force in W (N) and torque in B (N m) of a body, or the torque on a shaft's train at its root (N m).
     double* load(std::size_t member) { return &rhs_[factors_.offset(static_cast<std::uint32_t>(member))]; }
     /// b of row slots()[slot].
     double& wanted(std::size_t slot) { return rhs_[unknown_of(slots_[slot])]; }
-    /// Into result() and multiplier(), by the last factorisation: with compliance as it stands, and of rows as they were
-    /// then. False: something is not finite.
+    /// Solves with the last factorisation, that is, for the rows and the compliance as they were when factor() was called; the solution
+    /// is in result() and multiplier(). Returns false if it is not finite.
     bool solve();
-    /// The same, refined against the rows as they are now, without compliance.
+    /// Like solve(), then refines the solution against the present rows without compliance.
     bool solve_refined();
-    /// Notes which rows the others imply, at the tables' present state; factors anew. To be called where the members stand on
-    /// their rows: off them, rows that imply one another seem not to, and contradict each other.
+    /// Records which rows are implied by the others at the present state of the tables, and factors again. To be called where the members
+    /// satisfy their rows: elsewhere, dependent rows appear to be independent and contradict one another.
     void note_implied();
-    /// As long as nothing is noted, sharpen() does nothing.
+    /// Discards that record. Without a record sharpen() does nothing.
     void forget_implied() { implied_.clear(); }
-    /// After solve_refined(). Close to a singular configuration, where more rows depend on one another than was noted, that ends
-    /// too early: compliance lets members go in the direction that is about to become free. Solves again with
-    /// kSharpCompliance for the rows that were not noted (the others keep theirs: stages are off the rows). Takes the result
-    /// if it leaves less of the equations and moves the members no faster: errors of rows must not become movements.
+    /// To be called after solve_refined(). Close to a singular configuration more rows depend on one another than note_implied()
+    /// recorded, and refinement stops too early: the compliance lets the members move in the direction that is about to become free. This
+    /// function solves again with kSharpCompliance for the rows that were not recorded as implied; the recorded ones keep kCompliance
+    /// because at the stages of a solver the members do not satisfy their rows exactly. The new solution is accepted only if its residual
+    /// is smaller and the members do not move faster, so that errors of rows never turn into motion.
     void sharpen();
-    /// What the result leaves of the equations as they are now, without compliance, relative to the terms of their sums.
+    /// The residual of the solution in the present equations without compliance, relative to the sizes of the terms.
     double left() { return residual(); }
 
-    /// Of the last solve, in the norm of M: sqrt(g . M^-1 g) of the loads, and sqrt(c . M c), c = M^-1 J^T lambda, of what rows
+    /// Of the last solve, in the norm of M: sqrt(g . M^-1 g) of the loads, and sqrt(c . M c) with c = M^-1 J^T lambda of what the rows
     /// added.
     struct Norms
     {
         double loads = 0, reactions = 0;
     };
     Norms norms() const;
-    /// Whether some rows have compliance: those of loops, or of several components between the same members.
+    /// Whether some rows have compliance: rows on loops, or of several components between the same members.
     bool compliant() const { return any_compliant_; }
 
     std::span<const Member> members() const { return members_; }
     const double* result(std::size_t member) const { return &x_[factors_.offset(static_cast<std::uint32_t>(member))]; }
 
-    /// A row that is held here.
+    /// A row that takes part in the equations.
     struct Slot
     {
-        std::uint32_t row = 0;                       ///< in the list that set_rows() saw
-        std::uint32_t piece = 0;                     ///< whose it is
-        std::uint32_t held = 0;                      ///< its number among rows that do not yield
-        std::uint32_t joint = 0, place = 0;          ///< node of the matrix beyond the members, and the row's number in it
-        std::uint32_t first_entry = 0, entries = 0;  ///< one for each member
+        std::uint32_t row = 0;                       ///< index in the list that was given to set_rows()
+        std::uint32_t piece = 0;                     ///< piece (component) that it belongs to
+        std::uint32_t held = 0;                      ///< its number among the rows that cannot yield
+        std::uint32_t joint = 0, place = 0;          ///< joint node in the matrix (after the members), and the row's number in that node
+        std::uint32_t first_entry = 0, entries = 0;  ///< one entry for each member
         double mobility = 0;                         ///< J M^-1 J^T of this row alone
     };
     std::span<const Slot> slots() const { return slots_; }
@@ -111,20 +123,20 @@ public:
     double multiplier(std::size_t slot) const { return -x_[unknown_of(slots_[slot])]; }
     /// J x of the last solve, by slot.
     double moved(std::size_t slot) const;
-    /// Whether other rows leave this one nothing to do, at the last factorisation.
+    /// Whether the other rows already imply this one, according to the last factorisation.
     bool redundant(std::size_t slot) const;
 
 private:
     struct Entry
     {
         std::uint32_t member = 0, edge = 0;
-        std::array<double, 6> j{};  ///< linear in W, angular in B; a shaft: j[0]
+        std::array<double, 6> j{};  ///< linear in W, angular in B; for a shaft only j[0]
     };
     struct Joint
     {
         std::vector<std::uint32_t> members;  ///< ascending
         std::uint32_t rows = 0;
-        bool grounded = false;  ///< it also holds on to something that does not move
+        bool grounded = false;  ///< also attached to something that is not dynamic
         bool compliant = false;
         bool loop = false;
     };
@@ -135,12 +147,12 @@ private:
         friend bool operator==(const Participant&, const Participant&) = default;
     };
     using Participants = std::array<Participant, ConstraintRow::kMostBlocks>;
-    /// A row that does not yield.
+    /// A row that cannot yield.
     struct Held
     {
         std::uint32_t row = 0, piece = 0;
     };
-    /// What the analysis depends on: those that yield may come and go.
+    /// What the symbolic analysis depends on. Rows that may yield are not part of it, so they may come and go.
     struct Pattern
     {
         std::uint32_t component = 0;
@@ -180,8 +192,8 @@ private:
     const world::HostTables* host_ = nullptr;
     const ConstraintGraph* graph_ = nullptr;
 
-    std::vector<Held> held_;  ///< of the present rows
-    // What the analysis was of, and found.
+    std::vector<Held> held_;  ///< of the present list of rows
+    // Input and results of the symbolic analysis.
     std::vector<Pattern> pattern_;
     std::vector<Member> members_;
     std::vector<Joint> joints_;

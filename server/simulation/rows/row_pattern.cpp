@@ -7,8 +7,8 @@
 namespace plab::simulation
 {
 
-/// Who takes part in what: nodes and edges of the matrix, from rows in a fixed order. Numbers are given in the order in which
-/// participants first appear, so neither host rows nor load order decide how sums are rounded.
+/// The symbolic analysis: nodes and edges of the matrix from the rows, in their fixed order. Indices are given in the order in which
+/// participants first appear, so that neither host rows nor load order influence the rounding of sums.
 class RowEquations::Analysis
 {
 public:
@@ -30,7 +30,7 @@ private:
     void take(std::uint32_t held)
     {
         const auto members = members_of(held);
-        if (members.empty()) return;  // nobody whom it could move
+        if (members.empty()) return;  // no dynamic participant
         Slot slot;
         slot.held = held, slot.row = out_.held_[held].row, slot.piece = out_.held_[held].piece;
         slot.joint = joint_for(held, members);
@@ -62,7 +62,7 @@ private:
         return false;
     }
 
-    /// Rows between the same members are one joint, up to the size of a block.
+    /// Rows between the same members form one joint, up to the size of a block.
     std::uint32_t joint_for(std::uint32_t held, std::vector<std::uint32_t> members)
     {
         std::sort(members.begin(), members.end());
@@ -114,7 +114,7 @@ private:
 namespace
 {
 
-/// Bridges of a graph by lowest reachable numbers (R. Tarjan, "A note on finding the bridges of a graph", 1974).
+/// Bridges of a graph by depth-first search with low-link numbers (R. Tarjan, "A note on finding the bridges of a graph", 1974).
 class Bridges
 {
 public:
@@ -124,7 +124,7 @@ public:
         adjacent_[a].push_back({b, edges_}), adjacent_[b].push_back({a, edges_});
         ++edges_;
     }
-    /// By edge: 1 if the graph falls apart without it.
+    /// By edge: 1 if removing it disconnects the graph.
     std::vector<std::uint8_t> find()
     {
         std::vector<std::uint8_t> bridge(edges_, 0);

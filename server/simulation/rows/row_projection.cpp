@@ -1,6 +1,6 @@
-// Projection onto rows, weighted by M: q += M^-1 J^T mu with J M^-1 J^T mu = -phi until phi is rounding, then the same for
-// speeds with rate - J v. Rows that contradict one another end at least squares of phi, with each row in units of its own
-// mobility.
+// Projection onto the rows in the norm of M: q += M^-1 J^T mu with J M^-1 J^T mu = -phi, repeated until phi is at rounding level; then
+// the same for speeds with the right-hand side rate - J v. If rows contradict one another, the iteration ends at the least-squares
+// solution of phi, where each row is weighted by its own mobility.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,28 +13,28 @@ namespace plab::simulation
 namespace
 {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// Errors below this share of the numbers that they come from are rounding.
-constexpr double kRounding = 16 * kEpsilon;
-/// Speeds that move this share of such numbers' digits in a step are rounding, too.
+constexpr double kProjectionEpsilon = std::numeric_limits<double>::epsilon();
+/// Errors below this share of the numbers whose difference they are count as rounding.
+constexpr double kProjectionRounding = 16 * kProjectionEpsilon;
+/// A speed that changes those numbers by less than this share of their size in one step counts as rounding, too.
 constexpr double kShareOfPlace = 1e-3;
-/// What iteration cannot bring below this share is a contradiction.
+/// If the iteration cannot reduce the error below this share, the rows contradict one another.
 constexpr double kContradiction = 1e-8;
 constexpr double kSpeedContradiction = 1e-4;
-/// Members stand on their rows if no error is above this share: what a projection leaves, and no more.
+/// Members satisfy their rows if no relative error is above this: the accuracy that a projection achieves.
 constexpr double kOnRows = 1e-12;
-/// Speeds that miss their rows by less than this share are left to the projection at the end of the advance.
+/// Smaller relative misfits of speeds are left to the projection at the end of the advance.
 constexpr double kMisfit = 1e-8;
 constexpr int kMostIterations = 40;
 constexpr int kMostSpeedCorrections = 8;
-/// What a factorisation of a state nearby may leave, and each correction after it.
+/// A correction must reduce the error to this share, or the matrix is factored again at the present state.
 constexpr double kGoodContraction = 1e-3;
-/// rad, for one Newton step: beyond, the linear model says nothing.
+/// rad per Newton step: for larger rotations the linearisation is not valid.
 constexpr double kMostTurn = 0.5;
 
 }  // namespace
 
-/// The size of the numbers that a row's error is a difference of, m or rad.
+/// The magnitude of the numbers whose difference is the row's error, m or rad.
 double RowSystem::position_scale(const ConstraintRow& row) const
 {
     double scale = 0;
@@ -49,7 +49,8 @@ double RowSystem::position_scale(const ConstraintRow& row) const
     return scale;
 }
 
-/// The size of the numbers that a row's speed is a sum of; and what moves less than a digit of a place in a step is nothing.
+/// The magnitude of the numbers whose sum is the row's speed. The second term covers speeds that move a member within one step by less
+/// than a small share (kShareOfPlace) of its coordinates.
 double RowSystem::speed_scale(const ConstraintRow& row, double dt) const
 {
     double scale = std::fabs(row.rate) + (dt > 0 ? kShareOfPlace * position_scale(row) / dt : 0.0);
@@ -68,7 +69,7 @@ double RowSystem::speed_scale(const ConstraintRow& row, double dt) const
 namespace
 {
 
-/// sqrt(J M^-1 J^T) of one block on a body that moves.
+/// sqrt(J M^-1 J^T) of one block on a dynamic body.
 double root_of_mobility(const Bodies& bodies, const RowBlock& b)
 {
     const Vec3 angular_B = rotate_back(bodies.orientation[b.who.index], b.angular);
@@ -78,8 +79,8 @@ double root_of_mobility(const Bodies& bodies, const RowBlock& b)
 
 }  // namespace
 
-/// What a row's error is small or large beside, also where its members stand or turn about the origin: with the lengths at hand,
-/// the arms of the bodies' mass about their centres, sqrt(tr I / 2 m).
+/// Reference size for a row's position error that is meaningful even where members are at rest at or rotate about the origin:
+/// position_scale() plus the bodies' radii of gyration, sqrt(tr I / 2 m).
 double RowSystem::position_at_hand(const ConstraintRow& row) const
 {
     double scale = position_scale(row);
@@ -93,13 +94,13 @@ double RowSystem::position_at_hand(const ConstraintRow& row) const
     return scale;
 }
 
-/// The same of its speed. |J v| <= sqrt(J M^-1 J^T) sqrt(v . M v), so that the second factor's rounding may show in it: that of the
-/// member's motion, and of the impulses by which the rows of its component held it in this step (dt s).
+/// Reference size for a row's speed error. |J v| <= sqrt(J M^-1 J^T) sqrt(v . M v), so rounding of the second factor may appear in J v:
+/// rounding of the member's own motion, and of the impulses with which the rows of the same component held it in this step (dt in s).
 double RowSystem::speed_at_hand(std::size_t index, double dt) const
 {
     const ConstraintRow& row = rows_[index];
     double held = 0;
-    std::size_t first = index;  // those of a component stand together
+    std::size_t first = index;  // the rows of one component are adjacent
     while (first > 0 && rows_[first - 1].component == row.component) --first;
     for (std::size_t i = first; i < rows_.size() && i < lambda_.size() && rows_[i].component == row.component; ++i)
     {
@@ -118,7 +119,7 @@ double RowSystem::speed_at_hand(std::size_t index, double dt) const
     return scale;
 }
 
-/// Whether errors are a contradiction: more than `share` of what is at hand.
+/// Whether errors are a contradiction: larger than kContradiction (kSpeedContradiction) of the reference size.
 bool RowSystem::positions_contradict() const
 {
     for (std::size_t i = 0; i < rows_.size(); ++i)
@@ -133,7 +134,7 @@ bool RowSystem::speeds_contradict(double dt) const
     return false;
 }
 
-/// Fills position_error_. The largest of rows that are held, relative to position_scale.
+/// Fills position_error_. Returns the largest error of the equality rows relative to position_scale().
 double RowSystem::measure_positions()
 {
     double worst = 0;
@@ -217,7 +218,7 @@ void RowSystem::change_speeds(const StepContext& context)
     if (any_shaft) graph_->derive(host_->shafts, context.active_shafts);
 }
 
-/// True: with the matrix of this very state.
+/// One Newton correction. Returns true if the matrix was factored at the present state for it.
 bool RowSystem::correct_positions(const StepContext& context, double compliance)
 {
     const bool fresh = !factored_ || compliance != RowEquations::kCompliance;
@@ -231,9 +232,10 @@ bool RowSystem::correct_positions(const StepContext& context, double compliance)
     return fresh;
 }
 
-/// Newton's method, with the same matrix while that will do. Compliance is left in: iteration takes its effect away where
-/// errors are more than rounding, and rounding is not driven into directions that hardly move a row. Where iteration comes
-/// to a stand before the rows hold, least squares take over.
+/// Newton's method, which keeps the same factorisation while the error still contracts well. The compliance is not refined away here:
+/// above rounding level the iteration removes its effect, and at rounding level the compliance keeps rounding errors from being amplified
+/// into directions that hardly change any row. If the iteration stalls before the rows are satisfied, it continues as least squares
+/// (kSoftCompliance).
 void RowSystem::relax_positions(const StepContext& context, ProjectionReport& report)
 {
     double before = std::numeric_limits<double>::infinity();
@@ -243,7 +245,7 @@ void RowSystem::relax_positions(const StepContext& context, ProjectionReport& re
         collect(context);
         equations_.set_rows(rows_, pieces_);
         const double error = measure_positions();
-        if (!(error > kRounding) || report.iterations == kMostIterations) break;
+        if (!(error > kProjectionRounding) || report.iterations == kMostIterations) break;
         const bool stands = fresh && error > 0.5 * before;
         if (stands && error < kContradiction) break;
         if (soft && std::fabs(error - before) < 1e-10 * error) break;
@@ -254,7 +256,8 @@ void RowSystem::relax_positions(const StepContext& context, ProjectionReport& re
     }
 }
 
-/// One correction. A factorisation of a state nearby is mostly good enough; if not, it must not touch the speeds.
+/// One correction. A factorisation from a nearby state is usually good enough; if it is not, its result must not be applied to the
+/// speeds, so the matrix is factored again first.
 void RowSystem::correct_speeds(const StepContext& context, bool least_squares)
 {
     equations_.clear_right_hand_side();
@@ -275,7 +278,7 @@ void RowSystem::match_speeds(const StepContext& context, ProjectionReport& repor
     speed_work_.assign(rows_.size(), 0.0);
     double left = measure_speeds(context.dt);
     bool soft = false;
-    for (int i = 0; i < kMostSpeedCorrections && left > kRounding; ++i)
+    for (int i = 0; i < kMostSpeedCorrections && left > kProjectionRounding; ++i)
     {
         correct_speeds(context, soft);
         add_speed_work();
@@ -283,14 +286,15 @@ void RowSystem::match_speeds(const StepContext& context, ProjectionReport& repor
         left = measure_speeds(context.dt);
         if (left < 0.5 * before) continue;
         if (soft || left < kSpeedContradiction) break;
-        soft = true;  // rows that cannot all hold
+        soft = true;  // the rows cannot all hold
     }
     if (!(left >= kSpeedContradiction) || !speeds_contradict(context.dt)) return;
     report.converged = false;
     name_contradictory(speed_error_, report);
 }
 
-/// J^T mu (v + v') / 2: what each row's impulse has done. Called when speeds have just been changed.
+/// Work of each row's impulse mu: mu J (v + v') / 2, with v before and v' after the change. To be called directly after the speeds were
+/// changed.
 void RowSystem::add_speed_work()
 {
     const auto slots = equations_.slots();
@@ -312,14 +316,14 @@ void RowSystem::book_speed_work(const RowBook& book) const
 void RowSystem::count_redundant(ProjectionReport& report)
 {
     redundant_.assign(pieces_.size(), 0);
-    // By the last factorisation: of a state close to the present one, but not by one that lets rows give way.
+    // From the last factorisation, which belongs to a nearby state; but not from one with a larger compliance, where rows give way.
     if (equations_.compliance() > RowEquations::kCompliance) return;
     const auto slots = equations_.slots();
     for (std::size_t s = 0; s < slots.size(); ++s)
         if (equations_.redundant(s)) ++redundant_[slots[s].piece], ++report.redundant;
 }
 
-/// Whoever has a fair share in the worst error.
+/// Names the components whose error is at least a thousandth of the largest one.
 void RowSystem::name_contradictory(std::span<const double> errors, ProjectionReport& report) const
 {
     double worst = 0;
@@ -338,7 +342,7 @@ ProjectionReport RowSystem::project(const StepContext& context, const RowBook& b
     keep_reactions();
     factored_ = false;
     relax_positions(context, report);
-    // Rows that nobody can follow, as all who take part are prescribed: nothing to correct, but to tell.
+    // Rows that nothing can satisfy because all participants are prescribed or static cannot be corrected, only reported.
     const auto nobody_moves = [this](const ConstraintRow& row)
     {
         const auto mobile = [this](const RowBlock& b) { return is_mobile(b.who); };
@@ -352,7 +356,8 @@ ProjectionReport RowSystem::project(const StepContext& context, const RowBook& b
     report.converged = report.places_hold;
     if (!report.converged) name_contradictory(position_error_, report);
     match_speeds(context, report);
-    // What rows take that hold is the solver's error, and stays unexplained; what those take that cannot hold is theirs.
+    // Energy that consistent rows remove is discretisation error and stays in the ledger's unexplained part; energy that contradictory
+    // rows remove is booked as their work.
     if (!report.converged) book_speed_work(book);
     double stuck = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i)

@@ -9,13 +9,13 @@ namespace plab::simulation
 namespace
 {
 
-/// Most that rows may add to the speeds in one step, as a multiple of those and of what loads add. Rotation by 4 rad in a
-/// step is beyond any solver.
+/// Largest change of speed that rows may cause in one step, as a multiple of the present speed and of what the loads add. A rotation by 4
+/// rad in a step is beyond any solver.
 constexpr double kMostKick = 4;
 
 }  // namespace
 
-/// The components' commands, block by block.
+/// Runs the components' Constrain commands, block by block.
 class RowSystem::ScheduledRows final : public RowSource
 {
 public:
@@ -51,7 +51,7 @@ public:
             const world::Table& table = *world_->tables()[s.block->table];
             context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
             call.rows = s.rows;
-            (void)s.block->command->run(call, table.rows());  // rows have no failures but events
+            (void)s.block->command->run(call, table.rows());  // rows report problems as events, not as errors
         }
     }
 
@@ -63,11 +63,11 @@ private:
     };
     world::World* world_ = nullptr;
     std::vector<BlockRow> sorted_;
-    std::vector<Selected> selected_;  // the first count_ are valid
+    std::vector<Selected> selected_;  // only the first count_ are valid
     std::size_t count_ = 0;
 };
 
-/// Takes rows in: pieces by component, shafts as the roots of their trains.
+/// Receives the rows: groups them into pieces by component, and replaces shafts by the roots of their trains.
 class RowSystem::Sink final : public RowSink
 {
 public:
@@ -210,8 +210,8 @@ bool RowSystem::react(const StepContext& context, Wrenches& wrenches)
     return finite;
 }
 
-/// Close to a singular configuration, speeds that do not fit it ask for accelerations like v^2 / angle: a linkage that is
-/// stretched out cannot go on. Where a step cannot follow that, rows give way until it can.
+/// Close to a singular configuration, speeds that do not fit it require accelerations of the order v^2 / angle: a linkage that is fully
+/// stretched cannot move on. Where a step of this length cannot resolve that, the compliance is increased until it can.
 bool RowSystem::regularize_near_singular(double dt)
 {
     const double speed = speed_norm();
@@ -257,7 +257,7 @@ void RowSystem::add_reactions(Wrenches& wrenches) const
         }
 }
 
-/// Whether a row's work counts: rows join members of one group, so that the first that moves tells.
+/// Whether a row's work is booked: rows join members of one group, so the first dynamic participant decides.
 bool RowSystem::books(const ConstraintRow& row, const RowBook& book) const
 {
     const auto end = row.blocks.begin() + row.count;
@@ -297,7 +297,7 @@ double RowSystem::take_impulses(const StepContext& context, std::span<const Cons
         if (row.kind == RowKind::Equality) position_error_[i] = row.error;
         if (row.kind == RowKind::OneSided) position_error_[i] = std::fmin(0.0, row.error);
         if (!row.may_yield()) speed_error_[i] = speed_of(row) - row.rate;
-        // A limit may have come near or gone since: both lists stand in one order.
+        // A limit may have become active or inactive since; both lists are in the same order, so one pass finds the pairs.
         std::size_t found = at;
         while (found < held.size() && !(held[found].component == row.component && held[found].feature == row.feature)) ++found;
         if (found == held.size()) continue;
@@ -327,7 +327,7 @@ void RowSystem::keep_reactions()
             if (b.who != first.blocks[last].who) continue;
             r.force += b.linear * lambda_[i], r.torque += b.angular * lambda_[i];
         }
-        // A shaft's torque is that on the shaft itself, not on the root of its train.
+        // Report the torque on the shaft itself, not on the root of its train.
         const auto geared =
             std::find_if(geared_.begin(), geared_.end(), [&](const Geared& g) { return g.row == piece.first && g.block == last; });
         if (geared != geared_.end() && geared->coefficient != 0) r.torque.x *= geared->coefficient / first.blocks[last].angular.x;

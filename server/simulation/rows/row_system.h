@@ -1,11 +1,11 @@
-/// The joints of some groups: multipliers that hold their rows inside a solver's stages, and the projection of the
-/// finished step onto them.
+/// The joints of some groups: Lagrange multipliers that hold their rows inside a solver's stages, and the projection of the finished step
+/// onto the rows.
 ///
-/// At acceleration level (index 1): M a = f + J^T lambda, J a = bias. Drift is taken away after the step by projection in
-/// position and in speed, weighted by M, so that the solver keeps its order.
+/// The constraints are enforced at acceleration level (index 1): M a = f + J^T lambda, J a = bias. The drift that remains is removed
+/// after the step by projecting positions and then speeds in the norm of M, which preserves the order of the solver.
 ///
-/// Sources: D. Baraff, "Linear-time dynamics using Lagrange multipliers", SIGGRAPH 1996 (M and J apart, in tree order);
-/// E. Hairer, G. Wanner, "Solving ordinary differential equations II", VII.2 (projection keeps the order).
+/// Sources: D. Baraff, "Linear-time dynamics using Lagrange multipliers", SIGGRAPH 1996 (M and J kept apart, in tree order); E. Hairer,
+/// G. Wanner, "Solving ordinary differential equations II", VII.2 (projection preserves the order).
 #pragma once
 
 #include <array>
@@ -25,15 +25,15 @@ namespace plab::simulation
 struct ProjectionReport
 {
     int iterations = 0;
-    double position_error = 0;    ///< largest |phi| left, m or rad
-    double speed_error = 0;       ///< largest |J v - rate| left
-    std::uint32_t redundant = 0;  ///< rows that others already imply
+    double position_error = 0;    ///< largest remaining |phi|, m or rad
+    double speed_error = 0;       ///< largest remaining |J v - rate|
+    std::uint32_t redundant = 0;  ///< rows that the others imply
     bool converged = true;
-    bool places_hold = true;                   ///< what contradicts, if anything, are speeds
-    std::vector<std::uint32_t> contradictory;  ///< components (directory indices) that cannot hold together, in id order
+    bool places_hold = true;                   ///< positions satisfy their rows; a contradiction, if any, concerns speeds only
+    std::vector<std::uint32_t> contradictory;  ///< components (directory indices) whose rows cannot hold together, in id order
 };
 
-/// Where rows come from: all rows at the state of the host tables, in a fixed order, those of a component in one piece.
+/// Source of the rows: emits all rows at the state of the host tables in a fixed order, those of one component adjacent.
 class RowSource
 {
 public:
@@ -41,15 +41,15 @@ public:
     virtual void constrain(const StepContext& context, RowSink& sink) = 0;
 };
 
-/// Where the work of rows goes, and whose counts. Empty spans: everybody's.
+/// Where the work of rows is booked, and for which objects. Empty spans: for all.
 struct RowBook
 {
-    std::vector<double>* work = nullptr;  ///< J by component; null: nobody books
-    double sign = 1;                      ///< -1 takes back what was booked before
+    std::vector<double>* work = nullptr;  ///< J by component; null: no booking
+    double sign = 1;                      ///< -1 cancels an earlier booking
     std::span<const std::uint8_t> bodies, shafts;
 };
 
-/// What joints tell Phase::Finish, of all groups.
+/// What joints report to Phase::Finish, for all groups.
 class RowReportTable final : public RowReports
 {
 public:
@@ -71,51 +71,51 @@ public:
     RowSystem(RowSystem&&) noexcept;
     RowSystem& operator=(RowSystem&&) noexcept;
 
-    /// The rows (of Phase::Constrain) of some groups, whose dynamic participants they may move; the groups that such a
-    /// participant belongs to are to be advanced together. Keeps its memory from use to use.
+    /// Selects the rows (of Phase::Constrain) of some groups. The rows may move the dynamic participants; all groups to which such a
+    /// participant belongs must be advanced together. Memory is kept between calls.
     void configure(world::World& world, const Schedule& schedule, std::span<const BlockRow> rows, const ConstraintGraph& graph);
-    /// The same without a world: rows from `source`, which has to outlive this.
+    /// The same without a world: rows come from `source`, which must outlive this object.
     void configure(world::HostTables& host, RowSource& source, const ConstraintGraph& graph);
-    /// No component can add rows: nothing else needs to be called.
+    /// No component can add rows, so no other function needs to be called.
     bool empty() const { return source_ == nullptr; }
 
-    /// Rows at the tables' present state. Shafts stand for the roots of their trains. Impulses are 0.
+    /// Collects the rows at the present state of the tables. Shafts are replaced by the roots of their trains. Impulses are set to 0.
     void collect(const StepContext& context);
     std::span<ConstraintRow> rows() { return rows_; }
     std::span<const ConstraintRow> rows() const { return rows_; }
-    /// Of the last collect: a row may let go, so a manager has to hold them.
+    /// A row of the last collect() may yield (a limit or a bounded motor), so a manager has to hold the rows.
     bool may_yield() const { return may_yield_; }
 
-    /// collect(), then the multipliers that make J a = bias under the wrenches so far, added to the wrenches. Rows that
-    /// may yield are left out. False if the result is not finite (the wrenches are then as before).
+    /// collect(), then computes the multipliers with which J a = bias under the present wrenches, and adds their forces to the wrenches.
+    /// Rows that may yield are left out. Returns false if the result is not finite; the wrenches are then unchanged.
     bool react(const StepContext& context, Wrenches& wrenches);
-    /// Adds share (s) times the power of each component's rows of the last react() to the book. Only what moves by itself
-    /// does work: rates, and kinematic participants.
+    /// Adds `share` (s) times the power of each component's rows in the last react() to the book. Ideal constraints do no work; only
+    /// prescribed rates and kinematic participants do.
     void account(const RowBook& book, double share) const;
 
-    /// Puts the members onto their rows: poses first (error = 0), then speeds (J v = rate). At the end of an advance. What rows
-    /// that contradict one another take of the kinetic energy is booked to their components.
+    /// Projects the members onto their rows: first poses (error = 0), then speeds (J v = rate). To be called at the end of an advance.
+    /// Kinetic energy that contradictory rows remove is booked to their components.
     ProjectionReport project(const StepContext& context, const RowBook& book = {});
-    /// Speeds only. The change of kinetic energy is booked to the components.
+    /// Projects the speeds only. The change of kinetic energy is booked to the components.
     ProjectionReport project_speeds(const StepContext& context, const RowBook& book = {});
-    /// At the start of an advance: the same where speeds do not fit the rows (a joint came, a request or an impact changed
-    /// a speed, a motor's speed jumped), by impulses. A function of the present state alone: speeds as a projection leaves
-    /// them keep every bit.
+    /// At the start of an advance: makes speeds fit their rows by impulses if they do not (a joint was added, a request or an impact
+    /// changed a speed, a motor's rate jumped). Depends on the present state alone; speeds that a projection has just made consistent are
+    /// not changed in any bit.
     void join(const StepContext& context, const RowBook& book);
 
-    /// collect(), for a manager that will hold the rows.
+    /// collect(), for a manager that will hold the rows during the advance.
     void begin_hold(const StepContext& context);
-    /// After it did, over h: `held` are those rows with their impulses (N s), in the same order. What is reported of them,
-    /// and the errors that they leave at the tables' present state. Books their work, by the mean of the speeds before and
-    /// after, and returns its sum (J).
+    /// To be called after the manager held the rows over h (s): `held` are the same rows with their impulses (N s), in the same order.
+    /// Stores what is reported about them and the errors that remain at the present state. Books their work, computed with the mean of
+    /// the speeds before and after, and returns its sum (J).
     double take_impulses(const StepContext& context, std::span<const ConstraintRow> held, double h, const RowBook& book);
-    /// Of the last react() or take_impulses(), and the last projection.
+    /// Writes what the last react() or take_impulses(), and the last projection, found.
     void report_to(RowReportTable& table) const;
 
 private:
     class Sink;
     class ScheduledRows;
-    /// A block as its component gave it: a shaft that is not a root.
+    /// A block as its component emitted it, before a shaft was replaced by the root of its train.
     struct Geared
     {
         std::uint32_t row = 0, block = 0;
@@ -126,7 +126,7 @@ private:
     struct Reaction
     {
         std::uint32_t component = 0;
-        Vec3 force, torque;  ///< on the last participant
+        Vec3 force, torque;  ///< on the last participant, N and N m
     };
 
     void keep_reactions();
@@ -172,10 +172,10 @@ private:
     std::vector<double> position_error_, speed_error_;  ///< by row, after the last projection
     std::vector<double> speed_work_;                    ///< J by row, of the last projection of speeds
     std::vector<std::uint32_t> redundant_;              ///< by piece
-    std::vector<double> held_speed_;                    ///< by row that a manager holds: of its mobile members at the start
+    std::vector<double> held_speed_;                    ///< by row that a manager holds: J v of the dynamic members at the start
     std::vector<Reaction> reactions_;
     bool may_yield_ = false;
-    bool factored_ = false;  ///< the equations hold a factorisation of a state close to the present one
+    bool factored_ = false;  ///< the equations hold a factorisation for a state close to the present one
 };
 
 }  // namespace plab::simulation

@@ -95,7 +95,8 @@ void ConstraintGraph::write(Shafts& shafts) const
     const auto place = [&shafts](std::uint32_t i, std::uint32_t root, double ratio)
     {
         const bool same = shafts.root[i] == root && shafts.ratio[i] == ratio;
-        // Elsewhere the angle may have been set, or the row has a new owner: the teeth mesh as they stand now.
+        // If the angle does not follow, it was set or the row belongs to another shaft now: the teeth mesh at the present angles, and new
+        // anchors record that.
         const bool follows = i == root || shafts.anchor[i] + ratio * (shafts.angle[root] - shafts.root_anchor[i]) == shafts.angle[i];
         if (same && follows) return;
         shafts.root[i] = root, shafts.ratio[i] = ratio;
@@ -115,7 +116,7 @@ void ConstraintGraph::sum_sides(const ShaftTree& tree, std::span<const double> o
     for (std::uint32_t k = first; k < end; ++k) sums.inside[k] = own[k], sums.outside[k] = 0;
     for (std::uint32_t k = end; --k > first;) sums.inside[parent(k)] += sums.inside[k];
 
-    // Siblings before, siblings after, then the parent and all beyond it.
+    // First add the siblings before a node, then those after it, then the parent and everything beyond the parent.
     std::fill_n(sums.passed.begin() + first, tree.count, 0.0);
     for (std::uint32_t k = first + 1; k < end; ++k) sums.outside[k] = sums.passed[parent(k)], sums.passed[parent(k)] += sums.inside[k];
     std::fill_n(sums.passed.begin() + first, tree.count, 0.0);
@@ -151,7 +152,7 @@ double ConstraintGraph::engage(const ShaftTree& tree, Shafts& shafts, std::vecto
     const double w = tree.prescribed ? shafts.speed[tree.root] : momentum / tree.inertia;
     if (work) book_engagement(tree, shafts, w, *work);
 
-    // dE = -1/2 sum J d^2 + w sum rho J d, with d = rho w - speed; the second sum is 0 where momentum is kept.
+    // dE = -1/2 sum J d^2 + w sum rho J d, with d = rho w - speed; the second sum vanishes where angular momentum is conserved.
     double change = 0;
     for (const ShaftNode& n : nodes(tree))
     {
@@ -163,8 +164,8 @@ double ConstraintGraph::engage(const ShaftTree& tree, Shafts& shafts, std::vecto
     return change;
 }
 
-// The impulse S that each coupling sends to its child's side, at the root; the work is half of the impulse times the
-// sum of speeds before and after, on dynamic shafts.
+// Computes for each coupling the impulse S on its child's side, reduced to the root. The work is S/2 times the sum of the speeds before
+// and after, and it is booked for dynamic shafts only.
 void ConstraintGraph::book_engagement(const ShaftTree& tree, const Shafts& shafts, double speed, std::vector<double>& work)
 {
     double total = 0;
@@ -174,7 +175,7 @@ void ConstraintGraph::book_engagement(const ShaftTree& tree, const Shafts& shaft
         momentum_[k] = n.dynamic ? n.ratio * shafts.inertia[n.shaft] * shafts.speed[n.shaft] : 0.0;
         total += momentum_[k];
     }
-    if (tree.prescribed) momentum_[tree.first] = tree.inertia * speed - total;  // what the prescribed motion gives
+    if (tree.prescribed) momentum_[tree.first] = tree.inertia * speed - total;  // impulse of whatever prescribes the motion
     sum_sides(tree, momentum_, sums_);
     for (std::uint32_t k = tree.first + 1; k < tree.first + tree.count; ++k)
     {
@@ -183,7 +184,7 @@ void ConstraintGraph::book_engagement(const ShaftTree& tree, const Shafts& shaft
         const double impulse = (n.inertia_inside * sums_.outside[k] - n.inertia_outside * sums_.inside[k]) / tree.inertia;
         const double child = 0.5 * impulse / n.ratio * (shafts.speed[n.shaft] + n.ratio * speed);
         const double parent = 0.5 * impulse / p.ratio * (shafts.speed[p.shaft] + p.ratio * speed);
-        work[n.component] += child;  // only a root is not dynamic
+        work[n.component] += child;  // only a root can be non-dynamic
         if (p.dynamic) work[n.component] -= parent;
     }
 }
@@ -192,7 +193,7 @@ void ConstraintGraph::derive(Shafts& shafts, std::span<const std::uint8_t> activ
 {
     for (const ShaftTree& tree : trees_)
     {
-        // The branches of a prescribed shaft may belong to several groups; other trees are active as a whole.
+        // Branches of a prescribed shaft may belong to several groups; all other trees are active as a whole.
         if (!active.empty() && !tree.prescribed && active[tree.root] == 0) continue;
         const double angle = shafts.angle[tree.root];
         const double speed = shafts.speed[tree.root];

@@ -11,7 +11,8 @@ namespace plab::simulation
 namespace
 {
 
-/// Shafts of inertia 1, the driven at rest and all others at a given speed: what a Couple command does to them shows its factor.
+/// Calls a Couple command on shafts of inertia 1, the driven one at rest and all others at a given speed. What the command applies
+/// reveals its factor.
 class FactorProbe final : public ShaftMotion
 {
 public:
@@ -29,7 +30,7 @@ public:
     void assign(Ref, double rate) override { assigned_ = rate, pair_.one_way = true; }
 
     bool did_anything() const { return on_driven_ != 0 || on_driver_ != 0 || assigned_ != 0; }
-    /// `driver` is the row's, for commands that do nothing to it.
+    /// `driver`: the driver of the row, for commands that do not act on it.
     std::optional<CouplingPair> pair(Ref driver) const
     {
         CouplingPair out = pair_;
@@ -56,7 +57,7 @@ FactorProbe probed(const Block& block, const world::Table& table, Row row, doubl
     context.component_of_row = table.component_of_row(), context.facet_of_row = table.host_of_row();
     PhaseCall call;
     call.context = &context, call.shaft_motion = &probe, call.rows = Rows(&row, 1);
-    (void)block.command->run(call, table.rows());  // as in sweeps
+    (void)block.command->run(call, table.rows());  // as in the sweeps
     return probe;
 }
 
@@ -74,7 +75,7 @@ void CouplingWatch::rebuild(const world::World& world, const Schedule& schedule,
         const Role* driver = table.schema().find_role("driver");
         for (const Row row : block.rows)
         {
-            // Who does something to shafts at rest wants something else than a ratio.
+            // A command that acts on shafts at rest enforces something other than a ratio.
             if (probed(block, table, row, 0).did_anything()) continue;
             const Ref from = driver && driver->one ? (*driver->one)[row] : Ref{};
             if (const auto pair = probed(block, table, row, 1).pair(from)) pairs_.push_back(*pair);
@@ -83,7 +84,8 @@ void CouplingWatch::rebuild(const world::World& world, const Schedule& schedule,
     find_contradictions(world, graph, directory);
 }
 
-/// The graph's couplings agree among themselves, so they are taken first: who closes a bad loop is one of the pairs.
+/// The couplings of the graph are consistent with one another, so they come first; the edge that closes a contradictory loop is then one
+/// of the pairs.
 void CouplingWatch::find_contradictions(const world::World& world, const ConstraintGraph& graph, const ShaftDirectory& directory)
 {
     faults_.clear();
@@ -100,7 +102,7 @@ void CouplingWatch::find_contradictions(const world::World& world, const Constra
     }
     ShaftDirectory pairs_last = directory;
     pairs_last.component_rank = rank;
-    // Whether prescribed shafts agree is a question of their speeds, not of the loops.
+    // Whether prescribed shafts agree depends on their speeds and not on the loops, so none is marked as prescribed here.
     const std::vector<std::uint8_t> prescribed(world.host().shafts.size(), 0);
     const auto forest = grow_ratio_forest(std::move(edges), prescribed, pairs_last);
     if (forest) return;
@@ -136,7 +138,9 @@ void CouplingWatch::tell_conflict(const world::World& world, const CouplingRepor
     const std::uint32_t second = done.conflict ? done.conflict->second : kNoIndex;
     if (done.conflict && reported[second] == 0)
         emit("coupling.conflict", second,
-             "drives " + shaft_id(world, done.conflict->shaft) + " against " + world.id_of(done.conflict->first) + ", which is obeyed", {});
+             "drives " + shaft_id(world, done.conflict->shaft) + " against " + world.id_of(done.conflict->first) +
+                 ", which takes precedence",
+             {});
     for (const CouplingPair& p : pairs_)
         if (p.one_way) reported[p.component] = p.component == second ? 1 : 0;
 }
@@ -152,19 +156,20 @@ void CouplingWatch::tell_fault(const Fault& fault, const Shafts& shafts, const C
     if (std::exchange(reported[p.component], 1)) return;
     const double left = std::fabs(shafts.speed[p.driven] - p.factor * shafts.speed[p.driver]);
     emit("constraint.contradiction", p.component,
-         fault.why + "; nothing but rest is an answer: sweeps brake the loop, and " + rounded_text(left) + " rad/s of error are left now",
+         fault.why + "; only rest satisfies this loop, so the sweeps brake it; an error of " + rounded_text(left) +
+             " rad/s remains at present",
          {left, done.residual});
 }
 
-/// One pair's speeds: fine, or told of at once where nothing can be done, or noted.
+/// Checks the speeds of one pair: they agree, or are reported at once if nothing can correct them, or are recorded as a miss.
 void CouplingWatch::look_at(std::size_t index, const world::World& world, const ShaftSystem& system, std::vector<std::uint8_t>& reported)
 {
     const CouplingPair& p = pairs_[index];
-    if (p.one_way) return;  // conflicts are told by themselves
+    if (p.one_way) return;  // conflicts are reported separately
     const bool named = std::any_of(faults_.begin(), faults_.end(), [&](const Fault& f) { return f.pair == index; });
     if (named) return;
     const Shafts& shafts = world.host().shafts;
-    // Against the largest speeds on the way: what is left of shafts that stop one another is rounding.
+    // Relative to the largest speeds during the sweeps: if shafts stop one another, what remains is rounding.
     const double size = std::fmax(std::fabs(shafts.speed[p.driven]), system.scale(p.driven)) +
                         std::fabs(p.factor) * std::fmax(std::fabs(shafts.speed[p.driver]), system.scale(p.driver));
     const double miss = std::fabs(shafts.speed[p.driven] - p.factor * shafts.speed[p.driver]);
@@ -181,12 +186,12 @@ void CouplingWatch::look_at(std::size_t index, const world::World& world, const 
     }
     if (std::exchange(reported[p.component], 1)) return;
     emit("constraint.contradiction", p.component,
-         "cannot hold: nothing that it does moves " + shaft_id(world, p.driver) + " or " + shaft_id(world, p.driven) + ", and " +
-             rounded_text(miss) + " rad/s are left; change the factor or a speed that is prescribed, or remove it",
+         "cannot hold: it can move neither " + shaft_id(world, p.driver) + " nor " + shaft_id(world, p.driven) + ", and an error of " +
+             rounded_text(miss) + " rad/s remains; change the factor or a prescribed speed, or remove this coupling",
          {miss});
 }
 
-/// One event for each train: sweeps spread what is left over many of its couplings.
+/// One event per train, because the sweeps distribute the error over many of its couplings.
 void CouplingWatch::tell_unsettled(const Shafts& shafts, int sweeps, std::vector<std::uint8_t>& reported)
 {
     std::stable_sort(misses_.begin(), misses_.end(), [](const Miss& x, const Miss& y) { return x.part < y.part; });
@@ -203,9 +208,9 @@ void CouplingWatch::tell_unsettled(const Shafts& shafts, int sweeps, std::vector
         const CouplingPair& p = pairs_[misses_[worst].pair];
         const std::size_t others = end - first - 1;
         emit("coupling.not_converged", p.component,
-             "misses its ratio by " + rounded_text(misses_[worst].share) + " of its speeds after " + std::to_string(sweeps) + " sweeps" +
-                 (others > 0 ? ", and " + std::to_string(others) + " more of its train by less" : std::string()) +
-                 "; take Constraint/AngularVelocity/Graph, which needs none, or a shorter train",
+             "misses its ratio by a share of " + rounded_text(misses_[worst].share) + " of its speeds after " + std::to_string(sweeps) +
+                 " sweeps" + (others > 0 ? ", and " + std::to_string(others) + "more couplings of its train by less" : std::string()) +
+                 "; use Constraint/AngularVelocity/Graph, which needs no sweeps, or a shorter train",
              {shafts.speed[p.driven] - p.factor * shafts.speed[p.driver], misses_[worst].share});
     }
 }

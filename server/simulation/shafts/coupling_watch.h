@@ -1,7 +1,7 @@
-/// Pairwise couplings (Phase::Couple) that do not hold: loops that contradict themselves, shafts that nobody can move, trains
-/// too long for the sweeps, one-way drives against one another. Told once, and anew only when it ended and came back.
+/// Reports pairwise couplings (Phase::Couple) that do not hold: contradictory loops, shafts that nothing can move, trains too long for
+/// the sweeps, and one-way drives against one another. Each is reported once, and again only after it held in between.
 ///
-/// It changes nothing. The constraint graph's own couplings need no watch: what cannot hold among them is refused.
+/// The watch changes nothing. Couplings of the constraint graph need no watch, because contradictory ones are refused.
 #pragma once
 
 #include <cstdint>
@@ -13,26 +13,26 @@
 namespace plab::simulation
 {
 
-/// speed(driven) = factor * speed(driver), which a Couple command brings about.
+/// speed(driven) = factor * speed(driver), enforced by a Couple command.
 struct CouplingPair
 {
     std::uint32_t component = 0;  ///< directory index
     std::uint32_t driver = 0;     ///< shaft
     std::uint32_t driven = 0;     ///< shaft
     double factor = 1;
-    bool one_way = false;  ///< the driver feels nothing
+    bool one_way = false;  ///< the driver gets no reaction
 };
 
 class CouplingWatch
 {
 public:
-    /// Couplings that miss their ratio by more than this share of their speeds are told of.
+    /// A coupling that misses its ratio by more than this share of its speeds is reported.
     static constexpr double kMiss = 1e-9;
 
-    /// After the graph was built. Learns each row's factor by asking its command for a correction of speeds 1 and 0; rows that
-    /// do not correct a ratio of two shafts are not watched.
+    /// To be called after the graph was built. Finds the factor of each row by running its command on test speeds of 1 and 0; rows whose
+    /// command does not correct the ratio of two shafts are not watched.
     void rebuild(const world::World& world, const Schedule& schedule, const ConstraintGraph& graph, const ShaftDirectory& directory);
-    /// After speeds were brought together: `done` is what ShaftSystem::solve_speeds reported. `told` by component.
+    /// To be called after the speeds were made consistent. `done`: the report of ShaftSystem::solve_speeds. `reported`: by component.
     void tell(const world::World& world, const ShaftSystem& system, const CouplingReport& done, double time, EventSink& events,
               std::vector<std::uint8_t>& reported);
 

@@ -9,10 +9,10 @@ namespace plab::simulation
 namespace
 {
 
-/// Drives that drive nothing which drives on are taken away until none is left (Kahn); what stays contains all circles.
+/// Repeatedly removes the drives whose driven shaft drives nothing (Kahn's algorithm). The drives that remain contain all cycles.
 std::vector<std::uint8_t> on_circles(const std::vector<OneWayDrive>& drives, std::span<const std::uint32_t> root)
 {
-    std::vector<std::uint32_t> driven_on(root.size(), 0);  // by root: drives that it is the driver of
+    std::vector<std::uint32_t> driven_on(root.size(), 0);  // by root: number of drives of which it is the driver
     std::vector<std::vector<std::uint32_t>> into(root.size());
     for (std::uint32_t d = 0; d < drives.size(); ++d)
     {
@@ -49,7 +49,7 @@ Errors check_drives(std::vector<OneWayDrive> drives, std::span<const std::uint32
                               "drives " + directory.shaft_id(d.driven) + ", whose motion is prescribed; it must be dynamic"});
 
     const std::vector<std::uint8_t> left = on_circles(drives, root);
-    std::vector<std::uint32_t> next(root.size(), kNoIndex);  // by root: the first drive on from it that is left
+    std::vector<std::uint32_t> next(root.size(), kNoIndex);  // by root: the first remaining drive that starts there
     for (std::uint32_t d = 0; d < drives.size(); ++d)
         if (left[d] != 0 && next[root[drives[d].driver]] == kNoIndex) next[root[drives[d].driver]] = d;
 
@@ -59,7 +59,7 @@ Errors check_drives(std::vector<OneWayDrive> drives, std::span<const std::uint32
         if (left[start] == 0 || walk_of[start] != kNoIndex) continue;
         std::uint32_t d = next[root[drives[start].driver]];
         while (walk_of[d] == kNoIndex) walk_of[d] = start, d = next[root[drives[d].driven]];
-        if (walk_of[d] != start) continue;  // led into a circle that is named already
+        if (walk_of[d] != start) continue;  // leads into a cycle that was already reported
         std::string circle;
         const std::uint32_t first = d;
         do {
@@ -67,7 +67,7 @@ Errors check_drives(std::vector<OneWayDrive> drives, std::span<const std::uint32
             d = next[root[drives[d].driven]];
         } while (d != first);
         const std::string id = directory.component_id(drives[first].component);
-        errors.push_back({{}, id, "one-way drives in a circle: " + circle + id + "; one of them must be able to feel its driven shaft"});
+        errors.push_back({{}, id, "one-way drives form a cycle: " + circle + id + "; one of them must react to its driven shaft"});
     }
     return errors;
 }

@@ -1,4 +1,4 @@
-/// One-way drives: the driven shaft copies its driver, which feels nothing. Someone must be first.
+/// One-way drives: the driven shaft copies the speed of its driver, which gets no reaction. The drives must have an order without cycles.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct OneWayDrive
     std::uint32_t driven = 0;     ///< shaft
 };
 
-/// What is wrong with the drives: circles (of circles that share a shaft, at least one), and drives of prescribed
-/// shafts. `root` by shaft: shafts that the constraint graph joins are one link of a circle.
+/// Errors in the drives: cycles (of cycles that share a shaft, at least one is reported), and drives of prescribed shafts. `root`: by
+/// shaft; all shafts that the constraint graph joins count as one link of a cycle.
 Errors check_drives(std::vector<OneWayDrive> drives, std::span<const std::uint32_t> root, std::span<const std::uint8_t> prescribed,
                     const ShaftDirectory& directory);
 

@@ -15,7 +15,7 @@ constexpr Int128 kWordMax = std::numeric_limits<std::int64_t>::max();
 
 Int128 magnitude(Int128 a) { return a < 0 ? -a : a; }
 
-// Euclid; 128-bit division is slow, so it hands over as soon as both fit a word.
+// Euclid's algorithm. 128-bit division is slow, so it switches to 64 bits as soon as both numbers fit.
 Int128 gcd(Int128 a, Int128 b)
 {
     a = magnitude(a), b = magnitude(b);
@@ -28,7 +28,7 @@ Int128 gcd(Int128 a, Int128 b)
     return std::gcd(static_cast<std::int64_t>(a), static_cast<std::int64_t>(b));
 }
 
-// Symmetric range only: the most negative number has no magnitude.
+// Symmetric range only: the most negative number has no positive counterpart.
 std::optional<Int128> product(Int128 a, Int128 b)
 {
     Int128 r = 0;
@@ -106,7 +106,7 @@ ExactRatio operator*(const ExactRatio& a, const ExactRatio& b)
 {
     if (a.exact_ && b.exact_)
     {
-        // Reduced crosswise first: the product then is in lowest terms and overflows only if it must.
+        // Cancel common factors crosswise first: the product is then in lowest terms, and overflows only if the result does not fit.
         const Int128 g = gcd(a.numerator_, b.denominator_);
         const Int128 h = gcd(b.numerator_, a.denominator_);
         const auto numerator = product(a.numerator_ / g, b.numerator_ / h);

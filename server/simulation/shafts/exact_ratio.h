@@ -1,4 +1,4 @@
-/// Factors between shafts, exact while they can be.
+/// Ratios between shafts, exact while numerator and denominator fit.
 #pragma once
 
 #include <cstdint>
@@ -12,25 +12,25 @@ namespace plab::simulation
 
 __extension__ typedef __int128 Int128;
 
-/// A factor other than 0: sign x numerator / denominator in lowest terms while that fits 128 bits, else a mantissa and
-/// a power of two, so that no chain of gears leaves the range that can be compared.
+/// A factor other than 0: a fraction in lowest terms while it fits 128 bits, otherwise a mantissa and a power of two, so that the product
+/// along any chain of gears stays comparable.
 class ExactRatio
 {
 public:
-    /// 1.
+    /// The ratio 1.
     ExactRatio() = default;
-    /// Nothing for a factor that is zero, infinite or not a number.
+    /// Nothing if the factor is zero, infinite or not a number.
     static std::optional<ExactRatio> from(const Ratio& ratio);
 
     bool exact() const { return exact_; }
-    /// Rounded once where numerator and denominator are below 2^53, else within 2 units of the last place. May
-    /// overflow; see exponent().
+    /// Correctly rounded if numerator and denominator are below 2^53, else within 2 units of the last place. May overflow; see
+    /// exponent().
     double value() const;
     /// e with 2^(e-1) <= |value| < 2^e.
     int exponent() const;
     ExactRatio inverse() const;
     friend ExactRatio operator*(const ExactRatio& a, const ExactRatio& b);
-    /// Exactly, if both are exact; else to `tolerance`, relative.
+    /// Exact comparison if both are exact; otherwise to the relative `tolerance`.
     bool same(const ExactRatio& other, double tolerance) const;
     /// "0.999983333611106 (60000/60001)".
     std::string text() const;

@@ -11,7 +11,7 @@ namespace plab::simulation
 namespace
 {
 
-// rho^2 J must stay in the range of double precision.
+// The exponent of rho is limited so that rho^2 J stays in the range of double precision.
 constexpr int kLargestExponent = 400;
 
 class Grower
@@ -61,7 +61,7 @@ private:
                 refuse(e.component, "couples " + directory_.shaft_id(e.driver) + " to itself; driver and driven must be two shafts");
     }
 
-    // Kruskal's forest in the order of ids, with path halving.
+    // Kruskal's algorithm with the edges in the order of ids; union-find with path halving.
     void choose_tree_edges()
     {
         std::vector<std::uint32_t> set(prescribed_.size());
@@ -86,7 +86,7 @@ private:
         fill_links();
     }
 
-    // links_of_ holds counts, then ends, and after filling the begins.
+    // links_of_ first holds counts, then ends, and after filling the begins.
     void fill_links()
     {
         std::partial_sum(links_of_.begin(), links_of_.end(), links_of_.begin());
@@ -119,7 +119,7 @@ private:
         return out;
     }
 
-    // Breadth first: parents stand before children.
+    // Breadth first, so parents come before children.
     void grow_tree(std::uint32_t root)
     {
         auto& nodes = forest_.nodes;
@@ -142,7 +142,7 @@ private:
                                        directory_.shaft_id(root) + "; must be between 2^-400 and 2^400");
         if (prescribed_[link.other] != 0)
             refuse(edge.component, "joins " + directory_.shaft_id(root) + " and " + directory_.shaft_id(link.other) +
-                                       ", whose motion is prescribed both; at most one may be");
+                                       ", but the motion of both is prescribed; at most one may be");
         position_[link.other] = static_cast<std::uint32_t>(forest_.nodes.size());
         forest_.nodes.push_back({link.other, parent, link.edge, ratio});
     }
@@ -160,14 +160,14 @@ private:
                                        " multiplies to " + around.text() + ", must be 1; change a factor or remove one of them");
     }
 
-    // "g1 -> g2 -> ": the edges from one node to another, by way of their common ancestor.
+    // "g1 -> g2 -> ": the edges between two nodes by way of their common ancestor.
     std::string path_text(std::uint32_t from, std::uint32_t to) const
     {
         const auto& nodes = forest_.nodes;
         std::vector<std::uint32_t> up, down;
         while (from != to)
         {
-            // Breadth-first order: the later node is never the other's ancestor.
+            // In breadth-first order, the later node is never an ancestor of the other.
             const bool climb_from = from > to;
             std::uint32_t& at = climb_from ? from : to;
             (climb_from ? up : down).push_back(nodes[at].edge);

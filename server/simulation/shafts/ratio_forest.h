@@ -1,5 +1,4 @@
-/// The spanning forest of all couplings between shafts: who moves with whom, how fast, and which couplings say nothing
-/// new.
+/// The spanning forest of all couplings between shafts: which shafts move together, with which ratios, and which couplings are redundant.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 namespace plab::simulation
 {
 
-/// speed(driven) = ratio * speed(driver), held by a component.
+/// speed(driven) = ratio * speed(driver), imposed by a component.
 struct RatioEdge
 {
     std::uint32_t component = 0;  ///< directory index
@@ -23,7 +22,7 @@ struct RatioEdge
     ExactRatio ratio;
 };
 
-/// Order and names by component id, so that nothing depends on rows. Empty ranks: the index is the rank.
+/// Order and names by component id, so that results do not depend on row numbers. Without ranks, the index is the rank.
 struct ShaftDirectory
 {
     std::span<const std::uint32_t> shaft_rank;      ///< by shaft
@@ -38,26 +37,25 @@ struct ShaftDirectory
 struct ForestNode
 {
     std::uint32_t shaft = 0;
-    std::uint32_t parent = 0;          ///< position in nodes; a root's is its own
-    std::uint32_t edge = 0xffffffffu;  ///< that joins it to its parent; none for a root
+    std::uint32_t parent = 0;          ///< position in nodes; a root is its own parent
+    std::uint32_t edge = 0xffffffffu;  ///< to its parent; none for a root
     ExactRatio ratio;                  ///< turns per turn of the root
 };
 
 struct RatioForest
 {
     std::vector<ForestNode> nodes;          ///< tree after tree, each root first, parents before children
-    std::vector<std::uint32_t> tree_begin;  ///< position of each root, and the end
-    std::vector<std::uint32_t> redundant;   ///< edges that close a loop and agree with it
+    std::vector<std::uint32_t> tree_begin;  ///< position of each root, and one past the last node
+    std::vector<std::uint32_t> redundant;   ///< edges that close a loop and are consistent with it
     std::vector<RatioEdge> edges;           ///< in the order of their components' ids
 };
 
-/// Loops whose factors are not all exact may miss 1 by this much, relative: the rounding of long products.
+/// If the factors of a loop are not all exact, their product may differ from 1 by this relative error: the rounding of long products.
 inline constexpr double kLoopTolerance = 1e-12;
 
-/// Grows the forest of shafts that an edge joins. A tree's root is its prescribed shaft, else its first by rank; its
-/// edges are taken in the order of their components' ids, so equal scenes get equal trees. Refused, each by name: a
-/// coupling of a shaft with itself, a factor of 0, loops that contradict themselves, two prescribed shafts in one tree,
-/// ratios too far apart to be reduced.
+/// Builds the forest of the shafts that edges join. The root of a tree is its prescribed shaft, otherwise its first shaft by rank. Edges
+/// are considered in the order of their components' ids, so equal scenes give equal trees. Refused, each by name: a coupling of a shaft
+/// with itself, a contradictory loop, two prescribed shafts in one tree, and ratios too far apart to be reduced.
 Result<RatioForest> grow_ratio_forest(std::vector<RatioEdge> edges, std::span<const std::uint8_t> prescribed,
                                       const ShaftDirectory& directory);
 

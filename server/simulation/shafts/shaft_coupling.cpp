@@ -48,7 +48,7 @@ void ShaftCoupling::begin_accelerations(const ConstraintGraph& graph, const Shaf
 {
     begin_level(Level::Acceleration, graph, shafts);
     members_ = members;
-    for (const std::uint32_t i : prescribed) take_in(i, 0), enter(shafts.root[i], 0);  // forces do not matter to it
+    for (const std::uint32_t i : prescribed) take_in(i, 0), enter(shafts.root[i], 0);  // forces do not affect it
     for (const std::uint32_t i : members)
     {
         take_in(i, torque[i]);
@@ -122,7 +122,7 @@ void ShaftCoupling::change_rate(Root& r, double rate)
     r.rate = rate;
     if (change == 0) return;
     const double relative = change / r.scale;
-    // A rate that is not a number never settles.
+    // A rate that is not a number counts as not converged.
     largest_change_ = std::max(largest_change_, std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity());
 }
 
@@ -134,7 +134,7 @@ void ShaftCoupling::apply(Ref shaft, double torque)
     const std::uint32_t root = root_of(shaft);
     Share& share = shares_[current_];
     if (i == share.driven) share.reaction += torque;
-    if (!entered(root)) return;  // not advanced here: nothing pushes it
+    if (!entered(root)) return;  // not advanced here, so torques do not change it
     Root& r = roots_[root];
     torque_[i] += torque;
     r.torque += ratio * torque;
@@ -146,7 +146,7 @@ void ShaftCoupling::apply(Ref shaft, double torque)
         if (shafts_->dynamic(i)) share.work += torque * shafts_->speed[i];
         return;
     }
-    // Summed over the sweeps this is the change of kinetic energy; a drive takes what is done on what it holds.
+    // Summed over the sweeps this is the change of kinetic energy. The work done on a driven shaft is taken up by its drive.
     const double work = 0.5 * ratio * torque * (before + r.rate);
     if (r.mobility > 0) share.work += work;
     if (assigned(r)) shares_[r.driver].work -= work;
@@ -214,8 +214,7 @@ void ShaftCoupling::account(std::vector<double>& work, double share)
         if (tree.prescribed && entered(tree.root)) account_prescribed(tree, work, share);
 }
 
-// Power through each coupling of the prescribed shaft: (sum rho^2 J alpha_root - sum rho tau) w_root over what is
-// below.
+// Power through each coupling of the prescribed shaft: (sum rho^2 J alpha_root - sum rho tau) w_root over the subtree.
 void ShaftCoupling::account_prescribed(const ShaftTree& tree, std::vector<double>& work, double share)
 {
     const auto nodes = graph_->nodes();

@@ -1,7 +1,11 @@
-/// Phase::Couple over reduced coordinates: pairwise couplings and one-way drives, swept until nothing changes.
+/// Phase::Couple: pairwise couplings and one-way drives between shafts, solved iteratively over the reduced coordinates of the constraint
+/// graph.
 ///
-/// Only roots have a rate of their own; a joined shaft's is rho times its root's, its mobility rho^2 / J_root. The same
-/// sweep (Gauss-Seidel) serves accelerations in the solver's stages and speeds at step starts and after impulses.
+/// Only roots of trains have a rate of their own (a speed or an acceleration). A joined shaft has rho times the rate of its root and the
+/// mobility rho^2 / J_root. One sweep runs all Couple commands once: each command reads the rates of its two shafts and applies the
+/// torque (or impulse) that restores its ratio, which changes the rates that the following commands read. Sweeps are repeated until
+/// nothing changes: this is the Gauss-Seidel method. The same sweep serves accelerations in the solver's stages and speeds at the start
+/// of a step and after impulses.
 #pragma once
 
 #include <algorithm>
@@ -18,21 +22,21 @@
 namespace plab::simulation
 {
 
-/// Sweeps end when no rate changes by more than this share of the largest value that it had: some rounding errors.
+/// Sweeps end when no rate changes by more than this share of the largest value that it had; a few rounding errors.
 inline constexpr double kCouplingTolerance = 4e-15;
 inline constexpr int kMaxCouplingSweeps = 1000;
-/// They end, too, when the largest change has not come down to this share of itself over as many sweeps as a change takes
-/// through the longest train, twice: what contradicts itself moves to and fro for ever.
+/// They also end if the largest change has not fallen below this share of itself. The check is made after as many sweeps as a change
+/// needs to pass the longest train twice. Contradictory couplings oscillate for ever and end this way.
 inline constexpr double kCouplingStagnation = 0.995;
 inline constexpr std::size_t kLeastSweepsCompared = 32;
-/// Two drives of one root agree if their rates differ by no more than this, relative.
+/// Relative tolerance within which two drives of the same root agree.
 inline constexpr double kDriveTolerance = 1e-12;
 
-/// Two components drive one shaft, or shafts that the graph joins, at different rates. The first one is obeyed.
+/// Two components drive the same shaft, or shafts that the graph joins, at different rates. The first one takes precedence.
 struct DriveConflict
 {
     std::uint32_t first = 0, second = 0;     ///< components
-    std::uint32_t shaft = 0;                 ///< the second's driven
+    std::uint32_t shaft = 0;                 ///< driven by the second one
     double first_rate = 0, second_rate = 0;  ///< of that shaft
 };
 
@@ -40,22 +44,23 @@ struct CouplingReport
 {
     int sweeps = 0;
     double residual = 0;    ///< largest change of the last sweep, relative
-    bool converged = true;  ///< false: residual above the tolerance after the last allowed sweep, or no longer falling
+    bool converged = true;  ///< false: residual above the tolerance after the last permitted sweep, or no longer decreasing
     std::optional<DriveConflict> conflict;
 };
 
 class ShaftCoupling final : public ShaftMotion
 {
 public:
-    // A solve: begin, sweeps, results. Graph and shafts must outlive it
+    // One solve: begin, sweeps, results. Graph and shafts must outlive it.
     // --------------------------------------------------
-    /// Accelerations under `torque` (N m, by shaft) of the dynamic `members`, in id order, and of prescribed ones (0).
+    /// Starts from the accelerations under `torque` (N m, by shaft) of the dynamic `members`, in id order; those of prescribed shafts are
+    /// 0.
     void begin_accelerations(const ConstraintGraph& graph, const Shafts& shafts, std::span<const double> torque,
                              std::span<const std::uint32_t> members, std::span<const std::uint32_t> prescribed);
-    /// Speeds as they are; those of joined shafts must be consistent (ConstraintGraph::engage).
+    /// Starts from the present speeds; those of joined shafts must be consistent (ConstraintGraph::engage).
     void begin_speeds(const ConstraintGraph& graph, const Shafts& shafts, std::span<const std::uint32_t> members,
                       std::span<const std::uint32_t> prescribed);
-    /// Runs `couple_all` (all Phase::Couple rows, in order) until nothing changes, or what changes no longer falls.
+    /// Calls `couple_all`, which runs all rows of Phase::Couple in order, until nothing changes or the changes stop decreasing.
     template <class CoupleAll>
     CouplingReport solve(CoupleAll&& couple_all, int max_sweeps = kMaxCouplingSweeps, double tolerance = kCouplingTolerance)
     {
@@ -75,15 +80,15 @@ public:
     }
     void start_sweep();
     double largest_change() const { return largest_change_; }
-    /// The largest |rate| of a shaft in this solve.
+    /// The largest |rate| of a shaft during this solve.
     double scale(Ref shaft) const;
 
-    /// rad/s^2 or rad/s of all members, by shaft.
+    /// Rates of all members, by shaft: rad/s^2 or rad/s.
     void store_rates(std::span<double> out) const;
-    /// Writes the speeds that the sweeps changed, and no others. Begun with begin_speeds.
+    /// Writes only the speeds that the sweeps changed. Requires begin_speeds().
     void store_speeds(Shafts& shafts) const;
-    /// Adds share * power (W), or share * work (J) after begin_speeds, by component; on dynamic shafts only. Couplings
-    /// of the graph between dynamic shafts do none in sum; to a prescribed shaft they transmit its motor's.
+    /// Adds share * power (W), or share * work (J) after begin_speeds(), by component, for dynamic shafts only. Couplings of the graph
+    /// between dynamic shafts do no net work; those to a prescribed shaft transmit the work of its motor.
     void account(std::vector<double>& work, double share);
 
     // ShaftMotion
@@ -94,16 +99,16 @@ public:
     void apply(Ref shaft, double torque) override;
     void assign(Ref shaft, double rate) override;
 
-    // For reactions
+    // For the reported torques.
     // ------------------------------------------------------------------------------------------------------
     bool at_accelerations() const { return level_ == Level::Acceleration; }
     const ConstraintGraph& graph() const { return *graph_; }
-    /// N m on a shaft: forces, pairwise couplings, and what a one-way drive or prescribed motion takes to be obeyed.
+    /// N m on a shaft: forces, pairwise couplings, and the torque with which a one-way drive or a prescribed motion is maintained.
     double total_torque(std::uint32_t shaft) const;
-    /// Components that began in this solve, in order, and what each did to its driven shaft (N m).
+    /// Components that acted in this solve, in order, and the torque that each applied to its driven shaft (N m).
     std::span<const std::uint32_t> participants() const { return participants_; }
     double reaction(std::uint32_t component) const;
-    /// Whether the shaft is a member, or prescribed, in this solve.
+    /// Whether the shaft is a member of this solve, or prescribed in it.
     bool takes_part(std::uint32_t shaft) const { return member_[shaft] == solve_; }
     bool takes_part(const ShaftTree& tree) const { return entered(tree.root); }
 
@@ -118,9 +123,9 @@ private:
         double rate = 0;
         double mobility = 0;              ///< 1 / inertia; 0 for prescribed motion
         double inertia = 0;               ///< at the root, dynamic members only
-        double torque = 0;                ///< at the root, forces and what was applied
+        double torque = 0;                ///< at the root: forces and everything applied
         double scale = 0;                 ///< largest |rate| in this solve
-        std::uint64_t solve = 0;          ///< in which the rest is valid
+        std::uint64_t solve = 0;          ///< in which the other values are valid
         std::uint64_t sweep = 0;          ///< in which it was last assigned
         std::uint32_t driver = kNoIndex;  ///< component that assigns it
         std::uint32_t driven = kNoIndex;  ///< shaft that is assigned
@@ -141,7 +146,7 @@ private:
     std::uint32_t root_of(Ref shaft) const { return shafts_->root[shaft.index]; }
     double inertia_of(std::uint32_t root) const;
     bool assigned(const Root& r) const { return r.driver != kNoIndex; }
-    /// Torque at the root beyond what was applied: of a one-way drive, or of prescribed motion.
+    /// Torque at the root in addition to what was applied: that of a one-way drive or of a prescribed motion.
     double holding_torque(const Root& r) const { return r.inertia * r.rate - r.torque; }
     void change_rate(Root& r, double rate);
     void account_prescribed(const ShaftTree& tree, std::vector<double>& work, double share);
@@ -155,7 +160,7 @@ private:
     double largest_change_ = 0;
     std::optional<DriveConflict> conflict_;
     std::vector<Root> roots_;            // by shaft
-    std::vector<double> torque_;         // by shaft, N m (s); of those that take part
+    std::vector<double> torque_;         // by shaft, N m (s); only of those that take part
     std::vector<std::uint64_t> member_;  // by shaft: the last solve that it took part in
     std::vector<Share> shares_;          // by component
     std::vector<std::uint32_t> participants_;

@@ -24,9 +24,9 @@ void ShaftTorques::add(const ShaftCoupling& coupling)
         if (coupling.takes_part(tree)) add_tree(coupling, tree);
 }
 
-// With A the inertia and B the torque at the root, in: of a node's side of its coupling, out: of the other side, the
-// coupling gives its side  S = A_in B/A - B_in = (A_in B_out - A_out B_in) / A.  The last form loses no digits where a
-// mesh carries little of a large torque.
+// Let A be the inertia and B the torque, both reduced to the root; subscript in: on the node's own side of its coupling, out: on the
+// other side. The coupling transmits to the node's side S = A_in B/A - B_in = (A_in B_out - A_out B_in) / A. The last form loses no
+// digits where a coupling transmits only a small part of a large torque.
 void ShaftTorques::add_tree(const ShaftCoupling& coupling, const ShaftTree& tree)
 {
     const auto nodes = coupling.graph().nodes();
@@ -36,7 +36,7 @@ void ShaftTorques::add_tree(const ShaftCoupling& coupling, const ShaftTree& tree
     for (std::uint32_t k = tree.first + 1; k < end; ++k)
     {
         const ShaftNode& n = nodes[k];
-        if (!coupling.takes_part(n.shaft)) continue;  // another group's branch of a prescribed shaft
+        if (!coupling.takes_part(n.shaft)) continue;  // a branch of a prescribed shaft in another group
         const double side = (n.inertia_inside * sums_.outside[k] - n.inertia_outside * sums_.inside[k]) / tree.inertia;
         set(n.component, n.drives_parent ? -side / nodes[n.parent].ratio : side / n.ratio);
     }

@@ -1,4 +1,4 @@
-/// Torques that couplings transmit at the end of a step, for Phase::Finish.
+/// The torques that couplings transmit at the end of a step, for Phase::Finish.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@ namespace plab::simulation
 class ShaftTorques final : public ShaftReactions
 {
 public:
-    /// Forgets the torques of the step before.
+    /// Removes the torques of the previous step.
     void clear();
-    /// Takes over what a solve at accelerations found: the torque of each coupling of the graph (redundant ones: none),
-    /// of pairwise ones and of drives. Solves of several groups add up.
+    /// Adds the results of a solve at acceleration level: the torque of each coupling of the graph (redundant ones have none), of
+    /// pairwise couplings and of drives. Several groups may be added.
     void add(const ShaftCoupling& coupling);
     std::optional<double> torque(std::uint32_t component) const override;
 

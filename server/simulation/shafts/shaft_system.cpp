@@ -27,7 +27,7 @@ void ShaftSystem::configure(const world::World& world, const Schedule& schedule,
     {
         const Group& group = groups.all[g];
         if (group.shafts.empty() && group.prescribed_shafts.empty()) continue;
-        // Clusters without couplings need no sweeps: they share one part.
+        // Clusters without couplings need no sweeps, so they share one part.
         const bool swept = groups.cluster_has_couplings[group.cluster] != 0;
         Part& part = part_of_cluster(swept ? group.cluster : kNoIndex);
         part.members.insert(part.members.end(), group.shafts.begin(), group.shafts.end());

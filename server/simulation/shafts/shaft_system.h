@@ -1,5 +1,5 @@
-/// The coupled shafts of some groups, solved cluster by cluster: what converges in one cluster waits for no other, so
-/// neither threads nor bystanders show in the result.
+/// The coupled shafts of some groups, solved cluster by cluster. Each cluster converges on its own, so the result does not depend on the
+/// number of threads or on unrelated clusters.
 #pragma once
 
 #include <deque>
@@ -13,21 +13,21 @@ namespace plab::simulation
 class ShaftSystem
 {
 public:
-    /// Members and couplings of the groups. Keeps its memory from use to use.
+    /// Selects the members and couplings of the groups. Memory is kept between calls.
     void configure(const world::World& world, const Schedule& schedule, const Groups& groups, std::span<const std::uint32_t> members,
                    const ConstraintGraph& graph);
     bool empty() const { return count_ == 0; }
-    /// Accelerations under torques (N m, by shaft).
+    /// Computes the accelerations under torques (N m, by shaft).
     void solve_accelerations(const StepContext& context, std::span<const double> torque);
-    /// Brings speeds together at a step boundary and writes those that changed. The worst report of all clusters.
+    /// Makes the speeds consistent at a step boundary and writes those that changed. Returns the worst report of all clusters.
     CouplingReport solve_speeds(const StepContext& context, Shafts& shafts, std::vector<double>& work);
-    /// Of the last solve; rad/s^2.
+    /// Of the last solve, rad/s^2.
     double rate(std::uint32_t shaft) const;
-    /// The shafts that sweeps bring together with this one.
+    /// Identifies the set of shafts that are swept together with this one.
     std::uint32_t part_of(std::uint32_t shaft) const { return shaft < part_of_shaft_.size() ? part_of_shaft_[shaft] : kNoIndex; }
-    /// After solve_speeds(): the largest |speed| that it had on the way, rad/s; 0 where nothing is swept.
+    /// After solve_speeds(): the largest |speed| during the sweeps, rad/s; 0 if the shaft is not swept.
     double scale(std::uint32_t shaft) const;
-    /// Likewise: whether pairwise couplings move it. Prescribed motion and one-way drives do not yield.
+    /// After solve_speeds(): whether pairwise couplings can move the shaft. Prescribed and one-way driven shafts cannot be moved.
     bool yields(std::uint32_t shaft) const;
     void account(std::vector<double>& work, double share);
     void add_reactions(ShaftTorques& torques) const;
@@ -48,7 +48,7 @@ private:
     const world::World* world_ = nullptr;
     const Schedule* schedule_ = nullptr;
     const ConstraintGraph* graph_ = nullptr;
-    std::deque<Part> parts_;  // a coupling keeps the address of its part's members
+    std::deque<Part> parts_;  // a deque, because a coupling keeps the address of its part's members
     std::size_t count_ = 0;
     std::vector<std::uint32_t> part_of_shaft_;
 };

@@ -12,7 +12,7 @@ namespace plab::simulation
 namespace
 {
 
-/// Those by which glibc chooses its variants of sin, exp and others.
+/// The features by which glibc selects its variants of sin, exp and other functions.
 std::string processor_features()
 {
     std::string out;

@@ -1,4 +1,4 @@
-/// Which build a snapshot or a recording is of: another one may give other digits (server/docs/determinism.md).
+/// Identifies the build that made a snapshot or a recording: another build may compute other digits (server/docs/determinism.md).
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 namespace plab::simulation
 {
 
-/// Version, SDK, compiler, flags that may change digits, and what libm goes by: its release and the processor's features. Two
-/// builds of different sources may say the same. Nothing of it names a path or a host.
+/// Version, SDK, compiler, flags that may change digits, and what libm depends on: its release and the processor's features. Two builds
+/// of different sources may have the same name. It contains no path and no host name.
 std::string build_name();
 
 }  // namespace plab::simulation

@@ -1,12 +1,12 @@
 // From a run to a snapshot.
-#include "simulation/simulation.h"
+#include "simulation/snapshot/snapshot.h"
 
 namespace plab::simulation
 {
 namespace
 {
 
-/// Heads and points of a list of pairs, apart.
+/// Separates the heads and the contact points of a list of pairs.
 template <class Out, class Pair, class Head>
 Out taken_apart(const std::vector<Pair>& pairs, std::vector<Head> Out::*heads)
 {
@@ -36,22 +36,23 @@ ContactsImage image_of(const ContactCache& cache)
     return out;
 }
 
-Snapshot Simulation::capture() const
+Snapshot capture(const Run& run)
 {
-    if (!world_) return {};
+    if (!run.live.world) return {};
     auto out = std::make_shared<SnapshotContent>();
-    const StepFrame& last = stepper_->frame();
-    out->world = world_->image();
-    out->loaded = loaded_;
-    out->contacts = image_of(stepper_->contacts());
-    out->clock = {tick_, dt_, base_tick_, base_time_, paused_, steps_left_, rate_, last.tick, last.start_time, last.step};
-    out->ledger = {stepper_->work(), stepper_->contact_energy(), stepper_->departed_work(), stepper_->requests_work(), kinetic_at_start_};
-    out->reported = stepper_->reported(), out->split = stepper_->split();
-    out->watch = watch_->memory();
-    out->run = run_, out->revision = revision_;
-    out->state_hash = state_hash();
-    for (const Waiting& w : requests_)
-        if (w.run == run_) out->waiting.push_back(w.request);
+    const Stepper& stepper = run.stepper();
+    const StepFrame& last = stepper.frame();
+    out->world = run.world().image();
+    out->loaded = run.loaded;
+    out->contacts = image_of(stepper.contacts());
+    out->clock = {run.clock, last.tick, last.start_time, last.step};
+    out->ledger = {stepper.work(), stepper.contact_energy(), stepper.departed_work(), stepper.requests_work(), run.kinetic_at_start};
+    out->reported = stepper.reported(), out->split = stepper.split();
+    out->watch = run.watch->memory();
+    out->run = run.number, out->revision = run.revision;
+    out->state_hash = stepper.state_hash();
+    for (const WaitingRequest& w : run.waiting)
+        if (w.run == run.number) out->waiting.push_back(w.request);
     return Snapshot(std::move(out));
 }
 

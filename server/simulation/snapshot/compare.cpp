@@ -4,20 +4,19 @@
 #include <map>
 
 #include "model/values.h"
-#include "simulation/simulation.h"
 
 namespace plab::simulation
 {
 namespace
 {
 
-/// How much a value matters: what a Comparison chooses by.
+/// The kind of a value, by which a Comparison selects.
 enum class Weight : std::uint8_t
 {
     State,
     Param,
     Output,
-    Ledger,  ///< what no state depends on: the ledger, and what events are told from
+    Ledger,  ///< not part of the state: the ledger, and the memory behind reported events
 };
 
 struct Fact
@@ -27,7 +26,7 @@ struct Fact
     Value value;
 };
 using Facts = std::vector<Fact>;
-/// By component id, or by what the facts are about.
+/// By component id, or by the subject of the facts.
 using Portrait = std::map<std::string, Facts>;
 
 Weight weight_of(FieldKind kind)
@@ -100,7 +99,7 @@ Portrait components_of(const world::Image& image)
     return out;
 }
 
-/// Ids of whom contacts are between.
+/// The ids of the components between which contacts are.
 class Names
 {
 public:
@@ -213,13 +212,13 @@ Portrait rest_of(const SnapshotContent& s)
     clock.push_back({"length of the last step", Weight::State, s.clock.last_step});
     clock.push_back({"start of the last step", Weight::State, s.clock.last_start});
     Facts& ledger = out["ledger"];
-    ledger.push_back({"work of those that are gone", Weight::Ledger, s.ledger.departed});
+    ledger.push_back({"work of removed components", Weight::Ledger, s.ledger.departed});
     ledger.push_back({"work of requests", Weight::Ledger, s.ledger.requests});
     ledger.push_back({"kinetic energy at the start", Weight::Ledger, s.ledger.kinetic_at_start});
     Facts& memory = out["memory of events"];
-    memory.push_back({"stiff contacts are told", Weight::Ledger, s.reported.stiff});
+    memory.push_back({"stiff contacts reported", Weight::Ledger, s.reported.stiff});
     memory.push_back({"energy is counted", Weight::Ledger, s.watch.counting});
-    memory.push_back({"energy is told", Weight::Ledger, s.watch.reported});
+    memory.push_back({"energy gain reported", Weight::Ledger, s.watch.reported});
     memory.push_back({"energy at the start", Weight::Ledger, s.watch.start_energy});
     memory.push_back({"largest kinetic energy", Weight::Ledger, s.watch.last_kinetic});
     memory.push_back({"steps that gained energy", Weight::Ledger, Value(s.watch.gaining_steps)});
@@ -234,17 +233,9 @@ Portrait rest_of(const SnapshotContent& s)
             if (i < s.watch.start_work.size()) facts.push_back({"work when counting began", Weight::Ledger, s.watch.start_work[i]});
             if (i < s.watch.start_made.size()) facts.push_back({"energy made when counting began", Weight::Ledger, s.watch.start_made[i]});
             if (c.facet == Facet::Body && c.host_index < s.watch.linear.size())
-                facts.push_back({"speed that growth is told from", Weight::Ledger, s.watch.linear[c.host_index].reference});
+                facts.push_back({"reference speed of growth", Weight::Ledger, s.watch.linear[c.host_index].reference});
         });
     return out;
-}
-
-bool same_bits(const Value& a, const Value& b)
-{
-    if (a.index() != b.index()) return false;
-    ByteWriter x, y;
-    world::write_value(x, a), world::write_value(y, b);
-    return x.bytes() == y.bytes();
 }
 
 class Search
@@ -290,7 +281,7 @@ private:
             const Fact* b = find(second, a.name);
             if (!b)
                 add(who, a.name, model::format_value(a.value), "-");
-            else if (!same_bits(a.value, b->value))
+            else if (!world::same_bits(a.value, b->value))
                 add(who, a.name, model::format_value(a.value), model::format_value(b->value));
         }
         for (const Fact& b : second)
@@ -313,11 +304,6 @@ std::vector<Difference> differences(const SnapshotContent& first, const Snapshot
     search.run(contacts_of(first.world, first.contacts), contacts_of(second.world, second.contacts));
     search.run(rest_of(first), rest_of(second));
     return out;
-}
-
-std::optional<Difference> compare(const Simulation& first, const Simulation& second, const Comparison& how)
-{
-    return compare(first.capture(), second.capture(), how);
 }
 
 std::optional<Difference> compare_worlds(const world::Image& first, const ContactsImage& first_contacts, const world::Image& second,

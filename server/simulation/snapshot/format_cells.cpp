@@ -11,7 +11,7 @@ namespace plab::simulation
 namespace
 {
 
-/// No field has a name like this.
+/// Not a possible name of a field.
 constexpr std::string_view kComponent = ".component";
 
 /// An empty column for values of a field type, and its elements as values.
@@ -39,7 +39,7 @@ void append(ColumnData& column, const Value& value)
         column);
 }
 
-/// No value for a column whose elements are no fields.
+/// Column types whose elements are not field values give an empty value.
 Value element(const ColumnData& column, std::size_t row)
 {
     return std::visit(
@@ -60,20 +60,13 @@ const Value* given(const model::ComponentSpec& spec, const std::string& field)
     return at == spec.fields.end() ? nullptr : &at->value;
 }
 
-bool same_bits(const Value& a, const Value& b)
-{
-    ByteWriter x, y;
-    world::write_value(x, a), world::write_value(y, b);
-    return a.index() == b.index() && x.bytes() == y.bytes();
-}
-
-/// Components of one type on their way to a section.
+/// The components of one type, collected for their section.
 struct Gathered
 {
     const world::Layout* layout = nullptr;
     std::vector<std::uint32_t> rows;
     std::vector<ColumnData> columns;
-    std::vector<bool> as_given;  ///< beside columns
+    std::vector<bool> as_given;  ///< by column
 };
 
 void gather(const world::Layout& layout, const model::ComponentSpec& spec, std::uint32_t row, ByteReader& cells, Gathered& out)
@@ -88,17 +81,17 @@ void gather(const world::Layout& layout, const model::ComponentSpec& spec, std::
         if (first) out.columns.push_back(column_for(value)), out.as_given.push_back(field.kind == FieldKind::Param);
         append(out.columns[k], value);
         const Value* authored = out.as_given[k] ? given(spec, field.name) : nullptr;
-        out.as_given[k] = authored && same_bits(*authored, value);
+        out.as_given[k] = authored && world::same_bits(*authored, value);
     }
 }
 
-/// A type's section, with where each component stands in it.
+/// The section of a type, and the row of each component in it.
 struct Cells
 {
     const model::ComponentType* type = nullptr;
     const Section* section = nullptr;
     world::Layout layout;
-    std::vector<const NamedColumn*> columns;  ///< beside layout.fields; null: as the scene gives it
+    std::vector<const NamedColumn*> columns;  ///< by layout.fields; null: the value is the one given by the scene
     std::map<std::uint32_t, std::size_t> place;
 };
 
@@ -120,7 +113,7 @@ Errors find_fields(Cells& cells)
     return errors;
 }
 
-/// Params that are not in the file because the scene gives them.
+/// Adds params that are not in the file because they are as the scene gives them.
 void add_given(Cells& cells, const std::vector<const model::ComponentSpec*>& specs)
 {
     for (const Field& field : cells.type->schema.fields())

@@ -39,7 +39,7 @@ Result<void> refuse_unknown(const std::vector<Section>& sections)
     std::set<std::string> seen;
     for (const Section& s : sections)
     {
-        if (!seen.insert(s.name).second) return reason("the snapshot's section '" + s.name + "' stands twice");
+        if (!seen.insert(s.name).second) return reason("the snapshot's section '" + s.name + "' occurs twice");
         const auto is = [&](const char* name) { return s.name == name || s.name == std::string("loaded.") + name; };
         const bool known =
             std::any_of(std::begin(kSceneSections), std::end(kSceneSections), is) ||
@@ -50,7 +50,7 @@ Result<void> refuse_unknown(const std::vector<Section>& sections)
     return {};
 }
 
-/// A file on its way to a snapshot. Directory indices are rows of the section "components".
+/// Builds a snapshot from the sections of a file. Directory indices are rows of the section "components".
 class FileReader
 {
 public:
@@ -84,7 +84,7 @@ private:
 
     Result<void> read_run()
     {
-        auto run = single<Run>("run");
+        auto run = single<RunRow>("run");
         if (!run) return run.errors();
         auto clock = single<ClockImage>("clock");
         if (!clock) return clock.errors();
@@ -98,7 +98,7 @@ private:
         const model::StepLength& dt = s.clock.dt;
         if (!(dt.seconds > 0 && dt.seconds <= 3600) || dt.denominator < 0 || dt.numerator <= 0 || s.clock.tick < 0 ||
             s.clock.base_tick < 0 || s.clock.base_tick > s.clock.tick || !(s.clock.rate >= 0) || s.clock.steps_left < 0)
-            return reason("the snapshot's clock cannot run");
+            return reason("the snapshot's clock is not valid");
         s.run = run->run, s.revision = run->revision, s.state_hash = run->state_hash, s.contacts.next_id = run->next_contact;
         s.ledger.departed = run->departed_work, s.ledger.requests = run->requests_work, s.ledger.kinetic_at_start = run->kinetic_at_start;
         s.reported.stiff = run->reported_stiff;
@@ -158,12 +158,13 @@ private:
         return {};
     }
 
-    /// Takes the next host row for the component of a row of `section`.
+    /// Assigns the next host row to the component that a row of `section` names.
     Result<void> claim(const char* name, std::uint32_t component, Facet facet, std::size_t row)
     {
         const bool there = component < directory_->components.size() && directory_->components[component].facet == facet &&
                            directory_->components[component].host_index == kNoIndex;
-        if (!there) return reason(std::string("the snapshot's section '") + name + "', row " + std::to_string(row) + " belongs to nobody");
+        if (!there)
+            return reason(std::string("the snapshot's section '") + name + "', row " + std::to_string(row) + " belongs to no component");
         directory_->components[component].host_index = static_cast<std::uint32_t>(row);
         return {};
     }
@@ -214,7 +215,7 @@ private:
         for (const records::Shaft& r : *shafts)
         {
             const bool there = r.root < directory_->components.size() && directory_->components[r.root].facet == Facet::Shaft;
-            if (!there) return reason("the snapshot's section 'shafts' names a root that is no shaft");
+            if (!there) return reason("the snapshot's section 'shafts' names a root that is not a shaft");
             s.root.push_back(directory_->components[r.root].host_index);
         }
         return nobody_missing("shafts", Facet::Shaft);
@@ -248,7 +249,7 @@ private:
             { return i < components.size() && components[i].facet == facet && components[i].table != kNoIndex; };
             if (head.count > PairState::kMostContacts || !is(head.detector, Facet::Component) || !is(head.a.index, Facet::Body) ||
                 !is(head.b.index, Facet::Body))
-                return reason("the snapshot's section '" + name + "' has a pair that cannot be");
+                return reason("the snapshot's section '" + name + "' has a pair that is not valid");
             head.a.index = components[head.a.index].host_index, head.b.index = components[head.b.index].host_index;
             count += head.count;
         }
@@ -287,7 +288,7 @@ private:
     std::shared_ptr<SnapshotContent> out_;
     std::shared_ptr<world::Directory> directory_;
     SnapshotFile file_;
-    Run run_;
+    RunRow run_;
     Watch watch_;
 };
 

@@ -13,7 +13,8 @@ namespace
 
 using namespace records;
 
-/// Puts the rows of a section of items where they belong; `list_of` gives the list of the row that an item names.
+/// Distributes the rows of a section of items to the lists to which they belong; `list_of` returns the list of the row that an item
+/// names.
 template <class ListOf>
 Result<void> distribute(const Section& section, std::size_t owners, ListOf list_of)
 {
@@ -71,7 +72,7 @@ public:
         if (const double dt = scene_.settings.dt.seconds; !(dt > 0 && dt <= 3600)) refuse("the scene", "has no usable step length");
         for (const model::ComponentSpec& c : scene_.components)
         {
-            if (c.id.empty() || !index_.emplace(c.id, &c).second) refuse("'" + c.id + "'", "is no id, or stands twice");
+            if (c.id.empty() || !index_.emplace(c.id, &c).second) refuse("'" + c.id + "'", "is not a valid id, or occurs twice");
             if (c.type.empty()) continue;
             auto type = types_.require(c.type);
             if (type)
@@ -105,7 +106,7 @@ private:
         for (const model::ComponentSpec* at = &c; !at->parent.empty(); ++depth)
         {
             const auto up = index_.find(at->parent);
-            if (up == index_.end() || depth > scene_.components.size()) return refuse(c.id, "is not inside of anything that is there");
+            if (up == index_.end() || depth > scene_.components.size()) return refuse(c.id, "has a parent that does not exist");
             at = up->second;
         }
     }
@@ -122,7 +123,7 @@ private:
     {
         const Role* role = type.schema.find_role(given.name);
         if (!role) return refuse(c.id, type.info.name + " has no role '" + given.name + "'");
-        if (given.everyone) return;  // whoever is named there was there once
+        if (given.everyone) return;  // the names were valid when the role was resolved, even if a component is gone now
         if (given.members.size() > role->max || given.members.size() < role->min)
             refuse(c.id, "has " + std::to_string(given.members.size()) + " participants in the role '" + role->name + "'");
         for (const std::string& member : given.members)
@@ -143,7 +144,7 @@ private:
     {
         for (const Role& role : type.schema.roles())
             if (role.min > 0 && std::none_of(c.roles.begin(), c.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; }))
-                refuse(c.id, "has nobody in the role '" + role.name + "'");
+                refuse(c.id, "has no participant in the role '" + role.name + "'");
     }
 
     const model::SceneSpec& scene_;

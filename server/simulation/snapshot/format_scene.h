@@ -1,7 +1,8 @@
-/// The part of a snapshot file that is its scene: a SceneSpec as sections, exactly as it is in memory.
+/// The part of a snapshot file that holds its scene: a SceneSpec as sections, exactly as it is in memory.
 ///
-/// Not as a blueprint: that would say what the scene means, but a swap or a reset later depends on how it was said, too (a
-/// stage list that selects, against all that a type can do; a part that nobody wrote).
+/// It is not stored as a blueprint, because a blueprint keeps only the meaning of a scene. A later swap or reset also depends on how the
+/// scene was written: whether a list of commands was selected explicitly or is simply all that the type can do, and which parts were
+/// generated.
 #pragma once
 
 #include <string>
@@ -19,10 +20,10 @@ std::vector<Section> write_scene(const std::string& prefix, const model::SceneSp
 
 Result<model::SceneSpec> read_scene(const std::string& prefix, const std::vector<Section>& sections);
 
-/// Whether a world can be made from a scene that came from outside: types, values, roles and parents fit together.
+/// Checks whether a world can be made from a scene of external origin: types, values, roles and parents must fit together.
 Errors check_scene(const model::SceneSpec& scene, model::TypeSource& types);
 
-/// The section of that name; an empty one if there is none.
+/// The section of that name; an empty one if it does not exist.
 const Section& find_section(const std::vector<Section>& sections, const std::string& name);
 
 }  // namespace plab::simulation

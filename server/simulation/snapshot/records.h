@@ -1,5 +1,5 @@
-/// What stands in the rows of a snapshot file's sections, and their columns, each named once for writing and reading.
-/// Components are named by their row in the section "components".
+/// The records in the rows of a snapshot file's sections, and their columns. Each column is named once, for writing and for reading.
+/// Components are referred to by their row in the section "components".
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@ void columns(ClockImage& c, V visit)
     visit("last_tick", c.last_tick), visit("last_start", c.last_start), visit("last_step", c.last_step);
 }
 
-/// What belongs to the run as a whole, beside its clock.
-struct Run
+/// Values of the run as a whole, apart from its clock.
+struct RunRow
 {
     std::string build;
     std::uint64_t run = 0, revision = 0, state_hash = 0, next_contact = 1;
@@ -31,7 +31,7 @@ struct Run
     bool reported_stiff = false, loaded_is_scene = false;
 };
 template <class V>
-void columns(Run& r, V visit)
+void columns(RunRow& r, V visit)
 {
     visit("build", r.build), visit("run", r.run), visit("revision", r.revision), visit("state_hash", r.state_hash);
     visit("next_contact", r.next_contact), visit("departed_work", r.departed_work), visit("requests_work", r.requests_work);
@@ -67,7 +67,7 @@ void columns(model::ComponentSpec& c, V visit)
     visit("file", c.where.file), visit("line", c.where.line), visit("column", c.where.column);
 }
 
-/// A text that belongs to a row of another section: a group's member, a command, a role's member.
+/// A text that belongs to a row of another section: a member of a group, a command, a member of a role.
 struct Item
 {
     std::uint32_t of = 0;
@@ -103,7 +103,7 @@ void columns(GivenRole& r, V visit)
     visit("component", r.component), visit("name", r.name), visit("everyone", r.everyone);
 }
 
-/// What lives with a component, whatever its type.
+/// Values that every component has, whatever its type.
 struct Life
 {
     bool quarantined = false, contradictory = false, passive = false;
@@ -212,14 +212,14 @@ void columns(ForceContact& c, V visit)
     visit("asked", c.asked), visit("slack", c.slack), visit("told", c.reported), visit("dormant", c.dormant);
 }
 
-/// The watch for energy that comes from nowhere, but what it keeps by component, body and shaft.
+/// The divergence watch, without what it keeps by component, body and shaft.
 struct Watch
 {
     bool counting = false, reported = false, sealed = false;
     double start_energy = 0, last_kinetic = 0, start_other_work = 0;
     Tick gaining_since = -1;
     std::int64_t gaining_steps = 0;
-    bool knows_bodies = false, knows_shafts = false, knows_work = false, knows_missed = false;  ///< whether those lists were made
+    bool knows_bodies = false, knows_shafts = false, knows_work = false, knows_missed = false;  ///< whether those lists exist
 };
 template <class V>
 void columns(Watch& w, V visit)
@@ -252,7 +252,7 @@ void columns(Note& n, V visit)
 
 // From records to sections and back. ----------------------------------------------------------------------------------------
 
-/// How a member stands in a column.
+/// Conversion between a member and an element of a column.
 template <class T>
 struct Stored
 {
@@ -292,7 +292,7 @@ struct Stored<Motion>
         return at != std::end(kWords);
     }
 };
-/// A body; by host row in memory, by component in the file: whoever writes and reads translates.
+/// A body: a host row in memory, a component row in the file. The callers translate.
 template <>
 struct Stored<Ref>
 {
@@ -320,7 +320,7 @@ Section section_of(std::string name, std::vector<T>& rows)
     return out;
 }
 
-/// The rows of a section. A column that is missing leaves its default; one that is unknown, or of another type, is refused.
+/// Reads the rows of a section. A column that is missing leaves its default; one that is unknown or of another type is refused.
 template <class T>
 Result<std::vector<T>> rows_of(const Section& section)
 {

@@ -2,16 +2,15 @@
 #include <algorithm>
 #include <tuple>
 
-#include "simulation/simulation.h"
 #include "simulation/snapshot/compare.h"
-#include "simulation/snapshot/history.h"
+#include "simulation/snapshot/snapshot.h"
 
 namespace plab::simulation
 {
 namespace
 {
 
-/// Pairs under their new indices. Those whose detector or bodies are not there are left out.
+/// Rebuilds the pairs with their new indices. Pairs whose detector or bodies do not exist any more are left out.
 template <class Pair, class List>
 std::vector<Pair> put_together(const List& list, const world::Renumbering& now)
 {
@@ -30,7 +29,7 @@ std::vector<Pair> put_together(const List& list, const world::Renumbering& now)
     return out;
 }
 
-/// `old` in the order of new indices; `now(i)` is the new index of old i.
+/// `old` in the order of the new indices; `now(i)` is the new index of old index i.
 template <class T, class Now>
 std::vector<T> rearranged(const std::vector<T>& old, std::size_t size, Now now)
 {
@@ -57,8 +56,8 @@ DivergenceMemory rearranged(const DivergenceMemory& old, const world::Renumberin
     return out;
 }
 
-/// Whether the states of all types are those that the snapshot knows: else a state that came to a type since has its default,
-/// and no hash can be as it was.
+/// Whether the snapshot knows exactly the state fields of all present types. If a type has gained a state field since, that field has its
+/// default value and the hash cannot match, so it is not checked.
 bool knows_all_states(const world::Image& image, const world::World& world)
 {
     const auto states = [](const world::Layout& layout)
@@ -93,12 +92,12 @@ void restore_contacts(const ContactsImage& image, const world::Renumbering& now,
     std::sort(cache.force_pairs().begin(), cache.force_pairs().end(), before);
 }
 
-Result<Simulation::Live> Simulation::revive(const SnapshotContent& from) const
+Result<LiveScene> revive(const RunContext& context, const SnapshotContent& from)
 {
-    Live live;
-    live.world = std::make_unique<world::World>(*types_);
+    LiveScene live;
+    live.world = std::make_unique<world::World>(*context.types);
     if (auto done = live.world->revive(from.world); !done) return done.errors();
-    live.stepper = std::make_unique<Stepper>(*live.world, threads_);
+    live.stepper = std::make_unique<Stepper>(*live.world, context.threads);
     Stepper& stepper = *live.stepper;
     if (auto built = stepper.rebuild(); !built) return built.errors();
     live.world->load_host(from.world);
@@ -118,34 +117,21 @@ Result<Simulation::Live> Simulation::revive(const SnapshotContent& from) const
     stepper.continue_after(from.clock.last_tick, from.clock.last_start, from.clock.last_step);
     if (stepper.state_hash() == from.state_hash || !knows_all_states(from.world, *live.world)) return live;
 
-    std::string where = "no component shows where; a file of another version of plabd may have made its hash another way";
+    std::string where = "no component differs; the version of plabd that wrote the file may compute the hash in another way";
     const ContactsImage contacts = image_of(stepper.contacts());
     if (const auto difference = compare_worlds(from.world, from.contacts, live.world->image(), contacts)) where = difference->text();
-    return reason("the restored state is not the one that was captured: " + where);
+    return reason("the restored state differs from the captured one: " + where);
 }
 
-void Simulation::continue_from(const SnapshotContent& from)
+void continue_from(Run& run, const SnapshotContent& from)
 {
-    const ClockImage& clock = from.clock;
-    tick_ = clock.tick, dt_ = clock.dt, base_tick_ = clock.base_tick, base_time_ = clock.base_time;
-    paused_ = clock.paused, steps_left_ = clock.steps_left, rate_ = clock.rate;
-    kinetic_at_start_ = from.ledger.kinetic_at_start;
-    watch_->recall(rearranged(from.watch, world::Renumbering(from.world, *world_), *world_));
-    // Whoever waited then goes on waiting. The others posted to a run that is over.
-    std::erase_if(requests_,
-                  [&](const Waiting& w) { return std::find(from.waiting.begin(), from.waiting.end(), w.request) != from.waiting.end(); });
-    for (const auto& request : from.waiting) requests_.push_back({request, run_});
-}
-
-Result<void> Simulation::restore(const Snapshot& snapshot)
-{
-    if (!snapshot) return reason("there is no snapshot to restore");
-    auto live = revive(*snapshot);
-    if (!live) return live.errors();
-    begin_run(live.take(), snapshot->loaded);
-    continue_from(*snapshot);
-    history_->begin(*this);
-    return {};
+    run.clock = from.clock;
+    run.kinetic_at_start = from.ledger.kinetic_at_start;
+    run.watch->recall(rearranged(from.watch, world::Renumbering(from.world, run.world()), run.world()));
+    // Requests that were waiting at the capture wait again. All others belong to a run that has ended.
+    std::erase_if(run.waiting, [&](const WaitingRequest& w)
+                  { return std::find(from.waiting.begin(), from.waiting.end(), w.request) != from.waiting.end(); });
+    for (const auto& request : from.waiting) run.waiting.push_back({request, run.number});
 }
 
 }  // namespace plab::simulation

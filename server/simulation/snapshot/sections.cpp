@@ -19,7 +19,7 @@ constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ull;
 constexpr std::size_t kPreamble = 8 + 4 + 8;  // magic, version, length
 constexpr std::size_t kEnding = 8;            // hash
 
-/// The type of a value by the name of its column type; "none" has no column.
+/// The column type of a value, by name; "none" has no column.
 std::string_view type_name(const Value& value)
 {
     constexpr std::string_view kNames[] = {"none",   "boolean", "integer", "real",     "vector", "rotation",
@@ -76,7 +76,7 @@ public:
             },
             value);
     }
-    /// Room for a length that is known later.
+    /// Reserves space for a length that is known later.
     std::size_t reserve_length()
     {
         raw(std::uint64_t{0});
@@ -99,7 +99,7 @@ private:
     }
 };
 
-/// Reads while there is something to read; afterwards everything is empty and fine() is false.
+/// Reads until the data ends; from then on all values are empty and fine() is false.
 class Reader
 {
 public:
@@ -116,7 +116,7 @@ public:
         std::memcpy(&v, bytes_.data() + at_ - sizeof v, sizeof v);
         return v;
     }
-    /// A number of elements that take at least `least` bytes each.
+    /// Reads a number of elements that take at least `least` bytes each.
     std::size_t count(std::size_t least)
     {
         const std::size_t n = raw<std::uint32_t>();
@@ -210,7 +210,7 @@ private:
     bool fine_ = true;
 };
 
-/// Bytes that one element takes at least.
+/// The minimum number of bytes of one element.
 template <class T>
 constexpr std::size_t kLeast = sizeof(std::uint32_t);
 template <>
@@ -270,7 +270,7 @@ Result<Section> read_section(Reader& in)
                           std::to_string(out.rows) + " elements of type '" + type + "'");
         out.columns.push_back(std::move(column));
     }
-    if (!in.fine()) return reason("the snapshot's section '" + out.name + "' is cut");
+    if (!in.fine()) return reason("the snapshot's section '" + out.name + "' is truncated");
     return out;
 }
 
@@ -315,9 +315,9 @@ Result<SectionFile> read_sections(std::span<const std::uint8_t> bytes, std::uint
     const std::size_t compared = std::min(bytes.size(), kSnapshotMagic.size());
     if (!std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(compared), kSnapshotMagic.begin(),
                     [](std::uint8_t a, char b) { return a == static_cast<std::uint8_t>(b); }))
-        return reason("this is no snapshot of pLab: it does not begin with '" + std::string(kSnapshotMagic) + "'");
+        return reason("this is not a pLab snapshot: it does not begin with '" + std::string(kSnapshotMagic) + "'");
     if (bytes.size() < kPreamble + kEnding)
-        return reason("the snapshot is cut: " + std::to_string(bytes.size()) + " bytes are no whole one");
+        return reason("the snapshot is truncated: it has only " + std::to_string(bytes.size()) + " bytes");
     SectionFile out;
     Reader front(bytes.subspan(kSnapshotMagic.size()));
     out.version = front.raw<std::uint32_t>();
@@ -328,7 +328,7 @@ Result<SectionFile> read_sections(std::span<const std::uint8_t> bytes, std::uint
         return reason("the snapshot should have " + std::to_string(length) + " bytes, but has " + std::to_string(bytes.size()));
     const auto body = bytes.first(bytes.size() - kEnding);
     if (Reader(bytes.last(kEnding)).raw<std::uint64_t>() != world::hash_bytes(kHashStart, body))
-        return reason("the snapshot is damaged: its check sum does not fit");
+        return reason("the snapshot is damaged: its checksum does not match");
     Reader in(body.subspan(kPreamble));
     while (in.left() > 0)
     {

@@ -1,5 +1,5 @@
-/// Tables of named, typed columns as bytes: what a snapshot file is made of. Little-endian, checked at every read; what the
-/// columns mean is format.h's.
+/// Tables of named, typed columns as bytes, which make up a snapshot file. Little-endian, with checks at every read; the meaning of the
+/// columns is defined in format.h.
 ///
 ///   file      "pLabSnap"  u32 version  u64 length of the file  section...  u64 hash of all before
 ///   section   text name  u32 rows  u32 columns  column...
@@ -28,7 +28,7 @@
 namespace plab::simulation
 {
 
-/// One element per row. The alternatives stand in the order of kColumnTypes.
+/// One element per row. The alternatives are in the order of kColumnTypes.
 using ColumnData = std::variant<std::vector<bool>, std::vector<std::uint32_t>, std::vector<std::int64_t>, std::vector<double>,
                                 std::vector<Vec3>, std::vector<Quat>, std::vector<Mat3>, std::vector<std::string>, std::vector<Reals>,
                                 std::vector<Integers>, std::vector<Entries>, std::vector<Value>>;
@@ -65,8 +65,8 @@ struct SectionFile
     std::uint32_t version = 0;
     std::vector<Section> sections;
 };
-/// Any bytes: what is cut, changed or of a version above `newest` is refused with the reason; nothing is allocated that the
-/// length of `bytes` does not pay for.
+/// Accepts any bytes: data that is truncated, modified or of a version above `newest` is refused with the reason. No memory is allocated
+/// beyond what the length of `bytes` justifies.
 Result<SectionFile> read_sections(std::span<const std::uint8_t> bytes, std::uint32_t newest);
 
 }  // namespace plab::simulation

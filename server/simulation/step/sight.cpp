@@ -17,14 +17,14 @@ Vec3 color_of(const world::World& world, std::uint32_t component, const Vec3& ot
     return color ? *color : otherwise;
 }
 
-/// A stage list may leave Shape/Draw out: then the shape collides and weighs, and is not seen.
+/// A stage list may leave out Shape/Draw: then the shape collides and has mass, but is invisible.
 bool draws(const world::World& world, const world::Component& shape)
 {
     const int command = world.table_of(world.find(shape.id)).type().find_command("Shape/Draw");
     return command >= 0 && (shape.commands >> command & 1u) != 0;
 }
 
-/// Components that act: neither objects nor shapes, nor the solvers and cameras that serve them.
+/// Whether a component is an algorithm: neither an object nor a shape, and not a solver or camera.
 bool is_algorithm(const world::World& world, std::uint32_t i)
 {
     const world::Component& c = world.component(i);
@@ -62,7 +62,7 @@ void SightBuilder::learn_shaft(const world::World& world, const world::Component
 {
     const Shafts& shafts = world.host().shafts;
     if (!shafts.shapes[component.host_index].empty()) return add_shapes(world, component, shafts.shapes[component.host_index], color);
-    // Nothing says how large it is: a thin axle, thicker with its inertia.
+    // It has no shape that gives its size: draw a thin axle, thicker with larger inertia.
     const double inertia = shafts.motion[component.host_index] == Motion::Dynamic ? shafts.inertia[component.host_index] : 0.001;
     Thing thing;
     thing.facet = Facet::Shaft, thing.index = component.host_index;

@@ -1,4 +1,4 @@
-/// What can be seen of a world, for components that draw (Phase::Draw).
+/// The visible parts of a world, for components that draw (Phase::Draw).
 #pragma once
 
 #include <vector>
@@ -9,13 +9,13 @@
 namespace plab::simulation
 {
 
-/// Shapes that draw (Shape/Draw is among their commands), posed as their bodies and shafts are now.
+/// Collects the visible shapes (those with the command Shape/Draw), with the present poses of their bodies and shafts.
 class SightBuilder
 {
 public:
-    /// Names, colours and geometry are looked up anew before the next picture.
+    /// Names, colours and geometry are looked up again before the next picture.
     void structure_changed() { known_ = false, ++revision_; }
-    /// Valid until the next call.
+    /// The present view of the world; valid until the next call.
     Sight look(const world::World& world);
 
 private:
@@ -38,7 +38,7 @@ private:
     std::vector<std::string> algorithms_;
 };
 
-/// Pose of a shaft's own frame: its axle, turned by its angle.
+/// Pose of a shaft's own frame in W: its axle frame rotated by its angle.
 Pose pose_of_shaft(const Shafts& shafts, std::uint32_t shaft);
 
 }  // namespace plab::simulation

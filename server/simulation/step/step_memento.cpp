@@ -27,7 +27,7 @@ void StepMemento::restore(world::World& world, Stepper& stepper) const
     ByteReader cells(cells_.bytes());
     world.load_fields(kChanging, cells);
     motion_.restore(world.host());
-    (void)stepper.rebuild();  // what fitted together at the start of the step does so still
+    (void)stepper.rebuild();  // cannot fail: the same structure was built at the start of the step
     motion_.restore(world.host());
     stepper.contacts() = contacts_;
     stepper.work() = work_, stepper.contact_energy() = contact_energy_;

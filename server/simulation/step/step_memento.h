@@ -1,4 +1,4 @@
-/// Where a step began, to go back there when it is given up half way.
+/// The state at the start of a step, to be restored if the step is aborted.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 namespace plab::simulation
 {
 
-/// Everything that the phases of a step may change, bit for bit; keeps its memory, so that taking one is a copy of arrays. What only
-/// scripts and requests change (parameters, structure) is not in it.
+/// Everything that the phases of a step may change, bit for bit. It keeps its memory, so that saving is a copy of arrays. Parameters and
+/// structure, which only scripts and requests change, are not included.
 class StepMemento
 {
 public:
     void save(const world::World& world, const Stepper& stepper);
-    /// The stepper is built anew: what a step that was broken off left in its working memory is of no use.
+    /// Also rebuilds the stepper, because an aborted step leaves its working memory in an undefined state.
     void restore(world::World& world, Stepper& stepper) const;
 
 private:

@@ -5,7 +5,7 @@
 namespace plab::simulation
 {
 
-/// Calls the block's command for its rows: together, or one by one where each is measured.
+/// Calls the block's command for all of its rows together, or for one row at a time if the cost of each is measured.
 void Stepper::run_block(const Block& block, StepContext& context, PhaseCall& call)
 {
     world::Table& table = *step_.world.tables()[block.table];
@@ -26,7 +26,7 @@ void Stepper::run_block(const Block& block, StepContext& context, PhaseCall& cal
     }
 }
 
-/// `context` and `call` have what this phase gets beside the world's tables.
+/// Runs all blocks of a phase. `context` and `call` hold what this phase gets in addition to the world's tables.
 void Stepper::run_blocks(Phase phase, StepContext& context, PhaseCall& call)
 {
     context.seed = step_.frame.seed, context.events = &step_;

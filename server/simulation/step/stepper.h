@@ -1,10 +1,10 @@
-/// One step of a world: the nodes of step_tree.h, with rewinding to events inside the step.
+/// Makes one step of a world: runs the nodes of step_tree.h, including rewinds to events inside the step.
 ///
-/// The stepper puts the rooms of the step together and runs them in order; what each does is theirs:
-///   motion          how groups move, and go back
-///   contacts        which contacts there are, and who holds those that stand
-///   contact_forces  contacts that are forces
-///   advance         all of that over a part of a step
+/// The stepper owns the modules of the step and calls them in order:
+///   motion          advances groups by their solvers, and rewinds them
+///   contacts        known contacts, and the solution of persistent ones
+///   contact_forces  force contacts (springs)
+///   advance         combines the above over a part of a step
 ///   events          impacts inside a step
 #pragma once
 
@@ -23,25 +23,25 @@ class Stepper
 public:
     Stepper(world::World& world, int threads);
 
-    /// From the next rebuild on only these components take part (by directory index); null: all. Must outlive this.
+    /// From the next rebuild on only the flagged components take part (by directory index); null: all. Must outlive this object.
     void restrict_to(const std::vector<std::uint8_t>* components) { takes_part_ = components; }
     /// To be called after any structural change and after changes of parameters: schedule, groups, constraint graph,
     /// materials. On error (a contradictory graph) the world must be put back and rebuilt.
     Result<void> rebuild();
-    /// Who may give a step up, and whom it tells how far it is; null: nobody. They must outlive this.
+    /// `interruption` may abort a step, `progress` receives how far a step has got; null: none. Both must outlive this object.
     void obey(const Interruption* interruption, Progress* progress) { interruption_ = interruption, progress_ = progress; }
-    /// Steps from tick to tick + 1, through the nodes of the step tree (step_tree.cpp). Times in s.
+    /// Steps from tick to tick + 1 by running the nodes of the step tree (step_tree.cpp). Times in s.
     void step(Tick tick, double start_time, double dt);
 
-    /// The last step was given up: the world is anywhere within it, and has to be put back.
+    /// The last step was aborted: the world is in an intermediate state and has to be restored.
     bool gave_up() const { return interruption_ && interruption_->heeded(); }
 
-    // The step that was made last -------------------------------------------------------------------------------------
+    // The last step ---------------------------------------------------------------------------------------------------
     const std::vector<Event>& events() const { return step_.events; }
     void emit(Event event) { step_.emit(std::move(event)); }
     const StepReport& report() const { return step_.report; }
     const CostMeter& meter() const { return step_.meter; }
-    /// Its time and length: what a swap at the boundary after it takes forces from.
+    /// Its time and length: a swap at the boundary after it needs them to convert impulses to forces.
     const StepFrame& frame() const { return step_.frame; }
     void continue_after(Tick tick, double start_time, double step)
     {
@@ -67,28 +67,28 @@ public:
     const std::vector<ContactEnergy>& contact_energy() const { return step_.contact_energy; }
     std::vector<double>& work() { return step_.work; }  ///< J by component, since the run began
     const std::vector<double>& work() const { return step_.work; }
-    /// A component is about to be removed: its work stays in the ledger, whoever gets its place starts with none.
+    /// To be called before a component is removed: its work stays in the ledger, and the next component with its index starts with none.
     void retire(std::uint32_t component);
-    /// J, by components that were removed since.
+    /// J, work of components that have been removed.
     double& departed_work() { return departed_work_; }
     double departed_work() const { return departed_work_; }
-    /// J, by requests: what a set, push or swap changed at once.
+    /// J, work of requests: energy that a set, push or swap changed at once.
     double& requests_work() { return requests_work_; }
     double requests_work() const { return requests_work_; }
     CostBook& cost() { return cost_; }
     const CostBook& cost() const { return cost_; }
 
-    // What a snapshot keeps beside the world --------------------------------------------------------------------------
-    /// Who shares systems with whom shows in the last digits of the ledger.
+    // State that a snapshot keeps in addition to the world ------------------------------------------------------------
+    /// See BatchedAdvance::split().
     const std::vector<std::uint32_t>& split() const { return advance_.batches().split(); }
     void continue_split(const std::vector<std::uint32_t>& split) { advance_.batches().continue_split(split); }
     Reported& reported() { return step_.reported; }
     const Reported& reported() const { return step_.reported; }
 
-    /// Where parameter changes of scripts go at the end of the drive phase.
+    /// Receives the parameter changes of scripts at the end of the drive phase.
     using ApplyChanges = void (*)(void* owner, std::vector<ParameterChange>& changes);
     void on_changes(ApplyChanges apply, void* owner) { apply_changes_ = apply, changes_owner_ = owner; }
-    /// Where cameras in the scene send their pictures; null: nowhere, and they do not draw.
+    /// Receives the pictures of the scene's cameras; null: the cameras do not draw.
     void draw_for(ImageSink* images) { images_ = images; }
 
     // The nodes of the step tree ---------------------------------------------------------------------------------------
@@ -114,6 +114,8 @@ private:
     void connect_graph(Errors& errors);
     Errors run_connect(const Block& block, PhaseCall call);
     void rebuild_costs();
+
+    // stepper.cpp
     void collect_cost();
     void run_blocks(Phase phase, StepContext& context, PhaseCall& call);
     void run_block(const Block& block, StepContext& context, PhaseCall& call);
@@ -124,7 +126,7 @@ private:
     HardContacts hard_{step_, motion_, book_};
     ContactForces forces_{step_, motion_, book_, hard_};
     Advance advance_;
-    std::optional<EventLocator> locator_;  ///< of the present structure; made when something may meet
+    std::optional<EventLocator> locator_;  ///< made when it is needed first; reset when the structure changes
     ShaftSystem speed_system_;
     CouplingWatch coupling_watch_;
     SightBuilder sight_;

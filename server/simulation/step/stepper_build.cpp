@@ -1,4 +1,4 @@
-// What a stepper derives from a world's structure: schedule, groups, constraint graph, materials.
+// Derives from a world's structure: schedule, groups, constraint graph and materials.
 #include <algorithm>
 #include <numeric>
 
@@ -17,7 +17,7 @@ std::vector<std::uint32_t> ranks_of_shafts(const world::World& world)
     return ranks;
 }
 
-/// One-way couplings: those that read `driver` and own `driven`. They join nothing but must not close a circle.
+/// Adds one-way couplings, which read `driver` and write `driven`. They do not join shafts to one group, but must not form a cycle.
 void add_drives(const world::World& world, const Schedule& schedule, ConstraintGraph& graph)
 {
     for (const Block& block : schedule.of(Phase::Couple))

@@ -27,7 +27,7 @@ Totals totals_of(world::World& world, const Stepper& stepper, double time, Tick 
             t.kinetic += host.shafts.kinetic_energy(c.host_index);
             t.shaft_momentum += host.shafts.inertia[c.host_index] * host.shafts.speed[c.host_index];
         }
-        // Whoever came within a transaction has no account before the stepper is rebuilt, and has done nothing.
+        // A component that was added within a transaction has no account until the stepper is rebuilt, and has done no work.
         if (i < stepper.work().size()) t.work += stepper.work()[i];
     }
     t.stored = stored_energy_of(world, stepper, time, tick);

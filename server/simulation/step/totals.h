@@ -1,4 +1,4 @@
-/// Mechanical totals of a world at one time.
+/// Mechanical totals of a world at one time: energy, work and momenta.
 #pragma once
 
 #include "simulation/step/stepper.h"
@@ -9,20 +9,20 @@ namespace plab::simulation
 struct Totals
 {
     double kinetic = 0;         ///< J
-    double stored = 0;          ///< J, of components that say so (Phase::Potential)
-    double work = 0;            ///< J, done by all interactions since the run began
+    double stored = 0;          ///< J, potential energy that components report (Phase::Potential)
+    double work = 0;            ///< J, work of all interactions since the run began
     Vec3 momentum;              ///< N s, of dynamic bodies
     Vec3 angular_momentum;      ///< N m s about the origin of W, of dynamic bodies
     double shaft_momentum = 0;  ///< N m s, sum over shafts about their own axles
 };
 
-/// Of whatever takes part in the stepper's schedule; `time` in s. Changes nothing in the world: commands are handed what they could write
-/// to.
+/// Totals over all components in the stepper's schedule; `time` in s. Does not change the world, although the commands are called with
+/// tables that they could write to.
 Totals totals_of(world::World& world, const Stepper& stepper, double time, Tick tick);
-/// J, of components that say so (Phase::Potential).
+/// J, potential energy that components report (Phase::Potential).
 double stored_energy_of(world::World& world, const Stepper& stepper, double time, Tick tick);
-/// J: sum of 1/2 m v^2 of dynamic bodies that move by 0.03 of their radius in h (s), of shafts that turn by 0.03 rad:
-/// energies below it are no motion that shows.
+/// J: the kinetic energy if every dynamic body moved by 0.03 of its radius in h (s) and every shaft turned by 0.03 rad. Energies below this
+/// correspond to motion that is too small to be seen.
 double least_energy(const world::HostTables& host, std::span<const double> radius_of_body, double h);
 
 }  // namespace plab::simulation

@@ -11,8 +11,8 @@ namespace plab::simulation
 namespace
 {
 
-/// What has died away is 0: arithmetic with denormal numbers costs a hundredfold, and squares of speeds are the first to become
-/// such. Far too small for products with steps and masses to be lost.
+/// Flushes tiny speeds to 0: arithmetic with denormal numbers is about a hundred times slower, and squares of speeds are the first to
+/// become denormal. The threshold is far below anything that products with step and mass could make significant.
 double without_traces(double speed) { return std::fabs(speed) < 1e-150 ? 0.0 : speed; }
 Vec3 without_traces(const Vec3& v) { return {without_traces(v.x), without_traces(v.y), without_traces(v.z)}; }
 
@@ -106,7 +106,7 @@ void GroupSystem::filter_forces()
 
 void GroupSystem::make_shortlists(Selected& selected)
 {
-    constexpr std::size_t kLong = 16;  // shorter lists are quickly walked
+    constexpr std::size_t kLong = 16;  // for shorter lists a shortlist does not pay
     activate();
     selected.shortlists.clear();
     const world::Table& table = *frame_.world->tables()[selected.block->table];
@@ -252,7 +252,8 @@ void GroupSystem::run_forces(double weight)
     if (booked) extra_->book(context_, *book_.work, scratch.power, book_.sign * weight * context_.dt);
 }
 
-/// Forces have no failures but events. The trial evaluations of a solver that judges are many and short: one of so many is timed.
+/// Forces report problems as events, not as errors. Solvers with error control make many short trial evaluations, so only one of kOneOf
+/// is timed.
 void GroupSystem::run_force(const Selected& s, PhaseCall& call, bool booked)
 {
     constexpr std::uint64_t kOneOf = 8;
@@ -310,7 +311,7 @@ void GroupSystem::rates_of_shafts(double weight)
     if (roots_.empty()) return;
     world::HostTables& host = frame_.world->host();
     shaft_system_.solve_accelerations(context_, scratch_->wrenches.shaft_torque);
-    // Shadows' couplings were booked with their own group's advance.
+    // Couplings of observed groups are booked when their own group is advanced.
     if (book_.work && weight != 0 && !has_observed_) shaft_system_.account(*book_.work, book_.sign * weight * context_.dt);
     const std::size_t base = 6 * bodies_.size();
     for (std::size_t i = 0; i < roots_.size(); ++i)
@@ -331,7 +332,7 @@ void GroupSystem::evaluate(double t, double weight)
 {
     if (frame_.give_up())
     {
-        // No rates: whatever the solver does with them ends soon.
+        // Zero rates; the solver is about to stop anyway.
         std::fill(coordinate_rates_.begin(), coordinate_rates_.end(), 0.0);
         std::fill(speed_rates_.begin(), speed_rates_.end(), 0.0);
         return;
@@ -343,7 +344,7 @@ void GroupSystem::evaluate(double t, double weight)
     if (rows_ && !rows_held_)
     {
         const CostScope scope(scratch_->meter(), scratch_->rows_ns);
-        (void)rows_->react(context_, scratch_->wrenches);  // what is not finite is seen when the advance is over
+        (void)rows_->react(context_, scratch_->wrenches);  // non-finite results are detected at the end of the advance
         if (book_.work && weight != 0) rows_->account(row_book(), weight * context_.dt);
     }
     rates_of_bodies();
@@ -366,7 +367,7 @@ void GroupSystem::evaluate_here()
     for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] += 0.5 * context_.dt * speed_rates_[i];
     evaluate(0, 1);
     std::copy(before.begin(), before.end(), speeds_.begin());
-    evaluate(0, 0);  // booked or not, the kick is made with the same bits
+    evaluate(0, 0);  // booked or not, so that the kick has the same bits in both cases
 }
 
 void GroupSystem::evaluate_kinematics()

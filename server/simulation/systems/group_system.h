@@ -1,8 +1,8 @@
-/// The equations of motion of some groups, as a solver sees them, over the world's host tables.
+/// The equations of motion of some groups in the form that a solver sees, evaluated on the world's host tables.
 ///
-/// Coordinates start at zero at the beginning of an advance and are mapped onto the tables at every evaluation
-/// (sdk/plab/dynamics.h), so that forces always read poses and velocities of the stage. Prescribed members follow their
-/// closed form from the start of the step, whatever pieces the step is cut into.
+/// Coordinates start at zero at the beginning of an advance and are mapped onto the tables at every evaluation (sdk/plab/dynamics.h), so
+/// forces always read the poses and velocities of the solver's stage. Prescribed members follow their closed-form motion from the start
+/// of the step, however the step is divided.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 namespace plab::simulation
 {
 
-/// What a step shares with all of its parts; owned by StepState (motion/step_state.h).
+/// Data that a step shares with all of its parts; owned by StepState (motion/step_state.h).
 struct StepFrame
 {
     world::World* world = nullptr;
@@ -30,13 +30,13 @@ struct StepFrame
     double step = 0;                              ///< s
     Tick tick = 0;
     std::uint64_t seed = 0;
-    const Interruption* interruption = nullptr;  ///< null: nobody can give the step up
-    Progress* progress = nullptr;                ///< for whoever watches a long step; null: nobody does
+    const Interruption* interruption = nullptr;  ///< null: the step cannot be interrupted
+    Progress* progress = nullptr;                ///< for displaying a long step; null: none
     std::vector<std::uint8_t>* reported_contradictory =
-        nullptr;  ///< by component: joints that an event told of; each system writes its own
+        nullptr;  ///< by component: joints that an event has reported; each system writes its own
 
-    /// A safe point, and a piece of work that is counted: an event looked at, a part of a contact's forces, an evaluation. True: the
-    /// step is given up, leave off.
+    /// A safe point for interruption, and the counter of work: one event candidate, one part of a contact's forces, one evaluation.
+    /// Returns true if the step is interrupted and the caller has to return.
     bool give_up() const
     {
         if (progress) progress->count();
@@ -44,30 +44,31 @@ struct StepFrame
     }
 };
 
-/// Where the work of force components goes while an advance is booked.
+/// Where the work of force components is booked during an advance.
 struct WorkBook
 {
-    std::vector<double>* work = nullptr;  ///< J by component; null: a trial
-    double sign = 1;                      ///< -1 takes back what a rewound piece had booked
+    std::vector<double>* work = nullptr;  ///< J by component; null: a trial, which is not booked
+    double sign = 1;                      ///< -1 cancels the booking of a part of the step that was rewound
 };
 
-/// Whether pose and velocities are numbers still.
+/// Whether pose and velocities are finite.
 bool is_finite(const Bodies& bodies, std::uint32_t b);
 bool is_finite(const Shafts& shafts, std::uint32_t s);
 bool is_finite(const Quantities& quantities, std::uint32_t q);
 
-/// Forces that no component of the schedule adds by itself: contacts that are forces.
+/// Forces that are not added by a component of the schedule: force-based contacts.
 class ExtraForces
 {
 public:
     virtual ~ExtraForces() = default;
-    /// At every solver stage, with the host tables at the stage's state.
+    /// Called at every solver stage, with the host tables at the state of the stage.
     virtual void add(const StepContext& context, Wrenches& wrenches) = 0;
-    /// After add, where the stage is booked: takes what add left in `power` (W by component) times `share` (s) into `work`.
+    /// Called after add() where the stage is booked: adds `share` (s) times the `power` (W by component) that add() left to `work`, and
+    /// clears it.
     virtual void book(const StepContext& context, std::vector<double>& work, std::vector<double>& power, double share) = 0;
     /// See DynamicSystem.
     virtual bool is_undersampled() const { return false; }
-    /// Joins the groups that move together because of them.
+    /// Joins the groups that these forces couple.
     virtual void join(DisjointSets& /*groups*/) const {}
 };
 
@@ -78,23 +79,24 @@ public:
     GroupSystem(const GroupSystem&) = delete;
     GroupSystem& operator=(const GroupSystem&) = delete;
 
-    /// Takes the groups as members, and `shadows`: groups whose state the members' forces read, and that are advanced
-    /// along for that reason only; their work is not booked. Keeps its memory from use to use.
+    /// Selects the groups that are members, and the `observed` groups: their state is read by forces of members, so they are advanced
+    /// along, but their work is not booked. Memory is kept between calls.
     void configure(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed = {});
-    /// The present step's frame, after configure(): the world's structure must be the same.
+    /// Sets the present step's frame after configure(); the structure of the world must be unchanged.
     void set_frame(const StepFrame& frame) { frame_ = frame; }
-    /// Null: none. Who sets some takes them away when the advance is over.
+    /// Null: none. A caller that sets forces has to remove them after the advance.
     void set_extra_forces(ExtraForces* forces) { extra_ = forces; }
-    /// Starts an advance from `from` to `to` (s since the start of the step) at the tables' present state.
+    /// Starts an advance from `from` to `to` (s since the start of the step) at the present state of the tables.
     void begin(double from, double to, WorkBook book, EventSink* events);
-    /// Puts the solver's result into the tables. False if something is not finite any more.
+    /// Writes the solver's result into the tables. Returns false if a value is not finite.
     bool finish();
     bool all_finite() const;
-    /// Forces and rates at the present state, for contact steps. Their work over the kick that follows is booked with the
-    /// mean of the speeds before and after it, which for constant forces is what they do.
+    /// Evaluates forces and rates at the present state, for contact steps (kick, then move). The work during the following kick is booked
+    /// with the mean of the speeds before and after it, which is exact for constant forces.
     void evaluate_here();
 
-    /// For contact steps, after evaluate_here: shafts by the mean of old and new speeds, prescribed members to the end.
+    /// For contact steps, after evaluate_here(): moves shafts by the mean of old and new speeds, and prescribed members to the
+    /// end.
     void move_shafts(double h, Shafts& shafts);
     void move_prescribed() { scatter_prescribed(from_ + context_.dt); }
 
@@ -104,27 +106,27 @@ public:
     std::span<const std::uint32_t> roots() const { return roots_; }
     std::span<const std::uint32_t> quantities() const { return quantities_; }
     const StepContext& context() const { return context_; }
-    /// Of a member body after evaluate: dv/dt (m/s^2) and the torque about C (N m).
+    /// Of a member body after an evaluation: dv/dt (m/s^2), and the torque about the centre of mass (N m).
     Vec3 acceleration(std::size_t member) const { return get(speed_rates_, 6 * member); }
     Vec3 torque(std::size_t member) const { return scratch_->wrenches.torque[bodies_[member]]; }
-    /// Changes a member body's velocity and spin by what the forces of evaluate_here do in h. Free rotation is no part
-    /// of it: whoever moves the bodies turns them freely.
+    /// Changes velocity and spin of a member body by the effect of the forces of evaluate_here() during h. Free rotation is not included;
+    /// the code that moves the bodies applies it.
     void kick(std::size_t member, double h);
-    /// The joints of the members; null where there are none.
+    /// The joints of the members; null if there are none.
     RowSystem* rows() { return rows_.get(); }
-    /// Of the thread that advances it.
+    /// The meter of the thread that advances this system.
     CostMeter& meter() { return scratch_->meter(); }
     RowBook row_book() const { return {book_.work, book_.sign, scratch_->accounted_bodies, scratch_->accounted_shafts}; }
-    /// From before begin() on: joints are held by a manager, evaluations leave them out.
+    /// To be set before begin(): a manager holds the joints, so evaluations leave them out.
     void hold_rows(bool held) { rows_held_ = held; }
-    /// Joints, after somebody else than the solver has moved the members: speeds that fit them; then poses, too.
+    /// Makes speeds satisfy the joints, and then poses, after something other than the solver has moved the members.
     void join();
     void project();
-    /// When a manager has advanced the bodies: whatever else is a member comes to the end.
+    /// To be called when a manager has advanced the bodies: brings all other members to the end of the advance.
     void finish_held();
-    /// What joints did, after finish().
+    /// Adds the reports of the joints; after finish().
     void add_reports(RowReportTable& reports) const;
-    /// Torques of couplings, from the last evaluation.
+    /// Adds the torques of couplings, from the last evaluation.
     void add_reactions(ShaftTorques& torques) const { shaft_system_.add_reactions(torques); }
     std::span<double> coordinates() override { return coordinates_; }
     std::span<double> speeds() override { return speeds_; }
@@ -171,14 +173,14 @@ private:
 
     StepFrame frame_;
     StageScratch* scratch_;
-    std::uint64_t configuration_ = 0;  ///< counts configure()
+    std::uint64_t configuration_ = 0;  ///< number of calls of configure()
     std::vector<std::uint32_t> bodies_, shafts_, quantities_, prescribed_bodies_, prescribed_shafts_;
-    std::vector<std::uint32_t> active_bodies_, active_shafts_;  ///< all members, prescribed ones too
-    std::size_t own_bodies_ = 0, own_shafts_ = 0;               ///< the first of those: not shadows, so they are booked
+    std::vector<std::uint32_t> active_bodies_, active_shafts_;  ///< all members, including prescribed ones
+    std::size_t own_bodies_ = 0, own_shafts_ = 0;               ///< these come first; the others are observed only and are not booked
     std::size_t quantity_values_ = 0;                           ///< coordinates of quantities
     ExtraForces* extra_ = nullptr;
-    std::vector<std::uint32_t> roots_;  ///< shafts that carry coordinates
-    std::vector<Selected> selected_;    ///< forces; the first selected_count_ are valid
+    std::vector<std::uint32_t> roots_;  ///< shafts that have coordinates of their own
+    std::vector<Selected> selected_;    ///< only the first selected_count_ are valid
     std::size_t selected_count_ = 0;
     std::vector<BlockRow> merged_;
     std::vector<std::uint32_t> groups_;
@@ -191,7 +193,7 @@ private:
     ShaftSystem shaft_system_;
     std::unique_ptr<RowSystem> rows_;
     bool rows_held_ = false;
-    std::vector<std::uint32_t> joints_;  ///< components of rows_
+    std::vector<std::uint32_t> joints_;  ///< components that rows_ belong to
 
     std::vector<double> coordinates_, speeds_, coordinate_rates_, speed_rates_;
     std::array<std::vector<double>, 32> workspace_;

@@ -1,4 +1,4 @@
-// The joints of a group system: their rows inside the stages, and the projection when an advance is over.
+// The joints of a group system: their rows inside the solver's stages, and the projection at the end of an advance.
 #include <algorithm>
 #include <utility>
 
@@ -33,7 +33,7 @@ void GroupSystem::join()
     rows_->join(context_, row_book());
 }
 
-/// Joints are solved together: their types share that by the number of their components.
+/// Joints are solved together, so the time is divided among their types by numbers of components.
 void GroupSystem::share_cost_of_rows()
 {
     const std::int64_t ns = std::exchange(scratch_->rows_ns, 0);
@@ -63,11 +63,11 @@ void GroupSystem::project()
 namespace
 {
 
-/// What rows that cannot hold together leave: places, or else speeds.
+/// The remaining error of contradictory rows: of positions, or else of speeds.
 std::string left_over(const ProjectionReport& report)
 {
-    return report.places_hold ? rounded_text(report.speed_error) + " m/s or rad/s are left"
-                              : rounded_text(report.position_error) + " m or rad are left";
+    return report.places_hold ? rounded_text(report.speed_error) + " m/s or rad/s remain"
+                              : rounded_text(report.position_error) + " m or rad remain";
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ void GroupSystem::announce_contradictions(const ProjectionReport& report)
         for (const std::uint32_t other : report.contradictory)
             if (other != component) others += (others.empty() ? "" : ", ") + frame_.world->id_of(other);
         e.message = "cannot hold" + (others.empty() ? std::string() : " together with " + others) + ": " + left_over(report) +
-                    ", shared out by least squares";
+                    ", distributed by least squares";
         e.values = {report.position_error, report.speed_error};
         context_.events->emit(std::move(e));
     }

@@ -1,4 +1,4 @@
-// Whether the numbers of an object are such that a step can go on with them.
+// Whether the values of an object are small and finite enough for the step to continue.
 #include <algorithm>
 
 #include "plab/limits.h"

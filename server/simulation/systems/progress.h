@@ -1,4 +1,4 @@
-/// What the step thread is at, for other threads: written without locks as the work goes on, read by whoever shows it.
+/// What the step thread is doing, for display by other threads; written without locks while the work proceeds.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ enum class Activity : std::uint8_t
     Step,
     TrialOfOld,  ///< a swap's first step with the old component
     TrialOfNew,
-    Again,  ///< steps of the past are made again
+    Again,  ///< past steps are recomputed
 };
 
 class Progress
@@ -22,11 +22,11 @@ public:
     struct Look
     {
         Activity activity = Activity::Nothing;
-        std::uint8_t node = 0;       ///< of the step tree: what the step is at
-        std::int64_t step = 0;       ///< that follows on this many
+        std::uint8_t node = 0;       ///< node of the step tree that is running
+        std::int64_t step = 0;       ///< the step that follows this tick
         std::uint64_t since_ns = 0;  ///< monotonic, when the activity began
         std::uint64_t node_ns = 0;   ///< monotonic, when the node began
-        std::uint64_t work = 0;      ///< evaluations of forces, looks at contacts and events so far
+        std::uint64_t work = 0;      ///< evaluations of forces, contact detections and event searches so far
     };
 
     // Step thread ------------------------------------------------------------------------------------------------------
@@ -41,7 +41,7 @@ public:
         const Change change(version_);
         node_.store(node, relaxed), node_since_.store(now_ns, relaxed);
     }
-    /// Also by the threads that help it: a count may be lost between two of them.
+    /// Helper threads call this too; a count may be lost if two of them collide.
     void count() { work_.store(work_.load(relaxed) + 1, relaxed); }
     void end()
     {
@@ -64,7 +64,7 @@ public:
 
 private:
     static constexpr auto relaxed = std::memory_order_relaxed;
-    /// Odd while it lasts: who reads meanwhile reads again.
+    /// The sequence number is odd during a change; a reader that meets an odd number reads again.
     class Change
     {
     public:

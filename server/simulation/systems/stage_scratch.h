@@ -1,5 +1,5 @@
-/// World-sized working arrays of a solver stage, shared by all group systems of one thread: a system borrows them while
-/// it advances, so that it is itself no larger than its members.
+/// World-sized working arrays of a solver stage, shared by all group systems of one thread. A system borrows them while it advances, so
+/// its own size is only that of its members.
 #pragma once
 
 #include <vector>
@@ -14,10 +14,10 @@ namespace plab::simulation
 class StageScratch
 {
 public:
-    /// To the sizes of the world. Nobody is active afterwards.
+    /// Resizes the arrays for the world. Nothing is active afterwards.
     void fit(const world::World& world);
 
-    /// Who is advanced: flags by host row. Whoever was active before is not any more.
+    /// Sets the flags, by host row, of the objects that are advanced, and clears those of the previous owner.
     void activate(const void* owner, std::uint64_t configuration, std::span<const std::uint32_t> bodies,
                   std::span<const std::uint32_t> shafts);
     bool is_active(const void* owner, std::uint64_t configuration) const { return owner_ == owner && configuration_ == configuration; }
@@ -28,9 +28,9 @@ public:
     std::vector<double> power;  ///< W by component; all zero between uses
     std::vector<std::uint8_t> active_bodies, active_shafts, accounted_bodies, accounted_shafts;
     std::uint64_t evaluations = 0;  ///< of forces, in this step
-    std::int64_t rows_ns = 0;       ///< of an advance: what its joints took, until they share it
+    std::int64_t rows_ns = 0;       ///< ns of the present advance that its joints took, until divided among them
 
-    /// Of the thread that advances with this.
+    /// The meter of the thread that uses these arrays.
     CostMeter& meter() { return *meter_; }
     void measure_with(CostMeter& meter) { meter_ = &meter; }
 

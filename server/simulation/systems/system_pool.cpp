@@ -36,7 +36,7 @@ GroupSystem& SystemPool::of(const StepFrame& frame, std::span<const std::uint32_
             it->second.system->set_frame(frame);
             return *it->second.system;
         }
-    // The caller holds at most one system at a time, and asks for it again before each advance.
+    // A caller holds at most one system at a time and requests it again before each advance, so clearing is safe here.
     if (entries_.size() >= kMost) entries_.clear();
     Entry fresh{{groups.begin(), groups.end()}, {observed.begin(), observed.end()}, std::make_unique<GroupSystem>(scratch_)};
     fresh.system->configure(frame, groups, observed);

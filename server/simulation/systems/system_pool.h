@@ -1,4 +1,4 @@
-/// Group systems that were set up before, by who is in them: a scope that comes back finds its system ready.
+/// A cache of configured group systems by their members: if the same set of groups is advanced again, its system is ready.
 #pragma once
 
 #include <memory>
@@ -10,18 +10,18 @@
 namespace plab::simulation
 {
 
-/// Lookup only: nothing is ever listed in the order of the map.
+/// Used for lookup only; nothing iterates in the order of the map.
 class SystemPool
 {
 public:
-    /// After any structural change: nothing that was set up holds any more.
+    /// To be called after any structural change: it invalidates all configured systems.
     void clear(const world::World& world);
-    /// The system of these groups and shadows (see GroupSystem::configure), ready for the present frame.
+    /// The system of these groups and observed groups (see GroupSystem::configure), ready for the present frame.
     GroupSystem& of(const StepFrame& frame, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> observed);
     StageScratch& scratch() { return scratch_; }
 
 private:
-    /// Scopes come and go with contacts; beyond this many the oldest half of memory is not worth keeping.
+    /// Sets of groups change with contacts; beyond this number the cache is cleared.
     static constexpr std::size_t kMost = 4096;
 
     struct Entry

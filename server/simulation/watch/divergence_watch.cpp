@@ -15,7 +15,7 @@ namespace
 
 constexpr double kMostGain = 100, kMostMade = 0.05, kLook = 4, kSmallTurn = 1e-3;
 constexpr int kMostDoublings = 24, kQuickSteps = 8, kPatience = 8;
-constexpr double kRounding = 0x1p-40;  // of places, with room for what a step makes of it
+constexpr double kEnergyRounding = 0x1p-40;  // rad or m: relative rounding of positions, with a margin for what a step makes of it
 
 double trace(const Mat3& m) { return m(0, 0) + m(1, 1) + m(2, 2); }
 
@@ -27,10 +27,10 @@ double kinetic(const world::HostTables& host)
     return sum;
 }
 
-/// J: what does not count, in steps of h.
+/// J: energy below which motion is not noticeable in steps of h.
 double least_energy(const world::HostTables& host, double h)
 {
-    const double turn = kSmallTurn / h, rounding = kRounding / h;
+    const double turn = kSmallTurn / h, rounding = kEnergyRounding / h;
     double sum = 0;
     for (std::uint32_t b = 0; b < host.bodies.size(); ++b)
     {
@@ -43,7 +43,7 @@ double least_energy(const world::HostTables& host, double h)
     return sum;
 }
 
-/// Nobody moves but by forces.
+/// True if no object is moved from outside: energy can then come only from components.
 bool sealed(const world::HostTables& host)
 {
     const auto moved = [](Motion m) { return m == Motion::Kinematic; };
@@ -56,7 +56,7 @@ Event warning(const RunView& s, Ref who, const char* what, std::vector<double> v
     Event e;
     e.tick = s.tick, e.time = s.time + s.dt, e.kind = "motion.diverged", e.severity = Severity::Warning;
     e.component = s.world.host().component_of(who), e.a = who;
-    e.message = s.world.id_of(who) + " " + what + "; shorter steps, a softer law or another algorithm may hold it";
+    e.message = s.world.id_of(who) + " " + what + "; shorter steps, a softer law or another algorithm may prevent it";
     e.values = std::move(values);
     return e;
 }
@@ -111,7 +111,7 @@ void DivergenceWatch::size_for(const RunView& s)
     m_.bodies_reported.resize(host.bodies.size()), m_.shafts_reported.resize(host.shafts.size());
 }
 
-/// Whether this is the first word about `who`.
+/// Marks the object as reported; true the first time.
 bool DivergenceWatch::tell(Ref who)
 {
     std::uint8_t& reported = who.facet == Facet::Body ? m_.bodies_reported[who.index] : m_.shafts_reported[who.index];
@@ -183,8 +183,8 @@ void DivergenceWatch::watch_contacts(const RunView& s, std::vector<Event>& event
         Event e;
         e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.gains_energy", e.severity = Severity::Warning, e.component = c;
         char text[160];
-        std::snprintf(text, sizeof text, "its contacts have made %.3g J, while %.3g J were there or put in; shorter steps may hold it",
-                      made, scale);
+        std::snprintf(text, sizeof text,
+                      "its contacts have created %.3g J, compared with %.3g J present or added; shorter steps may prevent it", made, scale);
         e.message = text;
         e.values = {made, scale};
         events.push_back(std::move(e));
@@ -198,9 +198,9 @@ void DivergenceWatch::watch_growth(const RunView& s, std::vector<Event>& events)
     const auto look = [&](DivergenceMemory::Growth& growth, double speed_squared, double least, Ref who)
     {
         if (growth.runs_away(speed_squared, least) && tell(who))
-            events.push_back(warning(s, who, "doubles its speed every few steps, on and on", {std::sqrt(speed_squared)}));
+            events.push_back(warning(s, who, "keeps doubling its speed every few steps", {std::sqrt(speed_squared)}));
     };
-    // In the order of ids, as events stand.
+    // In the order of ids, which is also the order of events.
     for (const std::uint32_t i : s.world.in_id_order())
     {
         const world::Component& c = s.world.component(i);
@@ -225,7 +225,7 @@ void DivergenceWatch::watch_energy(const RunView& s, std::vector<Event>& events)
     {
         m_.reported = true;
         if (const Ref who = fastest(host); tell(who))
-            events.push_back(warning(s, who, "moves faster than energies can be computed with", {now}));
+            events.push_back(warning(s, who, "moves so fast that its kinetic energy overflows", {now}));
         return;
     }
     m_.last_kinetic = std::max(now, m_.last_kinetic);
@@ -241,7 +241,7 @@ void DivergenceWatch::watch_energy(const RunView& s, std::vector<Event>& events)
     m_.reported = true;
     char text[160];
     std::snprintf(text, sizeof text,
-                  "is the fastest where energy comes from nowhere: %.3g J since step %lld, while %.3g J were there or put in", gain,
+                  "is the fastest object while energy is created: %.3g J since step %lld, compared with %.3g J present or added", gain,
                   static_cast<long long>(m_.gaining_since), scale);
     if (const Ref who = fastest(host); tell(who))
         events.push_back(warning(s, who, text, {gain, scale, static_cast<double>(m_.gaining_since)}));

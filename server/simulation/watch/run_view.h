@@ -1,5 +1,5 @@
-/// A run at the boundary between two steps, as those see it who watch and change nothing. (The world is no const one for commands of
-/// Phase::Potential alone, which get tables that they could write to: totals.h.)
+/// A run at the boundary between two steps, as seen by observers that change nothing. (The world is not const only because commands of
+/// Phase::Potential receive tables that they could write to: totals.h.)
 #pragma once
 
 #include "simulation/step/stepper.h"

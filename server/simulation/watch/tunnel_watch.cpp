@@ -14,12 +14,12 @@ namespace plab::simulation
 namespace
 {
 
-constexpr double kStraight = 0.1;  // share by which a way may differ from speed times step
+constexpr double kStraight = 0.1;  // relative deviation up to which a displacement counts as speed times step
 constexpr double kDeep = 0.5;
 constexpr int kDeepSteps = 8;
 constexpr double kHalfDiagonal = 0.70710678118654752;
 
-/// Half extents of a box inside the shape, about its origin; negative if there is none.
+/// Half extents of a box inside the shape, about its origin; negative if the shape has none.
 Vec3 box_inside(const Geometry& g)
 {
     switch (g.kind)
@@ -43,7 +43,7 @@ bool crosses_ball(const Vec3& a, const Vec3& b, double radius)
     return t > 0 && t < 1 && length_squared(a + linear * t) < r2;
 }
 
-/// Slabs: the part of the way inside all three.
+/// Slab test: the part of the segment that is inside all three pairs of planes.
 bool crosses_box(const Vec3& a, const Vec3& b, const Vec3& half)
 {
     const std::array<double, 3> from{a.x, a.y, a.z}, to{b.x, b.y, b.z}, h{half.x, half.y, half.z};
@@ -79,7 +79,7 @@ void TunnelWatch::look_up(const RunView& s)
     crowds_.clear();
     for (const Detector& d : s.stepper.detectors())
     {
-        if (!d.responds && !d.by_rows && !d.by_force) continue;  // a sensor: passing through is what it is for
+        if (!d.responds && !d.by_rows && !d.by_force) continue;  // a sensor lets bodies pass through
         Crowd crowd{d.component, {}, d.certifies && !d.persists()};
         for (const Role& role : world.table_of(d.component).schema().roles())
             for (const Ref r : world.participants(d.component, role))
@@ -116,7 +116,7 @@ bool TunnelWatch::passed(const RunView& s, std::uint32_t body, std::uint32_t oth
         return length_squared(linear - bodies.velocity[b] * s.dt) <= kStraight * kStraight * length_squared(linear);
     };
     if (!straight(body) || !straight(other)) return false;
-    // In the other's axes about its centre of mass, at the start and at the end.
+    // Positions in the other body's axes about its centre of mass, at the start and at the end of the step.
     const Vec3 from = rotate(conjugate(start_[other].orientation), start_[body].position - start_[other].position) + bodies.center_B[other];
     const Vec3 to = rotate(conjugate(bodies.orientation[other]), bodies.position[body] - bodies.position[other]) + bodies.center_B[other];
     return std::any_of(bodies.shapes[other].begin(), bodies.shapes[other].end(),
@@ -128,7 +128,7 @@ bool TunnelWatch::passed(const RunView& s, std::uint32_t body, std::uint32_t oth
                        });
 }
 
-/// Boxes around what the crowd's bodies swept over. False if nobody went far enough to pass through anybody.
+/// Computes the boxes that the crowd's bodies swept over. Returns false if none moved far enough to pass through another.
 bool TunnelWatch::sweep(const RunView& s, const Crowd& crowd)
 {
     const Bodies& bodies = s.world.host().bodies;
@@ -143,7 +143,7 @@ bool TunnelWatch::sweep(const RunView& s, const Crowd& crowd)
     for (std::uint32_t place = 0; place < crowd.bodies.size(); ++place)
     {
         const std::uint32_t b = crowd.bodies[place];
-        if (!std::isfinite(radius[b])) continue;  // a plane: who gets behind it overlaps it
+        if (!std::isfinite(radius[b])) continue;  // a plane: a body behind it overlaps it
         const Vec3 &from = start_[b].position, &to = bodies.position[b], around{radius[b], radius[b], radius[b]};
         const Vec3 lower{std::min(from.x, to.x), std::min(from.y, to.y), std::min(from.z, to.z)};
         const Vec3 upper{std::max(from.x, to.x), std::max(from.y, to.y), std::max(from.z, to.z)};
@@ -154,7 +154,7 @@ bool TunnelWatch::sweep(const RunView& s, const Crowd& crowd)
     return true;
 }
 
-/// Sweep and prune along x, then whoever may have met is looked at.
+/// Sweep and prune along x, then an exact test of the candidates.
 void TunnelWatch::find_passages(const RunView& s, const Crowd& crowd)
 {
     active_.clear(), passages_.clear();
@@ -191,7 +191,8 @@ void TunnelWatch::tell(const RunView& s, const Crowd& crowd, std::vector<Event>&
         e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.missed", e.severity = Severity::Warning;
         e.component = crowd.detector, e.a = a, e.b = b;
         e.message = world.id_of(a) + " passed through " + world.id_of(b) +
-                    " within a step, unseen; a resolution that looks inside the step (Resolution/LocalRoot) or shorter steps would find it";
+                    " within a step without being detected; a resolution that searches inside the step (Resolution/LocalRoot) or shorter "
+                    "steps would detect it";
         e.values = {length(world.host().bodies.position[body] - start_[body].position)};
         events.push_back(std::move(e));
     }
@@ -229,7 +230,7 @@ void TunnelWatch::find_overlaps(const RunView& s, std::vector<Event>& events)
         e.tick = s.tick, e.time = s.time + s.dt, e.kind = "contact.deep", e.severity = Severity::Warning;
         e.component = d.component, e.a = c.a, e.b = c.b;
         e.message = world.id_of(c.a) + " and " + world.id_of(c.b) +
-                    " are sunk into one another, and stay so; more iterations, shorter steps or Manager/Direct may hold them";
+                    " remain deep inside one another; more iterations, shorter steps or Manager/Direct may separate them";
         e.values = {c.depth};
         events.push_back(std::move(e));
     }

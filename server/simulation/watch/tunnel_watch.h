@@ -1,16 +1,17 @@
-/// Tells of solid bodies that do not keep one another out. Two events, both warnings:
+/// Reports solid bodies that penetrate one another. Two events, both warnings:
 ///
-/// contact.missed: one passed through another between two looks. Sign: seen from the other body's shape, the way of a body's centre of mass
-/// from the start of the step to its end, taken as straight, crosses the shape, and neither end is inside. Solid bodies do not do that,
-/// however fast they are. Looked at for bodies that collide with one another, for those that move farther in the step than half their own
-/// least width, and only where neither was turned aside within the step (way = speed times step, to a tenth).
+/// contact.missed: a body passed through another one between two detection passes (tunnelling). Criterion: in the frame of the other
+/// body, the straight line from the start to the end position of a body's centre of mass crosses the other's shape, and neither end is
+/// inside it. Solid bodies cannot do that, however fast they are. Tested for bodies that collide with one another, if they move farther
+/// in the step than half their own smallest width, and only where neither was deflected within the step (displacement = speed times step,
+/// to a tenth).
 ///
-/// contact.deep: one sinks into another. Sign: at the end of kDeepSteps steps in a row an overlap is more than kDeep of half the least
-/// width of one of the two, where contacts are answered by impulses or rows. (How deep a spring gives way is its stiffness' choice, and its
-/// output.)
+/// contact.deep: a body sinks into another one. Criterion: at the end of kDeepSteps consecutive steps the penetration is more than kDeep
+/// of half the smallest width of one of the two, where contacts are resolved by impulses or rows. (The depth in a spring contact follows
+/// from its stiffness and is one of its outputs.)
 ///
-/// Balls and boxes are tested as they are, capsules and cylinders by a box inside them; half-spaces cannot be passed, meshes, hulls and
-/// compounds are not tested. Not part of the state: neither saved nor hashed, and it changes nothing.
+/// Spheres and boxes are tested exactly, capsules and cylinders by a box inside them; half-spaces cannot be passed through; meshes, hulls
+/// and compounds are not tested. The watch changes nothing and is not part of the hashed state; snapshots keep its memory.
 #pragma once
 
 #include <compare>
@@ -25,28 +26,28 @@
 namespace plab::simulation
 {
 
-/// What a watch for tunnelling remembers from step to step.
+/// What the tunnelling watch remembers from step to step.
 struct TunnelMemory
 {
     struct Sinking
     {
-        Tick last = -2;  ///< step at whose end it was deep
-        int steps = 0;   ///< in a row
+        Tick last = -2;  ///< step at whose end the penetration was deep
+        int steps = 0;   ///< number of such steps in a row
     };
-    std::vector<std::uint8_t> reported;  ///< by body; empty: nothing was told since the structure changed
+    std::vector<std::uint8_t> reported;  ///< by body; empty: nothing was reported since the structure changed
     std::vector<Sinking> sinking;        ///< by body
 };
 
 class TunnelWatch
 {
 public:
-    /// The structure has changed: who collides with whom is looked up anew.
+    /// To be called when the structure has changed: the colliding bodies are determined again.
     void begin_anew() { ready_ = false, memory_.reported.clear(); }
     const TunnelMemory& memory() const { return memory_; }
-    /// Goes on as the watch that remembered this did.
+    /// Continues with the memory of another watch.
     void recall(TunnelMemory memory) { ready_ = false, memory_ = std::move(memory); }
     void before_step(const RunView& s);
-    /// Adds to `events`; once per body until begin_anew().
+    /// Adds warnings to `events`, once per body until begin_anew().
     void after_step(const RunView& s, std::vector<Event>& events);
 
 private:
@@ -59,17 +60,17 @@ private:
     {
         std::uint32_t detector = kNoIndex;  ///< component
         std::vector<std::uint32_t> bodies;
-        bool certified = false;  ///< its resolution sees whatever happens inside the step: bodies bounce round one another
+        bool certified = false;  ///< its resolution detects every collision inside the step: bodies may bounce around one another
     };
 
-    /// What a body swept over in the step, in W, m; of the crowd's place-th body.
+    /// The box that a body swept over in the step, in W, m; `place`: index in the crowd.
     struct Swept
     {
         Vec3 lower, upper;
         std::uint32_t place = 0;
-        bool fast = false;  ///< went further than it is wide, and nothing was told of it yet
+        bool fast = false;  ///< moved farther than its width, and not reported yet
     };
-    /// Places in the crowd: `body` went through `other`.
+    /// Indices in the crowd: `body` passed through `other`.
     struct Passage
     {
         std::uint32_t body = 0, other = 0;
@@ -86,12 +87,12 @@ private:
     bool ready_ = false;
     std::vector<Crowd> crowds_;
     std::vector<StartPosition> start_;  ///< by body
-    std::vector<double> least_width_;   ///< half of it, by body, m
+    std::vector<double> least_width_;   ///< half of the smallest width, by body, m
     TunnelMemory memory_;
-    double shallow_ = 0;  ///< m: no overlap up to here is deep for anybody
-    // Of the crowd that is looked at.
+    double shallow_ = 0;  ///< m: penetrations up to this are not deep for any body
+    // Of the crowd being examined.
     std::vector<Swept> swept_;          ///< by lower.x
-    std::vector<const Swept*> active_;  ///< those that x has come to and not left
+    std::vector<const Swept*> active_;  ///< those whose x interval contains the present x
     std::vector<Passage> passages_;
 };
 

@@ -10,8 +10,6 @@ namespace plab::study
 namespace
 {
 
-std::string real(double v) { return model::format_real(v); }
-
 /// Flights between impacts at t_k; after the last one it rests on the plane.
 class Bounce final : public ExactSolution
 {
@@ -24,7 +22,7 @@ public:
         const double root = std::sqrt(v * v + 2 * g * h);
         double t = v >= 0 ? (v + root) / g : 2 * h / (root - v), up = e * root;
         rest_ = e < 1 ? t + 2 * up / (g * (1 - e)) : std::numeric_limits<double>::infinity();
-        // A flight of a hundred picoseconds is none.
+        // A flight shorter than a hundred picoseconds is ignored.
         while (t <= until && up > 1e-9 * root)
         {
             flights_.push_back({t, up});

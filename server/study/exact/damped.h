@@ -1,4 +1,4 @@
-/// x'' = -w2 x - 2 g x' from (x0, v0): under-damped, critical and over-damped in one.
+/// Solves x'' = -w2 x - 2 g x' from (x0, v0): under-damped, critical and over-damped in one formula.
 #pragma once
 
 #include <cmath>

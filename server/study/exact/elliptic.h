@@ -1,8 +1,7 @@
-/// Elliptic integrals and functions of Jacobi, to a few ulp: what closed forms of tops and pendulums need.
-///
-/// Sources: B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numer. Algorithms 10 (1995);
-/// Abramowitz and Stegun 16.4 (arithmetic-geometric mean). The complementary parameter mc = 1 - m is what is handed
-/// over: next to the separatrix m has no digits left.
+/// Elliptic integrals and Jacobi's elliptic functions, to a few ulp, for closed forms of tops and pendulums.
+/// Sources: B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numer. Algorithms 10 (1995); Abramowitz
+/// and Stegun 16.4 (arithmetic-geometric mean). The functions take the complementary parameter mc = 1 - m, because next to the
+/// separatrix m has no digits left.
 #pragma once
 
 namespace plab::study
@@ -19,7 +18,7 @@ Jacobi jacobi(double u, double mc);
 double quarter_period(double mc);
 /// F(phi | m) for any phi.
 double elliptic_f(double phi, double mc);
-/// The amplitude am(u | m), growing with u without jumps.
+/// The amplitude am(u | m), increasing with u without jumps.
 double amplitude(double u, double mc);
 /// Carlson's R_F.
 double carlson_rf(double x, double y, double z);

@@ -46,7 +46,7 @@ Result<std::map<std::string, double>> parse_given(std::string_view text)
         const std::size_t comma = text.find(',');
         const std::string_view pair = text.substr(0, comma);
         const std::size_t equal = pair.find('=');
-        if (equal == std::string_view::npos) return reason("'" + std::string(pair) + "' is no key=value");
+        if (equal == std::string_view::npos) return reason("'" + std::string(pair) + "' is not of the form key=value");
         auto value = model::parse_real(model::trimmed(pair.substr(equal + 1)));
         if (!value) return reason(std::string(pair) + ": " + value.error().reason);
         out[std::string(model::trimmed(pair.substr(0, equal)))] = *value;
@@ -89,7 +89,7 @@ std::optional<double> SceneFacts::number(const std::string& name) const
         if (const auto* d = std::get_if<double>(&entry)) return *d;
         const auto* type = world().type_of(i);
         const Field* field = type ? type->schema.find_field(name) : nullptr;
-        // What a component computes is no fact of the scene.
+        // Values that a component computes are not properties of the scene.
         if (!field || field->kind == FieldKind::Output || field->type != FieldType::Real) continue;
         return std::get<double>(world().get(i, name));
     }

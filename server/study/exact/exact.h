@@ -1,7 +1,6 @@
-/// Closed forms by name: what a scene would do without any error of method.
-///
-/// Parameters are read from the scene, or given: "oscillator:stiffness=100,damping=2". A scene that a closed form does
-/// not describe is refused with the reason.
+/// Closed forms by name: the exact solution of a scene, without any numerical error.
+/// Parameters are read from the scene, or given: "oscillator:stiffness=100,damping=2". A scene that a closed form does not
+/// describe is refused with the reason.
 #pragma once
 
 #include <map>
@@ -25,25 +24,25 @@ struct ExactState
 };
 
 inline constexpr double kExactPrecision = 1e-14;
-/// With a phase that has turned by so many rad.
+/// With a phase that has advanced by this many rad.
 inline double precision_after(double radians) { return kExactPrecision + 1e-15 * radians; }
 
 class ExactSolution
 {
 public:
     virtual ~ExactSolution() = default;
-    /// False if nothing is said of that object.
+    /// False if the closed form does not cover that object.
     virtual bool state(const std::string& id, double t, ExactState& out) const = 0;
     /// In words: the formula, and the parameters that were read.
     virtual std::string words() const = 0;
-    /// How well it is evaluated in double precision, relative: phases lose what their number of turns takes.
+    /// Relative accuracy of the evaluation in double precision: phases lose digits with their number of turns.
     virtual double precision(double until) const { return (void)until, kExactPrecision; }
-    /// Whether the moments of contact are part of it; those up to `until`.
+    /// Whether the moments of contact are part of the solution; those up to `until`.
     virtual bool knows_contacts() const { return false; }
     virtual std::vector<RecordedContact> contacts(double until) const { return (void)until, std::vector<RecordedContact>(); }
 };
 
-/// What a closed form may look at: the scene before its first step.
+/// The data available to a closed form: the scene before its first step.
 class SceneFacts
 {
 public:
@@ -56,11 +55,11 @@ public:
     /// Directory indices of moving objects.
     std::vector<std::uint32_t> dynamic(Facet facet) const;
     std::vector<std::uint32_t> of_type(const std::string& prefix) const;
-    /// A number that was given, or that some component has under this name (a field or a script's parameter).
+    /// A number that was given, or that a component has under this name (a field or a script's parameter).
     std::optional<double> number(const std::string& name) const;
-    /// Of all Field/Gravity, m/s^2.
+    /// Sum of all Field/Gravity, m/s^2.
     Vec3 gravity() const;
-    /// The first type that adds forces and is not among `known` prefixes; empty if there is none.
+    /// The first type that adds forces and does not match the `known` prefixes; empty if there is none.
     std::string foreign_force(const std::vector<std::string>& known) const;
     bool collides() const { return !of_type("CDetection/").empty(); }
 
@@ -75,19 +74,19 @@ struct ExactEntry
 {
     std::string_view name;
     std::string_view what;   ///< formula
-    std::string_view needs;  ///< of the scene
+    std::string_view needs;  ///< requirements on the scene
     ExactMaker make;
 };
 /// All closed forms, in the order of the manual.
 std::span<const ExactEntry> exact_registry();
 
-/// `text`: NAME or NAME:key=value,key=value. `until`: the last time that is asked for, s.
+/// `text`: NAME or NAME:key=value,key=value. `until`: the last required time, s.
 Result<std::unique_ptr<ExactSolution>> make_exact(const std::string& text, const simulation::Simulation& simulation, double until);
 
-/// The numbers of a quantity at t; NaN where the closed form says nothing.
+/// The numbers of a quantity at t; NaN where the closed form does not cover it.
 void read_exact(const ExactSolution& solution, const world::World& world, const Quantity& quantity, double t, std::vector<double>& out);
 
-// Makers, by file.
+// Factories, by file.
 Result<std::unique_ptr<ExactSolution>> make_flight(const SceneFacts& facts, double until);
 Result<std::unique_ptr<ExactSolution>> make_oscillator(const SceneFacts& facts, double until);
 Result<std::unique_ptr<ExactSolution>> make_pendulum(const SceneFacts& facts, double until);

@@ -22,7 +22,7 @@ Result<std::uint32_t> only_object(const SceneFacts& facts)
 {
     const auto bodies = facts.dynamic(Facet::Body), shafts = facts.dynamic(Facet::Shaft);
     if (bodies.size() + shafts.size() != 1)
-        return reason("it has " + std::to_string(bodies.size() + shafts.size()) + " moving objects; this form is about one");
+        return reason("it has " + std::to_string(bodies.size() + shafts.size()) + " moving objects ; this form is for one");
     return bodies.empty() ? shafts.front() : bodies.front();
 }
 
@@ -58,7 +58,7 @@ Error missing_number(const std::string& name, const std::string& what)
 Result<OnPlane> body_and_plane(const SceneFacts& facts)
 {
     const auto bodies = facts.dynamic(Facet::Body);
-    if (bodies.size() != 1) return reason("it has " + std::to_string(bodies.size()) + " moving bodies; this form is about one");
+    if (bodies.size() != 1) return reason("it has " + std::to_string(bodies.size()) + " moving bodies ; this form is for one");
     if (!facts.collides()) return reason("nothing collides: it has no CDetection/...");
     OnPlane out;
     out.body = bodies.front();
@@ -71,13 +71,13 @@ Result<OnPlane> body_and_plane(const SceneFacts& facts)
         for (const Ref shape : host.bodies.shapes[c.host_index])
         {
             if (host.shapes.geometry[shape.index].kind != GeometryKind::Plane)
-                return reason(c.id + " is no plane; only one plane may be there");
+                return reason(c.id + " is not a plane; only one plane is allowed");
             const Pose pose = host.bodies.pose(c.host_index) * host.shapes.geometry[shape.index].pose;
             out.plane = i, out.point = pose.p, out.normal = rotate(pose.q, Vec3{0, 0, 1});
             ++planes;
         }
     }
-    if (planes != 1) return reason("it has " + std::to_string(planes) + " planes; this form is about one");
+    if (planes != 1) return reason("it has " + std::to_string(planes) + " planes ; this form is for one");
     if (const std::string other = facts.foreign_force({"Field/Gravity"}); !other.empty())
         return reason(other + " acts too; only Field/Gravity may");
     return out;

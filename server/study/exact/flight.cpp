@@ -105,7 +105,7 @@ double FreeSpin::precession(double from, double to) const
     return sum * half;
 }
 
-/// Rz(phi) Rx(theta) Rz(psi) with L along z: what turns principal axes into the frame of the momentum.
+/// Rz(phi) Rx(theta) Rz(psi) with L along z: rotates principal axes to the frame of the angular momentum.
 Quat FreeSpin::euler(double phi, const Vec3& w) const
 {
     const Vec3 l{I_.x * w.x, I_.y * w.y, I_.z * w.z};

@@ -1,4 +1,4 @@
-// Shafts that couplings hold together: speeds engage by reflected inertia, constant torques turn all of a train.
+// Shafts connected by couplings: speeds engage by reflected inertia, constant torques accelerate the whole train.
 #include <cmath>
 #include <map>
 
@@ -10,12 +10,12 @@ namespace plab::study
 namespace
 {
 
-/// A train of shafts, all of whose speeds are ratios of one; directory indices.
+/// A train of shafts whose speeds have fixed ratios; directory indices.
 struct Train
 {
     std::map<std::uint32_t, double> ratio;
     double inertia = 0;       ///< sum of ratio^2 J, kg m^2
-    double speed = 0;         ///< rad/s: what the couplings cannot change is sum of ratio J w
+    double speed = 0;         ///< rad/s: from sum of ratio J w, which the couplings cannot change
     double acceleration = 0;  ///< rad/s^2
 };
 
@@ -49,7 +49,7 @@ struct Mesh
     double factor;
 };
 
-/// Turns of driven per turn of driver, as velocity_factor or as tooth counts say.
+/// Turns of driven per turn of driver, from velocity_factor or from tooth counts.
 double factor_of(const SceneFacts& facts, std::uint32_t gear)
 {
     const auto teeth = [&](const char* name)
@@ -74,14 +74,14 @@ Result<std::vector<Mesh>> meshes_of(const SceneFacts& facts)
         const auto driver = participants(facts, i, "driver"), driven = participants(facts, i, "driven");
         for (const auto* side : {&driver, &driven})
             if (side->size() != 1 || facts.world().component(side->front()).facet != Facet::Shaft)
-                return reason(facts.world().id_of(i) + " couples others than two shafts");
+                return reason(facts.world().id_of(i) + " does not couple two shafts");
         out.push_back({driver.front(), driven.front(), factor_of(facts, i)});
     }
     if (out.empty()) return reason("it has 0 couplings of shafts");
     return out;
 }
 
-/// Everybody who is reached from `first`; a ring has to close.
+/// All shafts that are connected to `first`; a loop has to close.
 Result<Train> train_of(const std::vector<Mesh>& meshes, std::uint32_t first)
 {
     Train out;
@@ -95,13 +95,13 @@ Result<Train> train_of(const std::vector<Mesh>& meshes, std::uint32_t first)
             if (a != out.ratio.end() && b == out.ratio.end()) out.ratio[m.driven] = a->second * m.factor, grown = true;
             if (a == out.ratio.end() && b != out.ratio.end()) out.ratio[m.driver] = b->second / m.factor, grown = true;
             if (a != out.ratio.end() && b != out.ratio.end() && std::fabs(a->second * m.factor - b->second) > 1e-12 * std::fabs(b->second))
-                return reason("a ring of its couplings contradicts itself");
+                return reason("a closed loop of its couplings is contradictory");
         }
     }
     return out;
 }
 
-/// Constant torque on a shaft, N m: of loads, and `torque` of a script on what it drives.
+/// Constant torque on a shaft, N m: of loads, and of a script with a number `torque` on the shafts that it drives.
 double torque_on(const SceneFacts& facts, std::uint32_t shaft)
 {
     double out = 0;
@@ -121,7 +121,7 @@ Result<std::unique_ptr<ExactSolution>> make_gears(const SceneFacts& facts, doubl
     const auto meshes = meshes_of(facts);
     if (!meshes) return meshes.errors();
     if (!facts.foreign_force({"Script/", "Constraint/AngularVelocity/", "Constraint/Gear", "Field/Load"}).empty())
-        return reason("other forces act than Field/Load and a script's constant torque");
+        return reason("forces other than Field/Load and a script's constant torque act");
     const world::World& world = facts.world();
     const Shafts& shafts = facts.shafts();
     std::map<std::string, Gears::Wheel> wheels;

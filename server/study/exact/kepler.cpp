@@ -10,8 +10,6 @@ namespace plab::study
 namespace
 {
 
-std::string real(double v) { return model::format_real(v); }
-
 class Kepler final : public ExactSolution
 {
 public:
@@ -20,7 +18,7 @@ public:
         const Vec3 r = start.position, v = start.velocity;
         a_ = 1 / (2 / length(r) - length_squared(v) / mu);
         n_ = std::sqrt(mu / (a_ * a_ * a_));
-        // e cos E0 and e sin E0: no eccentricity vector, so that circles are no special case.
+        // e cos E0 and e sin E0: no eccentricity vector, so that circles are not a special case.
         ec_ = 1 - length(r) / a_, es_ = dot(r, v) / std::sqrt(mu * a_);
     }
     bool state(const std::string& id, double t, ExactState& out) const override
@@ -47,7 +45,7 @@ public:
         out.velocity = start_.position * df + start_.velocity * dg;
         return true;
     }
-    /// The angular speed at the near end of an ellipse is n (1 - e)^-2, about.
+    /// The angular speed at the periapsis is approximately n (1 - e)^-2.
     double precision(double until) const override
     {
         const double near = 1 - std::hypot(ec_, es_);
@@ -71,12 +69,12 @@ Result<std::unique_ptr<ExactSolution>> make_kepler(const SceneFacts& facts, doub
 {
     const auto object = only_object(facts);
     if (!object) return object.errors();
-    if (facts.world().component(*object).facet != Facet::Body) return reason("its moving object is no body");
+    if (facts.world().component(*object).facet != Facet::Body) return reason("its moving object is not a body");
     const auto mu = facts.number("mu");
     if (!mu || !(*mu > 0)) return missing_number("mu", "m^3/s^2, positive");
     const ExactState start = present(facts, *object);
     if (!(length_squared(start.velocity) < 2 * *mu / length(start.position)))
-        return reason("the body is not bound: its path is no ellipse");
+        return reason("the body is not bound: its path is not an ellipse");
     return std::unique_ptr<ExactSolution>(std::make_unique<Kepler>(facts.world().id_of(*object), *mu, start));
 }
 

@@ -10,8 +10,6 @@ namespace plab::study
 namespace
 {
 
-std::string real(double v) { return model::format_real(v); }
-
 /// The law holds for each coordinate of the place about `center`, and for the angle about `center_angle`.
 class Oscillator final : public ExactSolution
 {
@@ -45,7 +43,7 @@ private:
     ExactState start_;
 };
 
-/// The line that a declared spring acts along, and where on it the body would rest.
+/// The line along which a declared spring acts, and the rest position of the body on it.
 struct Line
 {
     Vec3 u;              ///< unit vector
@@ -58,7 +56,7 @@ Result<Line> line_of(const SceneFacts& facts, std::uint32_t spring, std::uint32_
     const std::uint32_t row = world.component(object).host_index;
     for (const std::uint32_t other : participants(facts, spring, "a"))
         if (facts.bodies().motion[world.component(other).host_index] != Motion::Static) return reason("the spring's other end moves");
-    if (!participants(facts, spring, "a").empty()) return reason("the spring is held by a body; this form is about one held by the world");
+    if (!participants(facts, spring, "a").empty()) return reason("the spring is held by a body ; this form is for one held by the world");
     const Vec3 arm = rotate(start.orientation, vector_of(facts, spring, "point_b") - facts.bodies().center_B[row]);
     const Vec3 offset = start.position + arm - vector_of(facts, spring, "point_a");
     if (world.type_of(spring)->info.name == "Constraint/SpringDamper")
@@ -70,12 +68,12 @@ Result<Line> line_of(const SceneFacts& facts, std::uint32_t spring, std::uint32_
         return Line{offset / now, now - rest};
     }
     const Value along = world.get(spring, "along");
-    if (std::get<std::string>(along) != "slide") return reason("the spring turns a body; this form is about one that slides, or a shaft");
+    if (std::get<std::string>(along) != "slide") return reason("the spring turns a body ; this form is for one that slides, or a shaft");
     const Vec3 u = vector_of(facts, spring, "travel_axis");
     return Line{u, dot(u, offset) - real_of(facts, spring, "rest")};
 }
 
-/// A declared spring: what lies across it must not move the body, or a slider holds it.
+/// A declared spring: forces across its line must not move the body, unless a slider holds it.
 Result<std::unique_ptr<ExactSolution>> make_on_spring(const SceneFacts& facts, std::uint32_t spring, std::uint32_t object)
 {
     const world::World& world = facts.world();
@@ -120,7 +118,7 @@ Result<std::unique_ptr<ExactSolution>> make_oscillator(const SceneFacts& facts, 
     if (!object) return object.errors();
     std::vector<std::uint32_t> springs = facts.of_type("Constraint/SpringDamper");
     for (const std::uint32_t i : facts.of_type("Constraint/TorsionSpring")) springs.push_back(i);
-    if (springs.size() > 1) return reason("it has " + std::to_string(springs.size()) + " springs; this form is about one");
+    if (springs.size() > 1) return reason("it has " + std::to_string(springs.size()) + " springs ; this form is for one");
     if (!springs.empty()) return make_on_spring(facts, springs.front(), *object);
     const auto k = facts.number("stiffness");
     if (!k || !(*k > 0)) return missing_number("stiffness", "N/m or N m/rad, positive");

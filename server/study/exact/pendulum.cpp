@@ -78,7 +78,7 @@ Result<std::unique_ptr<ExactSolution>> make_hung(const SceneFacts& facts, std::u
 {
     const std::string id = facts.world().id_of(object);
     const std::vector<std::uint32_t> hinges = facts.of_type("Constraint/Hinge"), balls = facts.of_type("Constraint/Ball");
-    if (hinges.size() + balls.size() != 1) return reason(id + " hangs on no joint of its own: one Constraint/Hinge or one Constraint/Ball");
+    if (hinges.size() + balls.size() != 1) return reason(id + " is not attached to a joint of its own: one Constraint/Hinge or one Constraint/Ball");
     const bool on_hinge = !hinges.empty();
     const std::uint32_t joint = on_hinge ? hinges.front() : balls.front();
     if (const auto other = facts.foreign_force({"Field/Gravity", "Constraint/Hinge", "Constraint/Ball"}); !other.empty())
@@ -99,7 +99,7 @@ Result<std::unique_ptr<ExactSolution>> make_hung(const SceneFacts& facts, std::u
     if (!on_hinge && !plane) return reason("on its ball joint it does not stay in a plane: turn it about a level principal axis only");
     if (length(cross(w, n)) > 1e-12 * length(w)) return reason("it turns about another axis than the hinge's");
     if (length(start.velocity - cross(w, lever)) > 1e-9 * (length(w) * length(lever) + 1e-3))
-        return reason("its speed is not one about the joint");
+        return reason("its velocity is not a rotation about the joint");
     const double J = dot(n, Ln) + bodies.mass[row] * length_squared(r), moment = bodies.mass[row] * length(r) * length(down);
     const double theta = std::atan2(dot(n, cross(down, r)), dot(down, r));
     return std::unique_ptr<ExactSolution>(

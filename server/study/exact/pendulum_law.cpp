@@ -12,7 +12,7 @@ namespace plab::study
 
 PendulumMotion::PendulumMotion(double w0, double theta, double speed) : w0_(w0)
 {
-    // Whole turns do not matter to the force.
+    // The force does not depend on whole turns.
     turns_ = 2 * std::numbers::pi * std::round(theta / (2 * std::numbers::pi));
     const double half = 0.5 * (theta - turns_), s = std::sin(half), c = std::cos(half), u = 0.5 * speed / w0;
     k2_ = s * s + u * u;

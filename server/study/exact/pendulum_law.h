@@ -14,7 +14,7 @@ public:
     PendulumMotion(double w0, double theta, double speed);
 
     void at(double t, double& theta, double& speed) const;
-    /// The first t > 0 at which the speed is 0; infinite if it goes round.
+    /// The first t > 0 at which the speed is 0; infinite if the pendulum rotates.
     double time_of_turn() const;
     double frequency() const { return w0_; }
     double k2() const { return k2_; }

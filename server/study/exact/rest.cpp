@@ -1,4 +1,4 @@
-// What stands, stands: boxes flat upon one another on level ground.
+// Resting boxes: stacked flat on level ground, they do not move.
 #include <algorithm>
 #include <cmath>
 
@@ -71,14 +71,14 @@ Result<std::vector<double>> grounds_of(const SceneFacts& facts)
             const Geometry& form = host.shapes.geometry[shape.index];
             const Pose pose = host.bodies.pose(c.host_index) * form.pose;
             if (form.kind != GeometryKind::Plane || !(rotate(pose.q, Vec3{0, 0, 1}) == Vec3{0, 0, 1}))
-                return reason(c.id + " is no level plane");
+                return reason(c.id + " is not a horizontal plane");
             out.push_back(pose.p.z);
         }
     }
     return out;
 }
 
-/// The weight of `upper` and of all above falls into what it stands on, which is one block or the ground.
+/// The weight of `upper` and of everything above must act within its support, which is one block or the ground.
 Result<void> check_stands(const SceneFacts& facts, const Block& block, const std::vector<Block>& all, const std::vector<double>& grounds)
 {
     const std::string id = facts.world().id_of(block.id);
@@ -92,8 +92,8 @@ Result<void> check_stands(const SceneFacts& facts, const Block& block, const std
     const double bottom = block.center.z - block.half.z;
     const bool on_ground =
         std::any_of(grounds.begin(), grounds.end(), [&](double z) { return std::fabs(z - bottom) < 1e-9 * block.half.z; });
-    if (!support && !on_ground) return reason(id + " stands on nothing");
-    // All that rests on this block, for as long as something does: the common centre of mass must be over the support.
+    if (!support && !on_ground) return reason(id + " is not supported");
+    // For each block, as long as something rests on it: the common centre of mass of everything above must be over the support.
     double mass = 0;
     Vec3 sum;
     for (const Block* now = &block; now;)

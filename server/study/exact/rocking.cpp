@@ -1,4 +1,4 @@
-// A block that rocks from edge to edge: about each it is a pendulum upside down.
+// A block that rocks from edge to edge: about each edge it is an inverted pendulum.
 #include <algorithm>
 #include <cmath>
 
@@ -19,8 +19,8 @@ struct Shape2
     double half_width = 0, half_height = 0;  ///< m
     double mass = 0, inertia = 0;            ///< about the centre along n
     double w0 = 0;                           ///< sqrt(m g R / J about an edge), rad/s
-    /// What is left of the turning speed when the other edge strikes without rebound (Housner 1963): the angular
-    /// momentum about that edge stays.
+    /// The ratio of angular velocities after and before the other edge strikes without rebound (Housner 1963): the angular
+    /// momentum about that edge is conserved.
     double kept() const
     {
         const double b2 = half_width * half_width, h2 = half_height * half_height;
@@ -43,7 +43,7 @@ public:
     {
         const double side = tilt > 0 ? 1 : -1;  // aside = n x up: a turn about +n leans towards it
         const double from = block.flat_angle(side);
-        // By energy: as fast as it falls flat, so high it would rise again.
+        // By energy conservation: its speed when it falls flat is the speed from which it would rise to the same height.
         const double gain = 2 * block.w0 * block.w0 * (std::cos(from) - std::cos(from + tilt));
         double speed = std::sqrt(std::max(gain, 0.0)) * (tilt < 0 ? 1 : -1), edge = side;
         const double first = std::fabs(speed);
@@ -56,7 +56,7 @@ public:
             const PendulumMotion motion(block.w0, block.flat_angle(edge), speed);
             pieces_.push_back({t, edge, motion});
             impacts_.push_back(t);
-            // It comes back as fast as it left.
+            // It returns at the speed at which it left.
             t += 2 * motion.time_of_turn(), speed = -speed;
         }
         end_ = t;
@@ -108,7 +108,7 @@ private:
     double end_ = 0;
 };
 
-/// The face that is nearly down, and the level axis that the block is turned about. Axes of the box, by number.
+/// The face that is nearly down, and the level axis about which the block is turned. Axes of the box, by number.
 Result<Shape2> shape_of(const Geometry& box, const Quat& q, const Vec3& up, double& tilt, int& upright)
 {
     Shape2 out;
@@ -156,7 +156,7 @@ Result<std::unique_ptr<ExactSolution>> make_rocking(const SceneFacts& facts, dou
     const double b = block->half_width, h = block->half_height, R2 = b * b + h * h;
     block->w0 = std::sqrt(block->mass * length(g) * std::sqrt(R2) / (block->inertia + block->mass * R2));
     if (tilt == 0 || std::fabs(tilt) >= std::atan2(b, h)) return reason("the block lies flat, or topples");
-    // Flat on the edge that is low now.
+    // Flat on the edge that is now lower.
     const double side = tilt > 0 ? 1 : -1;
     const Quat back = exp_rotation(block->n * -tilt);
     const Vec3 edge = start.position + rotate(conjugate(back), block->aside * (side * b) - block->up * h);

@@ -13,7 +13,7 @@ namespace
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Along a line: a first stretch that friction and slope brake, then rest, or back down.
+/// Along a line: a first phase in which friction and slope decelerate the box, then rest, or sliding back down.
 class Straight final : public ExactSolution
 {
 public:
@@ -22,7 +22,7 @@ public:
         : id_(std::move(id)), start_(start), along_(along), speed_(speed), brake_(grip - pull)
     {
         stop_ = speed == 0 ? 0 : brake_ > 0 ? speed / brake_ : kNever;
-        // Friction turns against where the slope pulls then.
+        // Afterwards friction acts against the pull of the slope.
         back_ = grip >= std::fabs(pull) ? 0 : pull > 0 ? pull - grip : pull + grip;
     }
     bool state(const std::string& id, double t, ExactState& out) const override
@@ -79,7 +79,7 @@ public:
     }
 
 private:
-    /// Integral of x^(n-1) from w to where it began.
+    /// Integral of x^(n-1) from w to its initial value.
     double part(double n, double w) const
     {
         if (std::fabs(n) < 1e-12) return w > 0 ? std::log(w0_ / w) : kNever;

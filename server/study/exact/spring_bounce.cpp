@@ -12,8 +12,6 @@ namespace plab::study
 namespace
 {
 
-std::string real(double v) { return model::format_real(v); }
-
 class SpringBounce final : public ExactSolution
 {
 public:

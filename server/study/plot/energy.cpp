@@ -15,7 +15,7 @@ namespace
 
 constexpr std::size_t kMostLines = 12;
 
-/// Each algorithm with its longest step that gave a result; more lines than that nobody can read.
+/// Each algorithm with its longest step that gave a result; more lines would not be readable.
 std::vector<const Point*> lines_of(const StudyResult& r)
 {
     std::vector<const Point*> out;
@@ -36,7 +36,7 @@ std::vector<const Point*> lines_of(const StudyResult& r)
 std::optional<Drawing> energy(const StudyResult& r)
 {
     Chart chart;
-    chart.title = "Energy that nobody put in", chart.subtitle = r.title, chart.kind = Scale::Kind::SymLog;
+    chart.title = "Unexplained energy", chart.subtitle = r.title, chart.kind = Scale::Kind::SymLog;
     double scale = 0, largest = 0;
     for (const Point* p : lines_of(r))
     {
@@ -46,7 +46,7 @@ std::optional<Drawing> energy(const StudyResult& r)
         scale = std::max(scale, e.scale);
         for (const double d : e.drift) largest = std::isfinite(d) ? std::max(largest, std::fabs(d)) : largest;
     }
-    // A picture of round-off says nothing.
+    // A picture of round-off is meaningless.
     if (largest <= kRoundOff * scale || largest == 0) return {};
     chart.least = 0.1 * kRoundOff * scale;
     return draw(chart);
@@ -59,7 +59,7 @@ std::vector<Picture> pictures_of(const StudyResult& r)
     {
         out.push_back(
             {"work-precision",
-             "Lower left is better. A line is a algorithm of the ladder, its markers are step lengths; the broad grey line is the Pareto "
+             "Lower left is better. A line is an algorithm of the ladder, its markers are step lengths; the broad grey line is the Pareto "
              "front. Hollow markers lie within the reference's own uncertainty, crosses at the upper edge are runs without a result.",
              work_precision(r)});
         if (auto d = convergence(r))
@@ -70,7 +70,8 @@ std::vector<Picture> pictures_of(const StudyResult& r)
     if (auto d = energy(r))
         out.push_back(
             {"energy",
-             "Kinetic and stored energy, less the start's and less the work of whatever stores none: what the methods made up (above 0) "
+             "Kinetic and stored energy, less the initial energy and less the work of everything that stores none: energy that the methods "
+             "created (above 0) "
              "or lost (below). Each algorithm at its longest step that gave a result; of lines that lie upon one another the first is the "
              "broadest.",
              std::move(*d)});

@@ -19,7 +19,7 @@ constexpr double kWidth = 860, kHeight = 520;
 Ink ink_of(std::size_t algorithm) { return Ink::series(static_cast<int>(algorithm)); }
 int shape_of(std::size_t algorithm) { return static_cast<int>(algorithm % Drawing::kMarkers); }
 
-/// Of a run that went wrong, the error until then is none to compare.
+/// For a failed run, the error until the failure is not comparable.
 double error_of(const Point& p) { return p.record.ok() ? p.error() : std::nan(""); }
 double shown(double error) { return std::isnan(error) ? error : std::max(error, kLeastError); }
 double milliseconds(const Point& p) { return 1e3 * p.cpu_per_second(); }
@@ -69,7 +69,7 @@ double uncertainty_of(const StudyResult& r)
     return out;
 }
 
-/// Errors down here are those of the reference as well.
+/// Errors in this region are errors of the reference as well.
 void draw_unresolved(Drawing& d, const Panel& p, double uncertainty, Labels& labels)
 {
     if (!(uncertainty > p.y.low)) return;
@@ -101,7 +101,7 @@ void draw_front(Drawing& d, const Panel& p, const StudyResult& r)
         steps.push_back(at);
     }
     if (!steps.empty()) steps.push_back({p.right(), steps.back().y});
-    if (steps.size() > 1) d.line(std::move(steps), {{Ink::Role::Front, 0, 0, 0, 0}, 5, false}, "Pareto front: nobody is better in both");
+    if (steps.size() > 1) d.line(std::move(steps), {{Ink::Role::Front, 0, 0, 0, 0}, 5, false}, "Pareto front: no other is better in both");
 }
 
 /// Points of each algorithm, joined in the order of their step lengths; those are named where `labels` has room.
@@ -131,7 +131,7 @@ void draw_series(Drawing& d, const Panel& p, const StudyResult& r, const std::ve
         if (!dt.empty()) labels->add(d, at, dt);
 }
 
-/// Runs that have a cost but no error stand at the upper edge.
+/// Runs that have a cost but no error are drawn at the upper edge.
 void draw_failures(Drawing& d, const Panel& p, const StudyResult& r, const std::vector<std::string>& algorithms,
                    double (*x_of)(const Point&))
 {
@@ -148,7 +148,7 @@ void draw_failures(Drawing& d, const Panel& p, const StudyResult& r, const std::
 
 double step_of(const Point& p) { return p.record.dt; }
 
-/// Errors of a algorithm by step length, shortest first.
+/// Errors of an algorithm by step length, shortest first.
 std::vector<std::pair<double, double>> errors_by_step(const StudyResult& r, const std::string& algorithm)
 {
     const double floor = 10 * std::max(kRoundOff, uncertainty_of(r));
@@ -180,11 +180,11 @@ std::vector<Mark> step_marks(const StudyResult& r, const Scale& x)
     return out.size() <= kMost ? out : std::vector<Mark>();
 }
 
-/// A right triangle under the two shortest steps of a algorithm that are above round-off, with the slope that was seen.
+/// A right triangle below the two shortest steps of an algorithm that are above round-off, with the observed slope.
 void draw_slope(Drawing& d, const Panel& p, const std::vector<std::pair<double, double>>& e, Ink ink, Labels& labels)
 {
     const double slope = std::log(e[1].second / e[0].second) / std::log(e[1].first / e[0].first);
-    // Less than that is no order: errors that a tolerance bounds.
+    // A smaller slope is not an order: such errors are bounded by a tolerance.
     if (!(slope > 0.7) || slope > 12) return;
     const double x0 = e[0].first, x1 = e[1].first, y0 = e[0].second / 1.6;
     const double y1 = y0 * std::pow(x1 / x0, slope);
@@ -208,7 +208,7 @@ std::vector<std::string> algorithms_of(const StudyResult& r)
 
 std::vector<std::size_t> pareto_front(const StudyResult& r)
 {
-    // Below round-off, or what the reference can tell, nobody is better than another.
+    // Below round-off, or the resolution of the reference, no algorithm is better than another.
     const double floor = std::max(kRoundOff, uncertainty_of(r));
     const auto shown_error = [&](const Point& p) { return std::max(p.error(), floor); };
     std::vector<std::size_t> order;
@@ -265,7 +265,7 @@ std::optional<Drawing> convergence(const StudyResult& r)
     for (std::size_t k = 0; k < algorithms.size(); ++k)
     {
         const auto e = errors_by_step(r, algorithms[k]);
-        // Algorithms that lie upon one another share a triangle.
+        // Algorithms whose lines coincide share a triangle.
         if (e.size() < 2 || std::any_of(drawn.begin(), drawn.end(), [&](const auto& other) { return near(other, e[0]); })) continue;
         draw_slope(d, p, e, ink_of(k), labels);
         drawn.push_back(e[0]);

@@ -11,12 +11,12 @@ namespace plab::study::plot
 
 using figures::Drawing;
 
-/// Error against CPU time, log-log: a marker per combination, a line per algorithm, the Pareto front, what the reference cannot
-/// resolve.
+/// Error against CPU time, log-log: a marker per combination, a line per algorithm, the Pareto front, and the region below the
+/// resolution of the reference.
 Drawing work_precision(const StudyResult& result);
 /// Error against step length, log-log, with slope triangles. None if only one step length was studied.
 std::optional<Drawing> convergence(const StudyResult& result);
-/// Energy that nobody put in, over time; the vertical axis is symlog.
+/// Unexplained energy, over time; the vertical axis is symlog.
 std::optional<Drawing> energy(const StudyResult& result);
 /// Digits of the worst quantity by algorithm and step length; with one step length, by algorithm and quantity.
 Drawing digit_map(const StudyResult& result);
@@ -29,7 +29,7 @@ struct Picture
 };
 std::vector<Picture> pictures_of(const StudyResult& result);
 
-/// A table of digits: rows by columns; NaN: nothing, with the word that says why.
+/// A table of digits: rows by columns; NaN: no value, with a text that gives the reason.
 struct Cell
 {
     double digits = 0;
@@ -47,11 +47,11 @@ Drawing performance_profile(const std::string& title, const std::vector<std::str
 std::vector<std::string> algorithms_of(const StudyResult& result);
 /// Relative errors up to here are round-off.
 inline constexpr double kRoundOff = 1e-13;
-/// Indices of the points that nobody beats in both error and cost, by cost; errors below round-off or the reference's
+/// Indices of the points that no other point beats in both error and cost, by cost; errors below round-off or the reference's
 /// uncertainty count as equal.
 std::vector<std::size_t> pareto_front(const StudyResult& result);
 
-/// An exact zero has no place on a logarithmic axis; it stands here.
+/// An exact zero has no position on a logarithmic axis; it is drawn at this value.
 inline constexpr double kLeastError = 1e-17;
 
 }  // namespace plab::study::plot

@@ -36,7 +36,7 @@ TEST_CASE("what looks like a number and is none is not taken for a text")
 {
     CHECK(refusal("") == "needs a value; \"\" is the empty text");
     CHECK(refusal("1,5") ==
-          "'1,5': use a point, not a comma, in numbers, and blanks between them; write it in double quotes if it is a "
+          "'1,5': use a point, not a comma, in numbers, and spaces between them; write it in double quotes if it is a "
           "text");
     CHECK(refusal("3 apples") == "'3 apples' is not a number; write it in double quotes if it is a text");
     CHECK(refusal("inf") == "'inf' is not finite; write it in double quotes if it is a text");

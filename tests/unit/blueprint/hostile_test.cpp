@@ -46,14 +46,14 @@ TEST_CASE("a billion laughs stop at the first one")
         text += "<!ENTITY lol" + std::to_string(i) + " '" + repeated(before, 10) + "'>\n";
     }
     text += "]>\n<plab version='1'><component id='&lol9;'/></plab>";
-    CHECK(refusal(text) == "h.xml:2:1: DOCTYPE: a document type (DTD) is refused: a blueprint has no entities");
+    CHECK(refusal(text) == "h.xml:2:1: DOCTYPE: a document type (DTD) is not supported: a blueprint has no entities");
     CHECK(seconds_for(text) < 0.5);
 }
 
 TEST_CASE("external entities are not read")
 {
     CHECK(refusal("<!DOCTYPE plab SYSTEM 'file:///etc/passwd'><plab version='1'/>") ==
-          "h.xml:1:1: DOCTYPE: a document type (DTD) is refused: a blueprint has no entities");
+          "h.xml:1:1: DOCTYPE: a document type (DTD) is not supported: a blueprint has no entities");
     CHECK(refusal("<plab version='1'>&passwd;</plab>") ==
           "h.xml:1:19: not well-formed XML: unknown entity; only &lt; &gt; &amp; &quot; &apos; and character numbers "
           "are known");
@@ -125,9 +125,9 @@ TEST_CASE("sizes of text, of values, of the whole, and the number of elements")
 TEST_CASE("encodings other than UTF-8 are refused where they show")
 {
     CHECK(refusal("<?xml version='1.0' encoding='ISO-8859-1'?><plab version='1'/>") ==
-          "h.xml:1:1: <?xml?>: encoding 'ISO-8859-1' is refused; a blueprint must be UTF-8");
+          "h.xml:1:1: <?xml?>: encoding 'ISO-8859-1' is not supported; a blueprint must be UTF-8");
     CHECK(refusal("\xFF\xFE<\0p\0"sv) == "h.xml:1:1: the text is UTF-16; a blueprint must be UTF-8");
-    CHECK(refusal("<\0p\0l\0"sv) == "h.xml:1:2: a NUL character cannot stand in XML");
+    CHECK(refusal("<\0p\0l\0"sv) == "h.xml:1:2: a NUL character is not allowed in XML");
     CHECK(refusal("\xEF\xBB\xBF<plab version='1'/>") == "accepted");
 }
 
@@ -149,18 +149,18 @@ TEST_CASE("bytes that are no UTF-8")
 
 TEST_CASE("NUL and other characters that XML does not have")
 {
-    CHECK(refusal("<plab version='1'>\n a\0b</plab>"sv) == "h.xml:2:3: a NUL character cannot stand in XML");
+    CHECK(refusal("<plab version='1'>\n a\0b</plab>"sv) == "h.xml:2:3: a NUL character is not allowed in XML");
     CHECK(refusal("<plab version='1'>\x01</plab>") == "h.xml:1:19: not well-formed XML: not well-formed (invalid token)");
     CHECK(refusal("<plab version='1'>&#0;</plab>") == "h.xml:1:19: not well-formed XML: reference to invalid character number");
 }
 
 TEST_CASE("torn XML")
 {
-    CHECK(refusal("") == "h.xml:1:1: not well-formed XML: the document has no element");
+    CHECK(refusal("") == "h.xml:1:1: not well-formed XML: the document has no elements");
     CHECK(refusal("<plab version='1'>\n<component>\n") == "h.xml:3:1: not well-formed XML: <component> of line 2 is never closed");
     CHECK(refusal("<plab version='1'>\n<component>\n</plab>") ==
           "h.xml:3:3: not well-formed XML: a closing tag that does not match the open <component> of line 2");
-    CHECK(refusal("<plab version='1'/><plab/>") == "h.xml:1:20: not well-formed XML: something stands after the root element");
+    CHECK(refusal("<plab version='1'/><plab/>") == "h.xml:1:20: not well-formed XML: there is content after the root element");
     CHECK(refusal("<plab version='1' version='1'/>") == "h.xml:1:19: not well-formed XML: duplicate attribute");
     CHECK(refusal("<plab version=1/>") == "h.xml:1:15: not well-formed XML: not well-formed (invalid token)");
     CHECK(refusal("<plab version='1'><![CDATA[") == "h.xml:1:28: not well-formed XML: unclosed CDATA section");
@@ -193,5 +193,5 @@ TEST_CASE("large and strange input is answered quickly")
     CHECK(seconds_for(repeated("<?x?>", 1'000'000)) < kQuickly);
     CHECK(seconds_for("<plab version='1'>" + repeated("&amp;", 1'000'000) + "</plab>") < kQuickly);
     CHECK(seconds_for("<plab version='1'><component>" + repeated("<state name='s'>1</state>", 100'000) + "</component></plab>") < kQuickly);
-    CHECK(refusal(repeated("<?x?>", 1'000)) == "h.xml:1:1: <?x?>: processing instructions are refused");
+    CHECK(refusal(repeated("<?x?>", 1'000)) == "h.xml:1:1: <?x?>: processing instructions are not supported");
 }

@@ -198,7 +198,7 @@ TEST_CASE("foreign elements go to their handlers and imply a type")
     REQUIRE(!bad.ok());
     REQUIRE(bad.errors().size() == 2);
     CHECK(bad.errors()[0].text() == "s.xml:2:19: <BLOB>: is empty");
-    CHECK(bad.errors()[1].text() == "s.xml:2:38: <BLOB>: cannot stand in <plab>; it belongs in <component>");
+    CHECK(bad.errors()[1].text() == "s.xml:2:38: <BLOB>: is not allowed in <plab>; it belongs in <component>");
 }
 
 TEST_CASE("errors are collected as long as the XML is well-formed")
@@ -208,11 +208,11 @@ TEST_CASE("errors are collected as long as the XML is well-formed")
     std::vector<std::string> texts;
     for (const Error& e : result.errors()) texts.push_back(e.text());
     CHECK(texts == std::vector<std::string>{
-                       "s.xml:1:1: <plab>: version '2' is unknown; this pLab reads version '1'",
+                       "s.xml:1:1: <plab>: version '2' is not known; this pLab reads version '1'",
                        "s.xml:2:1: <sceen>: unknown element, did you mean 'scene'?",
                        "s.xml:3:1: <component>: id must not be empty",
-                       "s.xml:4:2: <component>: stray text 'text'",
-                       "s.xml:5:1: <?php?>: processing instructions are refused",
+                       "s.xml:4:2: <component>: unexpected text 'text'",
+                       "s.xml:5:1: <?php?>: processing instructions are not supported",
                    });
 }
 
@@ -248,10 +248,10 @@ TEST_CASE("misplaced words are told where they belong")
 {
     const auto in_component = [](const std::string& inner)
     { return first_error("<plab version='1'><component id='a'>" + inner + "</component></plab>"); };
-    CHECK(in_component("<scene/>") == "s.xml:1:37: <scene>: cannot stand in <component>; it belongs in <plab>");
+    CHECK(in_component("<scene/>") == "s.xml:1:37: <scene>: is not allowed in <component>; it belongs in <plab>");
     CHECK(in_component("<cmdparam type='SetX'/>") ==
-          "s.xml:1:37: <cmdparam>: cannot stand in <component>; it belongs in <command>, or right after one");
-    CHECK(in_component("<plab/>") == "s.xml:1:37: <plab>: cannot stand in <component>; it is the root element");
+          "s.xml:1:37: <cmdparam>: is not allowed in <component>; it belongs in <command>, or right after one");
+    CHECK(in_component("<plab/>") == "s.xml:1:37: <plab>: is not allowed in <component>; it is the root element");
     CHECK(first_error("<plab version='1'><command/></plab>") ==
-          "s.xml:1:19: <command>: cannot stand in <plab>; it belongs in <component> or <command>");
+          "s.xml:1:19: <command>: is not allowed in <plab>; it belongs in <component> or <command>");
 }

@@ -59,17 +59,17 @@ TEST_CASE("bad meshes")
 {
     CHECK(refusal("") == "m.xml:2:1: <MESH>: a mesh needs at least one face <F>");
     CHECK(refusal(kPoints + face("1", "2", "9")) == "m.xml:4:59: <PREF>: no point <P> has the ID '9'");
-    CHECK(refusal(kPoints + "<P ID='2'>0,0,0</P>" + face("1", "2", "3")) == "m.xml:4:1: <P>: ID '2' is there already");
+    CHECK(refusal(kPoints + "<P ID='2'>0,0,0</P>" + face("1", "2", "3")) == "m.xml:4:1: <P>: ID '2' is already defined");
     CHECK(refusal("<P>0,0,0</P>" + kTetrahedron) == "m.xml:3:1: <P>: needs an attribute 'ID'");
     CHECK(refusal(kPoints + "<F><FV1><PREF>1</PREF></FV1><FV2><PREF>2</PREF></FV2></F>") ==
           "m.xml:4:1: <F>: a face needs three corners, <FV1> to <FV3>");
     CHECK(refusal(kPoints + "<F><FV1><PREF>1</PREF></FV1><FV4/></F>") ==
           "m.xml:4:29: <FV4>: a face has three corners, <FV1> to <FV3>; split it into triangles");
-    CHECK(refusal(kPoints + "<F><FV1/><FV1/></F>") == "m.xml:4:10: <FV1>: the face has this corner already");
+    CHECK(refusal(kPoints + "<F><FV1/><FV1/></F>") == "m.xml:4:10: <FV1>: the face already has this corner");
     CHECK(refusal(kPoints + "<F><FV1/><FV2/><FV3/></F>") == "m.xml:4:4: <FV1>: a corner needs a <PREF>");
     CHECK(refusal(kPoints + face("1", "2", "1")) == "m.xml:4:1: <F>: a face needs three different points");
     CHECK(refusal(kPoints + "<FACE/>") == "m.xml:4:1: <FACE>: unknown element in <MESH>");
-    CHECK(refusal(kTetrahedron + "words") == "m.xml:8:1: <MESH>: stray text");
+    CHECK(refusal(kTetrahedron + "words") == "m.xml:8:1: <MESH>: unexpected text");
 }
 
 TEST_CASE("bad coordinates")
@@ -79,7 +79,7 @@ TEST_CASE("bad coordinates")
     {
         CAPTURE(text);
         CHECK(refusal("<P ID='1'>" + text + "</P>" + face("1", "1", "1")) ==
-              "m.xml:3:1: <P>: '" + text + "' is no point; three numbers with commas between them are needed");
+              "m.xml:3:1: <P>: '" + text + "' is not a point: give three numbers separated by commas");
     }
 }
 

@@ -72,7 +72,7 @@ TEST_CASE("numbers may leave gaps but must rise")
     CHECK(open(book, 1, 9).verdict == Verdict::New);
     const auto late = open(book, 1, 7);
     CHECK(late.verdict == Verdict::Refused);
-    CHECK(why(late) == "request 7 came after request 9: numbers must rise");
+    CHECK(why(late) == "request 7 came after request 9: numbers must increase");
     CHECK(open(book, 1, 5).verdict == Verdict::Waiting);
     CHECK(open(book, 1, 10).verdict == Verdict::New);
 }
@@ -89,7 +89,7 @@ TEST_CASE("the last answers are kept, and a request whose answer is forgotten is
     CHECK(open(book, 1, 5).verdict == Verdict::Answered);
     const auto forgotten = open(book, 1, 2);
     CHECK(forgotten.verdict == Verdict::Refused);
-    CHECK(why(forgotten).find("its answer is not kept any more") != std::string::npos);
+    CHECK(why(forgotten).find("its reply is no longer kept") != std::string::npos);
 }
 
 TEST_CASE("a refusal is an answer like any other: the same request does not slip in later")
@@ -99,7 +99,7 @@ TEST_CASE("a refusal is an answer like any other: the same request does not slip
     const auto full = open(book, 2, 1);
     CHECK(full.verdict == Verdict::Refused);
     CHECK(why(full) ==
-          "1 requests, the most of all clients together, are waiting already: send it again, with a new number, when "
+          "1 requests, the maximum for all clients together, are already waiting: send it again, with a new number, when "
           "some are done");
     CHECK(book.close(answer(client(1), 1)));
     CHECK(open(book, 2, 1).verdict == Verdict::Answered);
@@ -117,7 +117,7 @@ TEST_CASE("one client has a share of those that may wait, and has it back when t
     CHECK(open(book, 1, 2).verdict == Verdict::New);
     const auto third = open(book, 1, 3);
     CHECK(third.verdict == Verdict::Refused);
-    CHECK(why(third).find("2 requests of this client, the most of one, are waiting already: send it again") == 0);
+    CHECK(why(third).find("2 requests of this client, the maximum for one client, are already waiting: send it again") == 0);
     CHECK(open(book, 2, 1).verdict == Verdict::New);
     CHECK(book.close(answer(client(1), 1)));
     CHECK(open(book, 1, 4).verdict == Verdict::New);
@@ -130,7 +130,7 @@ TEST_CASE("requests that name a step leave room for those that do not")
     for (std::uint16_t who = 1; who <= 3; ++who) CHECK(open(book, who, 1, kFar).verdict == Verdict::New);
     const auto far = open(book, 4, 1, kFar);
     CHECK(far.verdict == Verdict::Refused);
-    CHECK(why(far).find("3 requests that name a step, the most of these, are waiting already") == 0);
+    CHECK(why(far).find("3 requests that name a step, the maximum of these, are already waiting") == 0);
     CHECK(open(book, 4, 2).verdict == Verdict::New);
     CHECK(open(book, 4, 3).verdict == Verdict::New);
     CHECK(open(book, 4, 4).verdict == Verdict::Refused);
@@ -149,7 +149,7 @@ TEST_CASE("a shutdown for the next step finds room when nothing else does")
     CHECK(open(book, 1, 5, {.shutdown = true, .bytes = 500}).verdict == Verdict::New);        // by the client that took it all
     CHECK(open(book, 2, 1, {.names_step = true, .shutdown = true}).verdict == Verdict::New);  // to hear that it names no step
     CHECK(book.waiting() == 4);
-    CHECK(why(open(book, 3, 1, kShutdown)) == "2 requests to shut down are waiting already: one is enough");
+    CHECK(why(open(book, 3, 1, kShutdown)) == "2 requests to shut down are already waiting: one is enough");
     CHECK(book.close(answer(client(1), 5)));
     CHECK(open(book, 3, 2, kShutdown).verdict == Verdict::New);
     CHECK(open(book, 3, 3).verdict == Verdict::Refused);  // the others' room is what it was
@@ -160,11 +160,11 @@ TEST_CASE("all requests that wait have a bounded number of bytes, some of them f
     RequestBook book({.waiting_bytes = 100, .bytes_kept_for_next_step = 30});
     CHECK(open(book, 1, 1, {.names_step = true, .bytes = 70}).verdict == Verdict::New);
     CHECK(why(open(book, 1, 2, {.names_step = true, .bytes = 1})) ==
-          "the request has 1 bytes, and 70 bytes of requests that name a step are waiting already, of at most 70: send it again, with a "
+          "the request has 1 bytes, and 70 bytes of requests that name a step are already waiting, of at most 70: send it again, with a "
           "new number, when some are done");
     CHECK(open(book, 2, 1, {.bytes = 30}).verdict == Verdict::New);
     CHECK(book.waiting_bytes() == 100);
-    CHECK(why(open(book, 3, 1, {.bytes = 7})).find("the request has 7 bytes, and 100 bytes of requests are waiting already") == 0);
+    CHECK(why(open(book, 3, 1, {.bytes = 7})).find("the request has 7 bytes, and 100 bytes of requests are already waiting") == 0);
     CHECK(book.close(answer(client(1), 1)));
     CHECK(book.waiting_bytes() == 30);
     CHECK(open(book, 3, 2, {.bytes = 70}).verdict == Verdict::New);
@@ -237,7 +237,7 @@ TEST_CASE("the form of a request is checked")
 
     RawRequest r;
     r.wire.client[0] = 0;
-    CHECK(r.refusal() == "the request has no client id: 16 random bytes are right");
+    CHECK(r.refusal() == "the request has no client id: use 16 random bytes");
     RawRequest zero;
     zero.wire.number = 0;
     CHECK(zero.refusal() == "the request has number 0: the first one of a client is 1");
@@ -253,7 +253,7 @@ TEST_CASE("the form of a request is checked")
     RawRequest many;
     const std::vector<plab_v2_Operation> operations(wire::kMostOperations + 1, many.operation);
     many.wire.operations = {257, 257, const_cast<plab_v2_Operation*>(operations.data()), false};
-    CHECK(many.refusal() == "the request has 257 operations: at most 256 may be asked for at once");
+    CHECK(many.refusal() == "the request has 257 operations: at most 256 are allowed");
     many.wire.operations._length = 256;
     CHECK(many.refusal().empty());
     RawRequest latin;
@@ -272,14 +272,14 @@ TEST_CASE("the text of a request is limited, and so is the number of its values"
     RawRequest empties;
     const std::vector<plab_v2_NamedText> values(wire::kMostValues + 1, {wire::text(""), wire::text("")});
     empties.operation.values = {257, 257, const_cast<plab_v2_NamedText*>(values.data()), false};
-    CHECK(empties.refusal() == "operation 1 has 257 values: at most 256 may be given at once");
+    CHECK(empties.refusal() == "operation 1 has 257 values: at most 256 are allowed");
     empties.operation.values._length = 256;
     CHECK(empties.refusal().empty());
     RawRequest second;
     plab_v2_Operation two[] = {second.operation, second.operation};
     two[1].values = {257, 257, const_cast<plab_v2_NamedText*>(values.data()), false};
     second.wire.operations = {2, 2, two, false};
-    CHECK(second.refusal() == "operation 2 has 257 values: at most 256 may be given at once");
+    CHECK(second.refusal() == "operation 2 has 257 values: at most 256 are allowed");
 }
 
 TEST_CASE("UTF-8 is what RFC 3629 says")

@@ -198,7 +198,7 @@ TEST_CASE("a request is looked at again, whatever plab-bus says of it")
     CHECK(why([](auto& m) { m.request.operations[0].blueprint.assign(wire::kMostRequestBytes, 'x'); }).find("bytes of text") !=
           std::string::npos);
     CHECK(why([](auto& m) { m.request.at = -2; }).find("step -2") != std::string::npos);
-    CHECK(why([](auto& m) { m.wrong = "\xff"; }) == "the request has no form");
+    CHECK(why([](auto& m) { m.wrong = "\xff"; }) == "the request cannot be decoded");
     CHECK(why([](auto& m) { m.wrong = "too long"; }) == "too long");
     CHECK(why([](auto& m) { m.request.number = 7; }) == "no answer");  // it waits already
     CHECK_FALSE(desk.take(request));

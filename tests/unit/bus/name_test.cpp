@@ -23,7 +23,7 @@ TEST_CASE("a second server of one name on a host is refused, and told by whom, u
     TestBus first;
     const auto second = bus::ServerBus::open(first.options());
     REQUIRE_FALSE(second.ok());
-    CHECK(second.error().text() == "a server '" + first.options().name + "' runs already on this host in domain " +
+    CHECK(second.error().text() == "a server '" + first.options().name + "' is already running on this host in domain " +
                                        std::to_string(first.options().domain) + " (process " + std::to_string(getpid()) +
                                        "): give this one another name");
     bus::BusOptions other = first.options();
@@ -41,7 +41,7 @@ TEST_CASE("a name that is no partition, a domain that is none and an interface t
         options.name = name;
         const auto opened = bus::ServerBus::open(options);
         REQUIRE_FALSE(opened.ok());
-        CHECK(opened.error().text().find("is no name of a server") != std::string::npos);
+        CHECK(opened.error().text().find("is not a valid server name") != std::string::npos);
     }
     options.name = TestBus::unused_name(), options.domain = 233;
     CHECK_FALSE(bus::ServerBus::open(options).ok());
@@ -77,6 +77,6 @@ TEST_CASE("a server that meets an older one of its name from elsewhere says that
     const int before = bus.wakes();
     CHECK(writer->write(server_sample(bus.options().name, "elsewhere", 7, 1)) == DDS_RETCODE_OK);
     REQUIRE(eventually([&] { return !bus->lost().empty(); }));
-    CHECK(bus->lost().find("runs already on host elsewhere (process 7)") != std::string::npos);
+    CHECK(bus->lost().find("is already running on host elsewhere (process 7)") != std::string::npos);
     CHECK(eventually([&] { return bus.wakes() > before; }));
 }

@@ -89,7 +89,7 @@ TEST_CASE("the module opens a bus, and says why it does not")
         CHECK(error.reason.empty());
         CHECK(first->lost().empty());
         CHECK_FALSE(bool(open(options, error)));
-        CHECK(error.reason.find("runs already on this host") != std::string::npos);
+        CHECK(error.reason.find("is already running on this host") != std::string::npos);
     }
     CHECK(bool(open(options, error)));
     (void)dlclose(module);

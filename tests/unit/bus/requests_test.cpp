@@ -220,7 +220,7 @@ TEST_CASE("garbage is refused with a reason, and never reaches the step loop")
     CHECK(with([](auto& r) { r.number = 0; }).find("number 0") != std::string::npos);
     CHECK(with([](auto& r) { r.at = -3; }).find("step -3") != std::string::npos);
     CHECK(with([](auto& r) { r.operations._length = 0; }).find("no operation") != std::string::npos);
-    CHECK(with([](auto& r) { r.number = 2; }).find("numbers must rise") != std::string::npos);
+    CHECK(with([](auto& r) { r.number = 2; }).find("numbers must increase") != std::string::npos);
     operation.target = wire::text(latin);
     CHECK(rogue.refused(request).find("not UTF-8") != std::string::npos);
     operation.target = wire::text(big), ++request.number;
@@ -298,13 +298,13 @@ TEST_CASE("clients whose requests never become due do not lock out the others")
     fill(far, kFar);
     link::Caller caller = caller_of(session);
     REQUIRE(caller.send(far).ok());
-    CHECK(reply(caller).second.reasons.at(0).find("896 requests that name a step, the most of these,") == 0);
+    CHECK(reply(caller).second.reasons.at(0).find("896 requests that name a step, the maximum of these,") == 0);
     REQUIRE(caller.send(a_pause()).ok());
     answer(bus, next(bus), 1);
     CHECK(reply(caller).second.done());
     fill(a_pause(), wire::kRequestsKeptForNextStep);
     REQUIRE(caller.send(a_pause()).ok());
-    CHECK(reply(caller).second.reasons.at(0).find("1024 requests, the most of all clients together,") == 0);
+    CHECK(reply(caller).second.reasons.at(0).find("1024 requests, the maximum for all clients together,") == 0);
     for (link::Caller* who : {&caller, &greedy.front()})
     {
         REQUIRE(who->send({{{"shutdown"}}, std::nullopt, std::nullopt}).ok());
@@ -329,7 +329,7 @@ TEST_CASE("large requests that never become due do not lock out the others")
         request = next(bus);
     }
     REQUIRE(greedy.send(large).ok());
-    CHECK(reply(greedy).second.reasons.at(0).find("bytes of requests that name a step are waiting already") != std::string::npos);
+    CHECK(reply(greedy).second.reasons.at(0).find("bytes of requests that name a step are already waiting") != std::string::npos);
     REQUIRE(caller.send(a_pause()).ok());
     CHECK(next(bus).operations[0].verb == "pause");
 }

@@ -21,7 +21,7 @@ TEST_CASE("servers lists those of the domain, and it is an error if there are no
     CHECK(both.json()["servers"][1]["recording"].is_null());
     two.fill_disk();
     const auto reported = [&]
-    { return has(plabctl("servers").out, "recording stands still: no space left on device; 3 messages not recorded"); };
+    { return has(plabctl("servers").out, "recording is stalled: no space left on device; 3 messages not recorded"); };
     bool is_reported = reported();
     for (int i = 0; i < 10 && !is_reported; ++i) is_reported = reported();
     CHECK(is_reported);
@@ -40,7 +40,7 @@ TEST_CASE("a server is found by name, or if it is the only one")
     FakeServer other(test_domain(), "other");
     const Outcome unclear = plabctl("objects");
     CHECK(unclear.code == 3);
-    CHECK(has(unclear.err, "several servers are there (lab, other)"));
+    CHECK(has(unclear.err, "there are several servers (lab, other)"));
     CHECK(plabctl("objects -s other").code == 0);
 }
 
@@ -158,5 +158,5 @@ TEST_CASE("wait: for readiness, for a step, and not for ever")
     CHECK(plabctl("wait --step 1 --timeout 1e8").code == 0);  // 292 years would overflow a count of nanoseconds
     const Outcome never = plabctl("wait --step 1000000000 --timeout 0.7");
     CHECK(never.code == 3);
-    CHECK(has(never.err, "did not get there within the time-out"));
+    CHECK(has(never.err, "did not reach it within the time-out"));
 }

@@ -53,7 +53,7 @@ TEST_CASE("a catalogue without a server gives up and says what is missing")
     REQUIRE(catalogue);
     const auto fetched = catalogue->fetch(link::Seconds(0.3));
     REQUIRE_FALSE(fetched);
-    CHECK(has(fetched.error().text(), "server 'nobody' did not tell everything; missing: the server's state"));
+    CHECK(has(fetched.error().text(), "server 'nobody' did not send its complete catalogue; missing: the server's state"));
     CHECK_FALSE(catalogue->server_is_gone());
 }
 

@@ -154,7 +154,7 @@ TEST_CASE("a request for a later step stands as long as its server")
     const std::string request = "remove silent --at 999999999 --timeout ";
     const Outcome alive = lab(request + "0.6");
     CHECK(alive.code == 3);
-    CHECK(has(alive.err, "the request stands"));
+    CHECK(has(alive.err, "the request remains valid"));
     (void)server->last();  // that one
     auto left_alone = std::async(std::launch::async, [&] { return lab(request + "20"); });
     for (int i = 0; i < 500 && server->last().parts.empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -163,7 +163,7 @@ TEST_CASE("a request for a later step stands as long as its server")
     CHECK(gone.code == 3);
     CHECK(has(gone.err, "server 'lab' has gone without a reply"));
     CHECK(has(gone.err, "the request will not be carried out"));
-    CHECK_FALSE(has(gone.err, "the request stands"));
+    CHECK_FALSE(has(gone.err, "the request remains valid"));
 }
 
 TEST_CASE("numbers that are out of range are refused, with a number that would do")

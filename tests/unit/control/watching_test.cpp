@@ -52,7 +52,7 @@ TEST_CASE("watch --only of who is not there: refused where nothing would ever co
     CHECK(lab("watch metrics --only contact -n 1").code == 0);
     const Outcome later = lab("watch collisions --only nobody -d 0.5");
     CHECK(later.code == 0);
-    CHECK_MESSAGE(has(later.err, "no component 'nobody'; it is watched for, should it be added"), later.err);
+    CHECK_MESSAGE(has(later.err, "no component 'nobody'; it will be shown if it is added later"), later.err);
     CHECK(lab("watch collisions --only red -n 1").err.empty());
 }
 

@@ -93,7 +93,7 @@ TEST_CASE("what a verb does not use is refused, and so is what it lacks")
     CHECK(refusal({"reset", "", "", "", {{"a", "1"}}}) == "operation 1 (reset): takes no values");
     CHECK(refusal({"swap", "a", "", "", {}}) == "operation 1 (swap): needs an argument: the new type");
     CHECK(refusal({"remove", "", "", "", {}}) == "operation 1 (remove): needs a target: the component");
-    CHECK(refusal({"set", "red", "", "", {}}) == "operation 1 (set): needs values: names and texts");
+    CHECK(refusal({"set", "red", "", "", {}}) == "operation 1 (set): needs values: pairs of name and text");
     CHECK(refusal({"set", "red", "", "", {{"mass", "1"}, {"mass", "2"}}}) == "operation 1 (set): gives 'mass' twice");
     CHECK(refusal({"add", "", "", "", {}}) == "operation 1 (add): needs a blueprint: XML text");
     CHECK(refusal({"push", "red", "", "", {{"point", "0 0 0"}}}).find("needs the value impulse") != std::string::npos);
@@ -102,7 +102,7 @@ TEST_CASE("what a verb does not use is refused, and so is what it lacks")
         CHECK(wanted({{"step", "", bad, "", {}}}).ok() == false);
     for (const char* bad : {"0", "-1", "fast", "inf", "nan", "1 ", "1e300", "1e-20"})
         CHECK(wanted({{"rate", "", bad, "", {}}}).ok() == false);
-    CHECK(refusal({"swpa", "a", "T", "", {}}) == "operation 1 (swpa): 'swpa' is no operation, did you mean 'swap'?");
+    CHECK(refusal({"swpa", "a", "T", "", {}}) == "operation 1 (swpa): 'swpa' is not an operation, did you mean 'swap'?");
 }
 
 TEST_CASE("errors of a blueprint keep their place, all of them are told, and shutdown stands alone")
@@ -142,7 +142,7 @@ TEST_CASE("a sign is no way to go back, and names of snapshots are as those of s
         CHECK(refusal({"rewind", "", time, "", {}}).find("is negative") != std::string::npos);
     for (const char* time : {"back", "back ", "back1", "now", "1 m"}) CHECK(!refusal({"rewind", "", time, "", {}}).empty());
     for (const std::string& name : {std::string("a/b"), std::string("a b"), std::string("\n"), std::string(65, 'a')})
-        CHECK(refusal({"snapshot", name, "", "", {}}).find("is no name of a snapshot") != std::string::npos);
+        CHECK(refusal({"snapshot", name, "", "", {}}).find("is not a valid snapshot name") != std::string::npos);
 }
 
 TEST_CASE("trial and energy say how a request is proved, cancel names a request; none of them is an operation")
@@ -165,7 +165,7 @@ TEST_CASE("trial and energy say how a request is proved, cancel names a request;
     CHECK(trial("20 ms or refuse").must);
     CHECK((trial("or refuse").must && trial("or refuse").budget == Budget::Automatic));
     for (const char* wrong : {"no", "-1", "0", "1e10", "nan", "20 s", "none or refuse", "20 or"})
-        CHECK_MESSAGE(refusal({"trial", "", wrong, "", {}}).find("no budget of a trial") != std::string::npos, wrong);
+        CHECK_MESSAGE(refusal({"trial", "", wrong, "", {}}).find("not a budget of a trial") != std::string::npos, wrong);
 
     CHECK(wanted({swap})->request.trial.energy_factor == 100);
     CHECK(wanted({swap, {"energy", "", "1e4", "", {}}})->request.trial.energy_factor == 1e4);
@@ -181,6 +181,6 @@ TEST_CASE("trial and energy say how a request is proved, cancel names a request;
     CHECK(cancel->cancel->number == 17);
     for (const std::string& wrong :
          std::vector<std::string>{client, client + ":0", client + ":x", client.substr(1) + ":1", "g" + client.substr(1) + ":1"})
-        CHECK_MESSAGE(refusal({"cancel", "", wrong, "", {}}).find("names no request") != std::string::npos, wrong);
+        CHECK_MESSAGE(refusal({"cancel", "", wrong, "", {}}).find("is not the name of a request") != std::string::npos, wrong);
     CHECK(!wanted({swap, {"cancel", "", client + ":17", "", {}}}).ok());
 }

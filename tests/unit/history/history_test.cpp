@@ -141,7 +141,7 @@ TEST_CASE("what was asked takes bounded room: who asks for long gives up the beg
     const double earliest = kept.s().history().earliest();
     CHECK(earliest > 1);
     CHECK(earliest < 3.9);
-    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{earliest - 0.02, false})).find("which begins at") != std::string::npos);
+    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{earliest - 0.02, false})).find("of this run, t =") != std::string::npos);
     for (const double time : {3.95, earliest})
     {
         REQUIRE(kept.scene.ask(simulation::RewindOperation{time, false}).done);
@@ -194,8 +194,8 @@ TEST_CASE("what cannot be reached is refused, and nothing has changed")
     Kept kept(every(0.1));
     kept.scene.step(20);
     const std::uint64_t hash = kept.scene.hash(), run = kept.s().run();
-    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{0.3, false})).find("is ahead") != std::string::npos);
-    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{-0.1, false})).find("before what is kept") != std::string::npos);
+    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{0.3, false})).find("is in the future") != std::string::npos);
+    CHECK(refusal(kept.scene.ask(simulation::RewindOperation{-0.1, false})).find("before the earliest kept state") != std::string::npos);
     CHECK(refusal(kept.scene.ask(simulation::RestoreOperation{"nobody"})).find("no snapshot has the name 'nobody'") != std::string::npos);
     CHECK(refusal(kept.scene.ask(simulation::ForgetOperation{"nobody"})).find("no snapshot has the name") != std::string::npos);
     CHECK(kept.scene.hash() == hash);

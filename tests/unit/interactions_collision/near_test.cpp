@@ -15,7 +15,7 @@ struct NearSink final : ContactSink
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
 
     std::span<const PersistentPair> persistent() const override { return {}; }
-    std::span<const double> reach() const override { return how_far; }
+    std::span<const double> motion_margin() const override { return how_far; }
     void near(Ref a, Ref b) override { pairs.emplace_back(a.index, b.index); }
     void add(const Contact&) override { CHECK_MESSAGE(false, "no contacts are wanted"); }
     bool precedes(Ref a, Ref b) const override { return a.index < b.index; }

@@ -50,7 +50,7 @@ TEST_CASE("values live across steps in declared state only")
     CHECK(drive_twice("local _ENV = {state = state} function drive() x = 1 end") == "neither drive(step) nor force(t, state) is defined");
     CHECK(drive_twice("local e = _ENV function drive() e.x = 1 end") == "code:1: global 'x' cannot be assigned: " + kFrozen);
     CHECK(drive_twice("local next = pairs({1, 2, 3}) function drive() state.n = next() end") ==
-          "what pairs returns cannot be kept: call pairs where the loop is");
+          "the result of pairs cannot be stored: call pairs in the loop itself");
     CHECK(drive_twice("state.n = 1 function drive() end") == "line 1: state can be used in drive and force, not while the code is loaded");
 }
 

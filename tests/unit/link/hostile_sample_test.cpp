@@ -63,8 +63,8 @@ TEST_CASE("lengths beyond the sample are refused before anything is set aside fo
     CHECK(has(json(list, Cdr().put(~std::uint32_t{0}).bytes()), "list: a sequence of 4294967295 elements, but 0 bytes are left"));
     const auto text = structure({{"text", simple(Kind::String)}});
     CHECK(has(json(text, Cdr().put(~std::uint32_t{0}).bytes()), "a string of 4294967295 bytes, but 0 are left"));
-    CHECK(has(json(text, Cdr().put(std::uint32_t{0}).bytes()), "final zero"));
-    CHECK(has(json(text, Cdr().put(std::uint32_t{1}).put('x').bytes()), "without its final zero"));
+    CHECK(has(json(text, Cdr().put(std::uint32_t{0}).bytes()), "terminating zero"));
+    CHECK(has(json(text, Cdr().put(std::uint32_t{1}).put('x').bytes()), "without its terminating zero"));
     const auto words = structure({{"words", sequence(simple(Kind::String))}});
     CHECK(has(json(words, Cdr(7).put(~std::uint32_t{0}).bytes()), "a part of 4294967295 bytes"));
 }
@@ -106,5 +106,5 @@ TEST_CASE("what does not fit the type is refused: bytes that are left over, bool
     CHECK(json(type, Cdr().put('\1').put('\0').put('\0').put('\0').bytes()) == R"({"flag":true})");  // filled up to a word
     CHECK(has(json(type, Cdr().put('\1').put(std::uint64_t{0}).bytes()), "15 bytes are left over"));
     for (const int encoding : {2, 3, 4, 10, 11}) CHECK(has(json(type, Cdr(encoding).put('\1').bytes()), "encoding"));
-    CHECK(has(json(type, {}), "begins with 4 bytes"));
+    CHECK(has(json(type, {}), "begins with 4 header bytes"));
 }

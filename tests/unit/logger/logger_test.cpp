@@ -160,7 +160,7 @@ TEST_CASE("a server may end and come back, or be another one under its name")
     REQUIRE(log.wait_for("of the second", 10s));
     log.signal(SIGTERM);
     CHECK(log.wait(5s) == 143);
-    // Its numbers begin anew: nothing was missed, no run was begun.
+    // Its numbers begin anew: nothing was missed, no run was started.
     CHECK(!has(log.output(), "\"gap\""));
     CHECK(!has(log.output(), "\"run\",\"run\""));
 }

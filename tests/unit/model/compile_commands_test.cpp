@@ -146,7 +146,7 @@ TEST_CASE("the paper's figure 7: a command that is a component of its own")
     s = compiled(scene({with_commands(group("object", {}), {hello, simulation_command({stage("Step", {see_command("300")})})})}));
     CHECK(commands_of(s, "300") == "Script/Prepare Script/Lua/Force");
     CHECK(errors_of({with_commands(group("object", {}), {simulation_command({stage("Rewind", {hello})})})}) ==
-          "scene.xml:4:1: command 300 (Script/Lua): has nothing to do in Stage/Rewind");
+          "scene.xml:4:1: command 300 (Script/Lua): does no work in Stage/Rewind");
     hello.id.clear();
     CHECK(errors_of({with_commands(group("object", {}), {hello})}) == "scene.xml:4:1: component (Script/Lua): needs an id");
 }
@@ -229,9 +229,9 @@ TEST_CASE("commands that do not exist")
     CHECK(why(typed) == "scene.xml:4:1: command Shape/Draw: has a type, so it cannot have commands in it");
     CommandNode list = composite("x", "List", {command("f", "Shape/Draw", 5)}, 4);
     CHECK(why(setting(list, {text("SetX", "1")})) ==
-          "scene.xml:4:1: command x (List): a composite has no parameters: the subjects of its parts have");
+          "scene.xml:4:1: command x (List): a composite has no parameters: set them on the subjects of its parts");
     list.subject = "f";
-    CHECK(why(list) == "scene.xml:4:1: command x (List): a composite has no subject: its parts have");
+    CHECK(why(list) == "scene.xml:4:1: command x (List): a composite has no subject: its parts have one each");
 }
 
 TEST_CASE("component and command ids are two name spaces")
@@ -246,9 +246,9 @@ TEST_CASE("stage lists that cannot run")
           "'Stage/Init', 'Stage/PreStep', "
           "'Stage/Step', 'Stage/PostStep', 'Stage/Rewind' and 'Stage/Deinit')");
     CHECK(gear_errors({stage("Step", {}, 22), stage("Step", {}, 23)}) ==
-          "scene.xml:23:1: command Stage/Step: stage 'Stage/Step' is there twice");
+          "scene.xml:23:1: command Stage/Step: stage 'Stage/Step' is given twice");
     CHECK(gear_errors({stage("Step", {}), command("g", "Constraint/Finish", 22)}) ==
-          "scene.xml:22:1: command Constraint/Finish: a simulation command holds stages only (Stage/Init, "
+          "scene.xml:22:1: command Constraint/Finish: a simulation command can contain only stages (Stage/Init, "
           "Stage/PreStep, ...)");
     CHECK(gear_errors({stage("Step", {command("g", "Constraint/Finish", 22)})}) ==
           "scene.xml:22:1: command Constraint/Finish: 'Constraint/Finish' belongs to Stage/PostStep, not to "
@@ -257,15 +257,16 @@ TEST_CASE("stage lists that cannot run")
     CHECK(gear_errors({stage("Deinit", {command("g", "Constraint/Finish", 22)})}).find("belongs to Stage/PostStep, not to Stage/Deinit") !=
           std::string::npos);
     CHECK(gear_errors({stage("PostStep", {command("form", "Shape/Draw", 22), command("g", "Constraint/Finish", 23)})}) ==
-          "scene.xml:23:1: command Constraint/Finish: stands behind 'Shape/Draw' (phase 'draw'), but the step runs its "
+          "scene.xml:23:1: command Constraint/Finish: comes after 'Shape/Draw' (phase 'draw'), but the step runs its "
           "phase 'finish' first: put "
           "it before");
     CHECK(gear_errors({stage("PostStep", {command("g", "Constraint/Finish", 22), command("form", "Shape/Draw", 23)})}).empty());
     CHECK(gear_errors({stage("PostStep", {command("g", "Constraint/Finish", 22), command("g", "Constraint/Finish", 23)})}) ==
           "scene.xml:23:1: command Constraint/Finish: 'Constraint/Finish' of 'g' is in the list twice");
     CHECK(gear_errors({stage("Step", {see_command("none", 22)})}) == "scene.xml:22:1: command: cmdref: no command has the id 'none'");
-    CHECK(gear_errors({stage("Step", {see_command("sim", 22)})}).find("a stage stands only in a simulation command") != std::string::npos);
-    CHECK(gear_errors({stage("Step", {composite("", "Stage/Init", {}, 22)})}).find("a stage stands only in a simulation command") !=
+    CHECK(gear_errors({stage("Step", {see_command("sim", 22)})}).find("a stage can only be part of a simulation command") !=
+          std::string::npos);
+    CHECK(gear_errors({stage("Step", {composite("", "Stage/Init", {}, 22)})}).find("a stage can only be part of a simulation command") !=
           std::string::npos);
 }
 
@@ -274,15 +275,16 @@ TEST_CASE("a component has one simulation command")
     const CommandNode one = composite("1", "One/Simulation", {stage("Step", {})}, 4),
                       two = composite("2", "Two/Simulation", {stage("Step", {})}, 5);
     CHECK(errors_of({with_commands(group("o", {}), {one, two})}) ==
-          "scene.xml:5:1: command 2 (Two/Simulation): a component has one simulation command, and 'One/Simulation' is "
-          "it already");
+          "scene.xml:5:1: command 2 (Two/Simulation): a component can have only one simulation command, which is already "
+          "'One/Simulation'");
 }
 
 TEST_CASE("lists that refer to themselves, or would grow without end")
 {
     const CommandNode run = simulation_command({stage("Step", {see_command("x")})});
-    CHECK(errors_of({with_commands(group("o", {}), {composite("x", "X", {see_command("y")}, 4), composite("y", "Y", {see_command("x")}, 5),
-                                                    run})}) == "scene.xml:4:1: command x (X): circle of commands: 'x' -> 'y' -> 'x'");
+    CHECK(errors_of({with_commands(group("o", {}),
+                                   {composite("x", "X", {see_command("y")}, 4), composite("y", "Y", {see_command("x")}, 5), run})}) ==
+          "scene.xml:4:1: command x (X): circular reference of commands: 'x' -> 'y' -> 'x'");
     // Each list names the next one twice: 2^40 items.
     std::vector<CommandNode> commands;
     for (int i = 0; i < 40; ++i)
@@ -297,11 +299,9 @@ TEST_CASE("a fragment cannot select or set what is in the scene already")
 {
     const model::SceneSpec s = compiled(scene({component("f", "Shape/Sphere"), shaft("a")}));
     CHECK(errors_of(scene({with_commands(group("o", {}), {setting(command("f", "Shape/Draw", 4), {text("SetRadius", "1", 5)})})}), &s) ==
-          "scene.xml:4:1: command Shape/Draw: subject 'f' is in the running scene already: set its parameters by a "
+          "scene.xml:4:1: command Shape/Draw: subject 'f' is already in the running scene: set its parameters by a "
           "request");
     CHECK(errors_of(scene({with_commands(group("o", {}), {simulation_command({stage("PostStep", {command("f", "Shape/Draw", 22)})})})}),
-                    &s) ==
-          "scene.xml:22:1: command Shape/Draw: subject 'f' is in the running scene already: it keeps the commands that "
-          "it has");
+                    &s) == "scene.xml:22:1: command Shape/Draw: subject 'f' is already in the running scene: it keeps its commands");
     CHECK(errors_of(scene({with_commands(group("o", {}), {command("f", "Shape/Draw", 4)})}), &s).empty());
 }

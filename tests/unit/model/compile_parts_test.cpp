@@ -80,7 +80,7 @@ TEST_CASE("parts that are refused")
           c + "role response needs a component of type Response/..., but 'c.response' is Resolution/Bisection");
     CHECK(errors_of(collision({{"answer.restitution", "1"}})).find("unknown attribute 'answer.restitution'") != std::string::npos);
     CHECK(errors_of(collision({{"response", "soft"}, {"response.restitution", "1"}}, {component("soft", "Response/Impulse")})) ==
-          c + "'response.restitution': 'soft' is no part of this component, set it there");
+          c + "'response.restitution': 'soft' is not a part of this component: set it there");
     CHECK(
         errors_of(collision({{"response.restitution", "1"}}, {component("c.response", "Response/Impulse", {{"restitution", "0"}}, 12)})) ==
         "scene.xml:9:1: c.response (Response/Impulse): restitution is given twice, here and at scene.xml:12:1");

@@ -46,7 +46,7 @@ TEST_CASE("everyone: all that fit, but the component itself")
     CHECK(role_of(s, "m", "parts") == "* a b c c.resolution c.response s solver");
     CHECK(role_of(compiled(scene({collide("*")})), "c", "between") == "* ");
     CHECK(errors_of({shaft("a"), shaft("b"), gear({{"driver", "*"}, {"driven", "b"}})}) ==
-          kGear + "role driver takes one participant, and '*' stands for all");
+          kGear + "role driver takes one participant, but '*' means all objects");
     CHECK(errors_of({collide("* a"), body("a")}) == kCollide + "role between: no component has the id '*'");
 }
 
@@ -103,7 +103,8 @@ TEST_CASE("dangling references name the nearest ids")
 TEST_CASE("how many take part")
 {
     CHECK(errors_of({shaft("b"), gear({{"driven", "b"}})}) == kGear + "driver is missing: name a shaft");
-    CHECK(errors_of({shaft("b"), gear({{"driver", ""}, {"driven", "b"}})}) == kGear + "driver names nobody: give ids, or leave it out");
+    CHECK(errors_of({shaft("b"), gear({{"driver", ""}, {"driven", "b"}})}) ==
+          kGear + "driver names no component: give ids, or leave it out");
     CHECK(errors_of({shaft("a"), shaft("b"), shaft("c"), gear({{"driver", "a b"}, {"driven", "c"}})}) ==
           kGear + "role driver takes one participant, has 2");
     CHECK(errors_of({body("a"), collide("a")}) == kCollide + "role between needs at least 2 participants, has 1");
@@ -118,8 +119,8 @@ TEST_CASE("two cannot drive one where the role is exclusive")
     const auto second = component("h", "Constraint/AngularVelocity/Assign", {{"driver", "a"}, {"driven", "c"}}, 12);
     CHECK(errors_of({shaft("a"), shaft("b"), shaft("c"), gear({{"driver", "b"}, {"driven", "c"}}), second}) ==
           "scene.xml:12:1: h (Constraint/AngularVelocity/Assign): 'c' is driven of g "
-          "(Constraint/AngularVelocity/Graph) already, and can be "
-          "so of one component only");
+          "(Constraint/AngularVelocity/Graph) already: only "
+          "one component can have it in this role");
     CHECK(errors_of({shaft("a"), shaft("b"), shaft("c"), gear({{"driver", "a"}, {"driven", "b"}}), second}).empty());
 }
 
@@ -154,7 +155,7 @@ TEST_CASE("an unknown type is complained about once, not where it is referred to
           "scene.xml:3:1: a (State/Shft): unknown type 'State/Shft', did you mean 'State/Shaft'?");
 }
 
-TEST_CASE("participants of a scene that is there already")
+TEST_CASE("participants of a scene that exists already")
 {
     const model::SceneSpec s = compiled(scene({group("motor", {shaft("axle")}), shares("same", {"motor"}), shaft("b")}));
     FixedTypes types;

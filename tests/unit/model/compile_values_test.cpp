@@ -34,12 +34,12 @@ TEST_CASE("settings that are refused")
         return errors_of(b);
     };
     CHECK(why("dt", "0") == "scene.xml:2:1: scene: dt must be positive, not 0");
-    CHECK(why("seed", "-1") == "scene.xml:2:1: scene: seed: '-1' is not a whole number of 0 or more");
+    CHECK(why("seed", "-1") == "scene.xml:2:1: scene: seed: '-1' is not a whole number, 0 or greater");
     CHECK(why("sed", "1") ==
           "scene.xml:2:1: scene: unknown setting 'sed', did you mean 'seed'? (settings are 'dt', 'seed', 'solver' and "
           "'title')");
     CHECK(why("solver", "bal") == "scene.xml:2:1: scene: solver: no component has the id 'bal', did you mean 'ball'?");
-    CHECK(why("solver", "ball") == "scene.xml:2:1: scene: solver 'ball' is no component of type Solver/...");
+    CHECK(why("solver", "ball") == "scene.xml:2:1: scene: solver 'ball' is not a component of type Solver/...");
     CHECK(why("solver", "Shape/Sphere") == "scene.xml:2:1: scene: solver must be of type Solver/..., not 'Shape/Sphere'");
     CHECK(why("solver", "Solver/RungeKuta4") ==
           "scene.xml:2:1: scene: solver: unknown type 'Solver/RungeKuta4', did you mean 'Solver/RungeKutta4'?");
@@ -54,7 +54,7 @@ TEST_CASE("cameras that see nothing")
         b.cameras = {component("c", "", attributes, 3)};
         return errors_of(b);
     };
-    CHECK(why({{"position", "1 1 1"}, {"look_at", "1 1 1"}}).find("must not look at where it stands") != std::string::npos);
+    CHECK(why({{"position", "1 1 1"}, {"look_at", "1 1 1"}}).find("must not look at its own position") != std::string::npos);
     CHECK(why({{"position", "0 0 5"}}) == "scene.xml:3:1: camera 'c': must not look along its up direction");
     CHECK(why({{"up", "0 0 0"}}) == "scene.xml:3:1: camera 'c': up must not be zero: it is a direction");
     CHECK(why({{"field_of_view", "200 deg"}}).find("field_of_view must be at most") != std::string::npos);
@@ -124,9 +124,9 @@ TEST_CASE("ids")
     CHECK(why("") == "scene.xml:2:1: component (Shape/Sphere): needs an id");
     CHECK(why("  ") == "scene.xml:2:1: component (Shape/Sphere): needs an id");
     CHECK(why("a\nb") == "scene.xml:2:1: a?b (Shape/Sphere): has an id with a control character");
-    CHECK(why("*").find("has the id '*', which stands for everyone") != std::string::npos);
+    CHECK(why("*").find("has the id '*', which is reserved for all objects") != std::string::npos);
     CHECK(why(std::string(200, 'x')).empty());
-    CHECK(why(std::string(201, 'x')).find("has an id of 201 characters, at most 200 are allowed") != std::string::npos);
+    CHECK(why(std::string(201, 'x')).find("has an id of 201 characters; at most 200 are allowed") != std::string::npos);
     CHECK(errors_of({component("a", "Shape/Sphere", {}, 2), component("a", "Shape/Sphere", {}, 3)}) ==
           "scene.xml:3:1: a (Shape/Sphere): id 'a' is already used at scene.xml:2:1");
 }

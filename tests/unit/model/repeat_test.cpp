@@ -139,7 +139,7 @@ TEST_CASE("repeats that are refused")
     CHECK(why({{"count", "2"}, {"jitter", "1 1"}}) == r + "jitter needs 3 numbers or 1, has 2");
     CHECK(why({{"count", "2"}, {"stp", "1 0 0"}}) == r + "unknown attribute 'stp', did you mean 'step'? (attributes "
                                                          "are 'id', 'count', 'step', 'jitter' and 'origin')");
-    CHECK(why({{"count", "2 2"}, {"step", "1 1 1"}}) == r + "step goes along z, but count has no third number");
+    CHECK(why({{"count", "2 2"}, {"step", "1 1 1"}}) == r + "step has a z component, but count has no third number");
     CHECK(why({{"count", "2"}, {"count", "3"}}) == r + "count is given twice");
     CHECK(errors_of(repeated({{"count", "2"}}, {})) == r + "holds no component to repeat");
 }

@@ -62,8 +62,8 @@ TEST_CASE("step lengths that are refused")
     CHECK(why("inf") == "dt must be between 1e-9 s and 3600 s, not inf");
     CHECK(why("1e30") == "dt must be between 1e-9 s and 3600 s, not 1e30");
     CHECK(why("1e-12") == "dt must be between 1e-9 s and 3600 s, not 1e-12");
-    CHECK(why("nan") == "dt: 'nan' is not a number that can be computed with");
-    CHECK(why("1,5") == "dt: '1,5': use a point, not a comma, in numbers, and blanks between them");
+    CHECK(why("nan") == "dt: 'nan' is not a finite number");
+    CHECK(why("1,5") == "dt: '1,5': use a point, not a comma, in numbers, and spaces between them");
     CHECK(why("60 Hz") == "dt must be in s (or ms, us, min, h), not in 'Hz'");
     CHECK(why("1 m") == "dt must be in s (or ms, us, min, h), not in 'm'");
     CHECK(why("1 2") == "dt: '2' is not a unit");

@@ -72,7 +72,7 @@ TEST_CASE("type names")
     for (const char* name : {"Good", "kind/Good", "Kind/", "Kind//Good", "A/B/C/D", "Kind/Go od", "/Kind"})
     {
         CAPTURE(name);
-        CHECK(refusal<Good>(name).find("type names read Kind/Algorithm or Kind/Family/Algorithm") != std::string::npos);
+        CHECK(refusal<Good>(name).find("type names must have the form Kind/Algorithm or Kind/Family/Algorithm") != std::string::npos);
     }
 }
 
@@ -130,13 +130,13 @@ struct SilentExclusive
 TEST_CASE("declarations that contradict themselves")
 {
     CHECK(refusal<BadName>("A/B") == "plugin sample: A/B: 'bodyMass' must be in snake_case");
-    CHECK(refusal<Reserved>("A/B") == "plugin sample: A/B: 'type' is an attribute of every component");
+    CHECK(refusal<Reserved>("A/B") == "plugin sample: A/B: 'type' is already an attribute of every component");
     CHECK(refusal<Twice>("A/B") == "plugin sample: A/B: 'mass' is declared twice");
     CHECK(refusal<BadDefault>("A/B") == "plugin sample: A/B: the default breaks its own rule: mass must be positive, not 0");
     CHECK(refusal<LongDirection>("A/B") == "plugin sample: A/B: the default of axis must be of unit length");
-    CHECK(refusal<NoFacet>("A/B") == "plugin sample: A/B: role role accepts nobody: it names no facet");
+    CHECK(refusal<NoFacet>("A/B") == "plugin sample: A/B: role role accepts no component: it names no facet");
     CHECK(refusal<WrongDefaultType>("A/B") == "plugin sample: A/B: role role has a default type outside its family Response/");
-    CHECK(refusal<SilentExclusive>("A/B") == "plugin sample: A/B: role role is exclusive, so it must say that it writes");
+    CHECK(refusal<SilentExclusive>("A/B") == "plugin sample: A/B: role role is exclusive, so it must be declared as writing");
 }
 
 TEST_CASE("a command is declared once")
@@ -194,7 +194,7 @@ TEST_CASE("what keeps types from standing in for one another")
     CHECK(why("K/F/Same").empty());
     CHECK(why("K/G/Other") == "K/F/One is of family K/F, K/G/Other of family K/G");
     CHECK(why("K/F/Body") == "K/F/One is a component, K/F/Body is a body");
-    CHECK(why("K/F/Many") == "role driver is of one in the one and of many in the other");
-    CHECK(why("K/F/Kind") == "role driver takes other kinds of participants");
+    CHECK(why("K/F/Many") == "role driver takes one participant in one type and many in the other");
+    CHECK(why("K/F/Kind") == "role driver takes different kinds of participants");
     CHECK(why("K/F/Two") == "K/F/One has the roles 'driver', K/F/Two has 'driver' and 'driven'");
 }

@@ -121,12 +121,12 @@ TEST_CASE("numbers that are refused, and why")
         {"", unit::one, "x is empty"},
         {"  ", unit::one, "x is empty"},
         {"abc", unit::one, "x must be a number, not 'abc'"},
-        {"1,5", unit::one, "x: '1,5': use a point, not a comma, in numbers, and blanks between them"},
-        {"nan", unit::one, "x: 'nan' is not a number that can be computed with"},
-        {"-NaN", unit::one, "x: '-NaN' is not a number that can be computed with"},
+        {"1,5", unit::one, "x: '1,5': use a point, not a comma, in numbers, and spaces between them"},
+        {"nan", unit::one, "x: 'nan' is not a finite number"},
+        {"-NaN", unit::one, "x: '-NaN' is not a finite number"},
         {"inf", unit::one, "x must be finite, not inf"},
         {"-infinity", unit::one, "x must be finite, not -inf"},
-        {"0x10", unit::one, "x: '0x10': write the number in decimals"},
+        {"0x10", unit::one, "x: '0x10': write the number in decimal notation"},
         {"1e400", unit::one, "x: '1e400' is out of range"},
         {"1e308 km", unit::metre, "x is out of range"},
         {"1/0", unit::one, "x: '1/0' divides by zero"},
@@ -135,7 +135,7 @@ TEST_CASE("numbers that are refused, and why")
         {"--1", unit::one, "x: '--1' is not a number"},
         {"+-1", unit::one, "x: '+-1' is not a number"},
         {"1e", unit::one, "x: '1e' is not a number"},
-        {"30deg", unit::radian, "x: '30deg': put a blank between number and unit, '30 deg'"},
+        {"30deg", unit::radian, "x: '30deg': put a space between number and unit, '30 deg'"},
         {"1 2", unit::one, "x needs 1 number, has 2"},
         {"30 deg", unit::one, "x is a pure number and takes no unit such as 'deg'"},
         {"2 m", unit::radian, "x must be in rad (or deg, rev, turn, mrad), not in 'm'"},
@@ -144,8 +144,8 @@ TEST_CASE("numbers that are refused, and why")
         {"2 N m/rad", unit::newton_metre, "x must be in N m (or J, kJ), not in 'N m/rad'"},
         {"2 parsec", unit::metre, "x: unknown unit 'parsec'"},
         {"2 degg", unit::radian, "x: unknown unit 'degg', did you mean 'deg'?"},
-        {"2 m^", unit::metre, "x: 'm^' has a power that is not a small whole number"},
-        {"2 m^99", unit::metre, "x: 'm^99' has a power that is not a small whole number"},
+        {"2 m^", unit::metre, "x: 'm^' has an exponent that is not a small whole number"},
+        {"2 m^99", unit::metre, "x: 'm^99' has an exponent that is not a small whole number"},
         {"2 m^12 m^12", unit::metre, "x: 'm^12 m^12' is not a sensible unit"},
         {"2 m/", unit::metre, "x: 'm/' is not a unit"},
         {"2 m 3", unit::metre, "x: 'm 3' is not a unit"},
@@ -164,8 +164,8 @@ TEST_CASE("values of other types")
     CHECK(vector("1 2 3") == Vec3{1, 2, 3});
     CHECK(vector("0 0 30 cm") == Vec3{0, 0, 0.3});
     CHECK(error_of("1 2", field(FieldType::Vector)) == "x needs 3 numbers, has 2");
-    CHECK(error_of("1,2,3", field(FieldType::Vector)) == "x: '1,2,3': use a point, not a comma, in numbers, and blanks between them");
-    CHECK(error_of("1 , 2", field(FieldType::Vector)) == "x: ',': use a point, not a comma, in numbers, and blanks between them");
+    CHECK(error_of("1,2,3", field(FieldType::Vector)) == "x: '1,2,3': use a point, not a comma, in numbers, and spaces between them");
+    CHECK(error_of("1 , 2", field(FieldType::Vector)) == "x: ',': use a point, not a comma, in numbers, and spaces between them");
 
     for (const char* yes : {"true", "yes", "1"}) CHECK(std::get<bool>(*parse_value(yes, field(FieldType::Boolean))));
     for (const char* no : {"false", "no", " 0 "}) CHECK_FALSE(std::get<bool>(*parse_value(no, field(FieldType::Boolean))));

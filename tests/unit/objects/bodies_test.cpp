@@ -36,7 +36,7 @@ struct RigidFixture : TableFixture<RigidBodyRows>
     {
         shapes.solid[0] = {8, {2, 0, 0}, Mat3::diagonal(16.0 / 3, 16.0 / 3, 16.0 / 3)};
         shapes.solid[1] = {4, {0, 3, 0}, Mat3::diagonal(1, 2, 3)};
-        shapes.unmeasurable[2] = "a plane has no end and so no volume";
+        shapes.unmeasurable[2] = "a plane is unbounded and has no volume";
     }
     RigidFixture& mass(double m) { return rows.mass[0] = m, *this; }
     RigidFixture& density(double d) { return rows.density[0] = d, *this; }
@@ -137,7 +137,7 @@ TEST_CASE("sources that say too much or too little are refused by name")
           "inertia is given with density; give mass with inertia, or leave the inertia to the shapes");
     CHECK(RigidFixture().mass(1).prepare() == "mass needs an inertia, or shapes to compute it from");
     CHECK(RigidFixture().mass(1).with({0, 2}).prepare() ==
-          "mass properties cannot be computed from its shapes: a plane has no end and so no volume; give mass and "
+          "mass properties cannot be computed from its shapes: a plane is unbounded and has no volume; give mass and "
           "inertia");
     CHECK(RigidFixture().mass(1).inertia(Mat3::identity()).center({kInfinity, 0, 0}).prepare() == "center_of_mass must be finite");
 }
@@ -148,7 +148,7 @@ TEST_CASE("inertias that no body has are refused by name")
     CHECK(refusal(Mat3::diagonal(1, 0, 1)) == "inertia must be positive; its principal moments are 0, 1, 1 kg m^2");
     CHECK(refusal(Mat3::diagonal(1, 1, -1)) == "inertia must be positive; its principal moments are -1, 1, 1 kg m^2");
     CHECK(refusal(Mat3::diagonal(1, 2, 3.5)) ==
-          "inertia breaks the triangle inequality: the two smaller moments must add up to the largest or more; its "
+          "inertia violates the triangle inequality: the two smaller moments must add up to the largest or more; its "
           "principal moments are 1, 2, 3.5 kg m^2");
     CHECK(refusal(turned(Mat3::diagonal(1, 2, 3.5), {1, 2, 3})).find("triangle inequality") != std::string::npos);
     CHECK(refusal(Mat3::diagonal(1, 1, 1e-310)).find("inertia is too small or too large to be inverted") == 0);

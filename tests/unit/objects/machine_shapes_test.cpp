@@ -260,11 +260,11 @@ TEST_CASE("rotors that cannot be built are refused")
     };
     auto table = rotor_table();
     table.rows.radius[0] = 0.05;
-    CHECK(refusal(table) == "radius must be more than hub_radius: the blades stand out of the hub");
+    CHECK(refusal(table) == "radius must be more than hub_radius, so that the blades extend beyond the hub");
     table = rotor_table();
     table.rows.pitch_angle[0] = 1.3;
     CHECK(refusal(table) == "pitch_angle must be less than 1.2 rad");
     table = rotor_table();
     table.rows.blades[0] = 40;
-    CHECK(refusal(table) == "the blades must have room on the hub: fewer of them, a smaller width or a larger hub_radius would do");
+    CHECK(refusal(table) == "the blades do not fit on the hub; use fewer blades, a smaller width or a larger hub_radius");
 }

@@ -248,7 +248,7 @@ TEST_CASE("primitives hand over their geometry and measure themselves in the bod
     prepare_plane(plane.context(), 0, plane.rows, host);
     CHECK(host.geometry[0].kind == GeometryKind::Plane);
     CHECK(host.geometry[0].pose.p == X.p);
-    CHECK(reason_of(measure_plane(0, plane.rows, solid)) == "a plane has no end and so no volume");
+    CHECK(reason_of(measure_plane(0, plane.rows, solid)) == "a plane is unbounded and has no volume");
 }
 
 TEST_CASE("a placed shape is the referred one, moved as a whole")
@@ -264,7 +264,7 @@ TEST_CASE("a placed shape is the referred one, moved as a whole")
     placed.rows.shape.orientation[0] = exp_rotation({0, 0, std::numbers::pi / 2});
 
     CHECK(reason_of(prepare_placed(placed.context(), 0, placed.rows, host)) ==
-          "the shape that it places has no geometry; it must not be placed by this one in turn");
+          "the placed shape has no geometry; it must not refer back to this one");
     prepare_box(box.context(), 0, box.rows, host);
     measure_box(0, box.rows, host.solid[0]);
     CHECK(reason_of(prepare_placed(placed.context(), 0, placed.rows, host)) == "accepted");

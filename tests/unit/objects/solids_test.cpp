@@ -124,7 +124,7 @@ TEST_CASE("what has no hull is refused with the reason")
         table.rows.points[0] = std::move(points);
         return reason_of(prepare_convex_hull(table.context(), 0, table.rows, host));
     };
-    CHECK(refused({}) == "it needs `points`, or a mesh `of` which it is the hull");
+    CHECK(refused({}) == "it needs `points`, or a mesh in the role `of`");
     CHECK(refused({1, 2}) == "points must be triples x y z, not 2 numbers");
     CHECK(refused({0, 0, 0, 1, 0, 0, 0, 1, 0}) == "a hull needs at least 4 vertices, not 3");
     CHECK(refused({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}) == "the vertices lie in a plane: their hull has no volume");
@@ -268,9 +268,9 @@ TEST_CASE("what cannot be a part is refused")
         host.geometry[1].kind = kind;
         return reason_of(prepare_compound(table.context(), 0, table.rows, host));
     };
-    CHECK(refusal(GeometryKind::Plane) == "a plane has no end and cannot be a part; give it to the body as a shape of its own");
+    CHECK(refusal(GeometryKind::Plane) == "a plane is unbounded and cannot be a part; give it to the body as a shape of its own");
     CHECK(refusal(GeometryKind::Compound) == "a compound cannot be a part of another; name its parts instead");
-    CHECK(refusal(GeometryKind::None) == "a part has no geometry; it must not be made of this compound in turn");
+    CHECK(refusal(GeometryKind::None) == "a part has no geometry; it must not refer back to this compound");
     MassProperties solid;
     host.unmeasurable[1] = "mesh is open at edge 0-1";
     CHECK(reason_of(measure_compound(0, table.rows, host, solid)) == "mesh is open at edge 0-1");

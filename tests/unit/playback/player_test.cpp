@@ -142,7 +142,7 @@ TEST_CASE("a second player of one name is refused until the first is gone")
     auto first = open_player(play_options(file, "twice"));
     const auto second = playback::Player::open(play_options(file, "twice"));
     REQUIRE_FALSE(second.ok());
-    CHECK(second.error().text().find("a server 'twice' runs already on this host") == 0);
+    CHECK(second.error().text().find("a server 'twice' is already running on this host") == 0);
     first.reset();
     CHECK(playback::Player::open(play_options(file, "twice")).ok());
 }
@@ -154,7 +154,7 @@ TEST_CASE("what cannot be played says why")
     options.from = 3;
     const auto beyond = playback::Player::open(options);
     REQUIRE_FALSE(beyond.ok());
-    CHECK(beyond.error().text().find("has nothing from 3.0") != std::string::npos);
+    CHECK(beyond.error().text().find("has no messages from 3.0") != std::string::npos);
     options.from = 1.5, options.to = 1;
     CHECK_FALSE(playback::Player::open(options).ok());
     CHECK_FALSE(playback::Player::open(play_options(file, "a/b")).ok());

@@ -153,7 +153,7 @@ TEST_CASE("a type in two plugins is refused, naming both; the others can be had"
     folder.plugin("b", "none", "Sample/Good\n");
     PluginLibrary library({folder.path()});
     CHECK(refusal(library, "Sample/Good") ==
-          "type 'Sample/Good' is in two plugins, " + folder.file("a.so") + " and " + folder.file("b.so") + "; take one of them away");
+          "type 'Sample/Good' is in two plugins, " + folder.file("a.so") + " and " + folder.file("b.so") + "; remove one of them");
     CHECK(refusal(library, "Sample/Better") == "accepted");
 }
 
@@ -165,19 +165,19 @@ TEST_CASE("bad manifests are problems, not the end")
         std::string text, problem;
     };
     const std::vector<Case> cases{
-        {"plab-manifest 1\nA/B\n", ":1:1: is no manifest of this version: the first line must be 'plab-manifest 3'"},
+        {"plab-manifest 1\nA/B\n", ":1:1: is not a manifest of this version: the first line must be 'plab-manifest 3'"},
         {"", ": cannot be read"},
         {"plab-manifest 3\n" + bare_type("A/B"), ": names no plugin"},
         {kHead + "plugin\tother\n", ":3:1: names a second plugin"},
-        {kHead + bare_type("A/B") + bare_type("no spaces please"), ":4:1: is no type name; letters, digits, '_' and '/' are allowed"},
+        {kHead + bare_type("A/B") + bare_type("no spaces please"), ":4:1: is not a type name; letters, digits, '_' and '/' are allowed"},
         {kHead + bare_type("A/B") + bare_type("C/D") + bare_type("A/B"), ": names A/B twice"},
-        {kHead + "A/B\n", ":3:1: begins with no word of a manifest; plugin, type, role and field are allowed"},
+        {kHead + "A/B\n", ":3:1: does not begin with a keyword of a manifest; plugin, type, role and field are allowed"},
         {kHead + "type\tA/B\tA\t0\n", ":3:1: a 'type' line has 10 cells, not 4"},
-        {kHead + "type\tA/B\tA\t4x\t\t\t\t\t\t\n", ":3:1: the order of convergence is no whole number that fits"},
+        {kHead + "type\tA/B\tA\t4x\t\t\t\t\t\t\n", ":3:1: the order of convergence is not a whole number in range"},
         {kHead + "field\tx\tparam\treal\tm\t0\toptional\t\t\n", ":3:1: a field before the first type"},
-        {kHead + bare_type("A/B") + "field\tx\tparam\treal\tm\t0\tmaybe\t\t\n", ":4:1: a field is 'required' or 'optional'"},
+        {kHead + bare_type("A/B") + "field\tx\tparam\treal\tm\t0\tmaybe\t\t\n", ":4:1: a field must be 'required' or 'optional'"},
         {kHead + bare_type("A/B") + "role\tx\tbody\t1\t4294967296\t\n",
-         ":4:1: the largest number of participants is no whole number that fits"},
+         ":4:1: the largest number of participants is not a whole number in range"},
         {kHead + "type\tA/B\tA\t0\tdo\\c\t\t\t\t\t\n", ":3:1: holds a '\\' that is neither '\\\\' nor '\\x' and two digits"},
         {kHead + "type\tA/B\tA\t0\tdo\\x0\t\t\t\t\t\n", ":3:1: holds a '\\' that is neither '\\\\' nor '\\x' and two digits"},
         {kHead + "type\tA/B\tA\t0\tdo\rc\t\t\t\t\t\n", ":3:1: holds a control character; it must be written as \\x and two digits"},
@@ -223,7 +223,7 @@ TEST_CASE("each mismatch of the stamp has its own words")
                                         ": its structures are laid out differently: layout 42 (compiler " __VERSION__ "), " +
                                         std::to_string(layout_stamp()) + " (compiler " __VERSION__ ") is needed" + again);
     CHECK(load_refusal("name") == "plugin " + sample("name") + ": its stamp has no name");
-    CHECK(load_refusal("stamp") == "plugin " + sample("stamp") + ": is no pLab plugin: it has no symbol plab_plugin_stamp");
+    CHECK(load_refusal("stamp") == "plugin " + sample("stamp") + ": is not a pLab plugin: it has no symbol plab_plugin_stamp");
     CHECK(load_refusal("entry") == "plugin " + sample("entry") + ": has no symbol plab_plugin_register");
 }
 

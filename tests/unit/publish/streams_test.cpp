@@ -211,7 +211,8 @@ TEST_CASE("metrics: figures of the run, and who does the work")
 
     run.ask(simulation::SwapOperation{"contact.response", "Response/None", {}});
     run.step();
-    CHECK(find_entry(run.watcher.samples.back().interactions, "contact")->resolved.ends_with("Response/None (a sensor: nobody is pushed)"));
+    CHECK(
+        find_entry(run.watcher.samples.back().interactions, "contact")->resolved.ends_with("Response/None (a sensor: applies no forces)"));
 }
 
 TEST_CASE("metrics in turn, at once after a request, for newcomers")
@@ -255,9 +256,9 @@ TEST_CASE("solvers: what they advance, mixtures, and those without work")
     const std::vector<std::string> resolved = publish::resolved_algorithms(scene.simulation());
     CHECK(resolved[world.find("solver")] == "Solver/RungeKutta4: 1 group, 2 objects; in 1 group some members name another solver");
     CHECK(resolved[world.find("euler")] ==
-          "Solver/SemiImplicitEuler: 1 group, 1 object; 1 object that named it: Solver/RungeKutta4 (solver), "
-          "whose group they are in");
-    CHECK(resolved[world.find("idle")] == "nothing: nobody that moves names it");
+          "Solver/SemiImplicitEuler: 1 group, 1 object; 1 object that use it: Solver/RungeKutta4 (solver), "
+          "of whose group they are members");
+    CHECK(resolved[world.find("idle")] == "nothing: no moving object uses it");
     CHECK(resolved[world.find("a")].empty());
 }
 

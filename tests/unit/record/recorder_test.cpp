@@ -237,7 +237,7 @@ TEST_CASE("a disk without room stops the recording and says so; the simulation i
     CHECK(status.dropped > 0);
     CHECK(status.bytes <= 128 * 1024);
     REQUIRE(!lines.empty());
-    CHECK(lines.front().find("recording stands still, the simulation goes on: ") != std::string::npos);
+    CHECK(lines.front().find("recording is stalled, the simulation continues: ") != std::string::npos);
     // What came before is there, and is the same run.
     const replay::ReplayReport report = replayed(file);
     CHECK(!report.mismatch);
@@ -252,12 +252,12 @@ TEST_CASE("what cannot be recorded is refused before anything is written")
     options.topics = {"plab/nonsense"};
     auto topic = record::Recorder::open(options);
     REQUIRE(!topic);
-    CHECK(topic.error().reason == "'plab/nonsense' is no topic of pLab");
+    CHECK(topic.error().reason == "'plab/nonsense' is not a pLab topic");
     CHECK(!std::filesystem::exists(file));
     options.topics.clear(), options.compression = "zip";
     auto compression = record::Recorder::open(options);
     REQUIRE(!compression);
-    CHECK(compression.error().reason.find("is no compression") != std::string::npos);
+    CHECK(compression.error().reason.find("is not a compression") != std::string::npos);
     CHECK(!std::filesystem::exists(file));
     options.compression = "zstd";
     REQUIRE(record::Recorder::open(options));

@@ -193,7 +193,7 @@ TEST_CASE("times in a chunk's header have changed: with an index that costs noth
     const ReadBack back = read_all(*open(cut));
     CHECK(back.lines.size() == 16);
     REQUIRE(back.errors.size() == 1);
-    CHECK(back.errors[0].text().ends_with("its header, or the index, tells other times than its messages"));
+    CHECK(back.errors[0].text().ends_with("its header, or the index, gives other times than its messages"));
     CHECK(read_all(*open(recover_bytes(cut).bytes)).lines == by_time(closed.lines));
 }
 
@@ -232,7 +232,7 @@ TEST_CASE("the first chunk, which declares the channels, is damaged: the rest is
     REQUIRE(lost.report);
     CHECK(lost.report->messages == 0);
     CHECK(lost.report->undeclared == 16);
-    CHECK(lost.report->text().find("lost: 16 messages whose channels are declared nowhere\n") != std::string::npos);
+    CHECK(lost.report->text().find("lost: 16 messages whose channels are not declared\n") != std::string::npos);
     // With a summary, that does.
     const SampleFile closed(Compression::None, 5);
     bent = closed.bytes;
@@ -262,16 +262,16 @@ TEST_CASE("two chunks that call different things by one id: the second is an err
     const ReadBack back = read_all(*reader);
     CHECK(back.lines == Lines{{"a", 7, 7, 0, "of a"}});
     REQUIRE(back.errors.size() == 1);
-    CHECK(back.errors[0].text().ends_with("a chunk that declares an id otherwise than the rest of the file"));
+    CHECK(back.errors[0].text().ends_with("a chunk whose declaration of an id differs from the rest of the file"));
     const Recovered out = recover_bytes(*bytes);
     REQUIRE(out.report);
     CHECK(out.report->messages == 1);
     REQUIRE(out.report->lost.size() == 1);
-    CHECK(out.report->lost[0].reason == "a chunk that declares an id otherwise than one before it");
+    CHECK(out.report->lost[0].reason == "a chunk whose declaration of an id differs from an earlier one");
     CHECK(read_all(*open(out.bytes)).lines == back.lines);
 }
 
-TEST_CASE("a chunk that contradicts itself is an error")
+TEST_CASE("a chunk that is contradictory is an error")
 {
     ChunkBuilder chunk;
     chunk.add(Channel{1, 0, "a", "text", {}});
@@ -305,7 +305,7 @@ TEST_CASE("the start of a file is gone: what follows is found, and what is lost 
     REQUIRE(out.report->lost.size() == 1);
     CHECK(out.report->lost[0].begin == 0);
     CHECK(out.report->lost[0].end == file.ends[2]);
-    CHECK(out.report->lost[0].reason == "is no MCAP file: it does not begin with its magic bytes");
+    CHECK(out.report->lost[0].reason == "is not an MCAP file: it does not begin with the magic bytes");
     CHECK(out.report->lost[0].before == 3000);
     const Recovered nothing = recover_bytes(view_of("a letter to a friend, and no recording"));
     REQUIRE(nothing.report);

@@ -128,7 +128,7 @@ TEST_CASE("recovery by name: a new file, never the file itself, none without con
     const std::string in = folder / "cut.mcap", out = folder / "good.mcap";
     std::ofstream(in, std::ios::binary)
         .write(reinterpret_cast<const char*>(file.bytes.data()), static_cast<std::streamsize>(file.bytes.size()));
-    CHECK(recover(in, in, Overwrite::Yes).error().text() == in + ": is the recording itself; name another file");
+    CHECK(recover(in, in, Overwrite::Yes).error().text() == in + ": is the recording itself; give another file");
     auto report = recover(in, out);
     REQUIRE(report);
     CHECK(exit_code(report->verdict) == 5);

@@ -183,9 +183,9 @@ TEST_CASE("what is no recording is refused with a reason")
         return open(bytes).error().text();
     };
     CHECK(why("") == "memory: is empty");
-    CHECK(why("SQLite format 3 and more bytes") == "memory: is no MCAP file: it does not begin with its magic bytes");
-    CHECK(why("\x89MCAP0\r\n") == "memory: is no MCAP file: it does not begin with its magic bytes");
-    CHECK(why(std::string("\x89MCAP0\r\n\x06\0\0\0\0\0\0\0\0", 17)) == "memory: byte 8: a Header record must stand here");
+    CHECK(why("SQLite format 3 and more bytes") == "memory: is not an MCAP file: it does not begin with the magic bytes");
+    CHECK(why("\x89MCAP0\r\n") == "memory: is not an MCAP file: it does not begin with the magic bytes");
+    CHECK(why(std::string("\x89MCAP0\r\n\x06\0\0\0\0\0\0\0\0", 17)) == "memory: byte 8: a Header record is missing here");
     CHECK(Reader::open("/none/such.mcap").error().text() == "/none/such.mcap: cannot open the recording: No such file or directory");
     CHECK(Reader::open("/tmp").error().text() == "/tmp: is not a file; recordings are read from files");
 }

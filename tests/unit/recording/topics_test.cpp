@@ -161,7 +161,7 @@ TEST_CASE("cut and bent bytes are refused, and leave the sample as it was")
     // A length that is larger than everything that follows.
     Bytes huge = bytes;
     std::fill_n(huge.begin() + 4 + 48, 4, std::uint8_t{0xff});
-    CHECK(decoder.decode(huge, back).error().text() == "plab::v2::Frame: cut, or no sample of this type");
+    CHECK(decoder.decode(huge, back).error().text() == "plab::v2::Frame: truncated, or not a sample of this type");
 }
 
 TEST_CASE("every byte of a sample with texts changed: an error, or a sample that can be written")

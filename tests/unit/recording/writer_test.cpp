@@ -135,7 +135,7 @@ TEST_CASE("what cannot be taken is counted, and noted in the file")
     WriterOptions options;
     options.most_message_bytes = 100;
     auto writer = Writer::open(std::make_unique<MemorySink>(bytes), options).take();
-    CHECK(writer.add_channel({0, 3, "t", "text", {}}).error().text() == "channel t names schema 3, which is none");
+    CHECK(writer.add_channel({0, 3, "t", "text", {}}).error().text() == "channel t names schema 3, which does not exist");
     const auto channel = writer.add_channel({0, 0, "t", "text", {}}).take();
     CHECK(!writer.write({channel, 0, 7, 0, view_of(std::string(101, 'x'))}, {}));
     CHECK(!writer.write({9, 0, 8, 0, view_of("x")}, {}));
@@ -143,7 +143,7 @@ TEST_CASE("what cannot be taken is counted, and noted in the file")
     CHECK(writer.add_gap({5, 50, 1, 2}, "the ring was full"));
     CHECK(writer.dropped().messages == 2);
     CHECK(writer.close());
-    CHECK(writer.close().error().text() == "the recording is closed already");
+    CHECK(writer.close().error().text() == "the recording is already closed");
     auto reader = open(*bytes);
     REQUIRE(reader);
     REQUIRE(reader->index().metadata.size() == 2);

@@ -64,7 +64,7 @@ TEST_CASE("info: for people and as JSON")
     CHECK(summary["head"]["server"] == "lab");
     const Outcome cut = plabctl({"info", cut_recording("cli_info_cut.mcap")});
     CHECK(cut.code == 0);
-    CHECK(has(cut.output, "cut: it was not closed"));
+    CHECK(has(cut.output, "truncated: it was not closed"));
 }
 
 TEST_CASE("export: tables and lines, to a file or a pipe")
@@ -114,8 +114,8 @@ TEST_CASE("recover: 0 whole, 5 something lost, 1 nothing usable")
     CHECK(summary["not_recovered"].size() >= 1);
     const std::string page = fresh_path("cli_recovered.html");
     CHECK(plabctl({"report", out, "-o", page}).code == 0);
-    CHECK(!has(text_of(page), "is whole"));
-    CHECK(has(text_of(page), "recovered from a recording of which something is lost"));
+    CHECK(!has(text_of(page), "is complete"));
+    CHECK(has(text_of(page), "recovered from a recording that had lost some data"));
     CHECK(has(text_of(page), "lost, and not recovered: "));
     // It is not written over.
     CHECK(plabctl({"recover", make_recording("cli_whole.mcap"), "-o", out}).code == 1);
@@ -162,7 +162,7 @@ TEST_CASE("diff: exit code 0 without a difference, 1 with one")
     const std::string picture = fresh_path("cli_growth.svg");
     const Outcome other = plabctl({"diff", a, b, "--plot", picture});
     CHECK(other.code == 1);
-    CHECK(has(other.output, "differ first at step 57"));
+    CHECK(has(other.output, "first differ at step 57"));
     CHECK(has(other.output, "red position.y"));
     CHECK(std::filesystem::file_size(picture) > 1000);
     const Json json = Json::parse(plabctl({"diff", a, b, "--json"}).output);

@@ -65,7 +65,7 @@ std::string refused(const std::string& file, const ExportOptions& options)
 
 }  // namespace
 
-TEST_CASE("states: a row per object and frame, in full precision")
+TEST_CASE("states: one row per object and frame, in full precision")
 {
     const std::vector<std::string> lines = lines_of(exported(make_recording("export_states.mcap"), {}));
     REQUIRE(lines.size() == 1 + 201 * 3);
@@ -174,6 +174,6 @@ TEST_CASE("what cannot be exported is refused with what can be")
     const std::string file = make_recording("export_refused.mcap");
     CHECK(refused(file, {.topics = {"state"}}).find("did you mean 'plab/states'") != std::string::npos);
     CHECK(refused(file, {.topics = {"scene"}}).find("those that have one: plab/states") != std::string::npos);
-    CHECK(refused(file, {.topics = {"states", "events"}}).find("several tables go to a folder") != std::string::npos);
+    CHECK(refused(file, {.topics = {"states", "events"}}).find("several tables need a folder") != std::string::npos);
     CHECK(refused(file, {.out = fresh_path("no/such/folder/x.csv")}).find("cannot write") != std::string::npos);
 }

@@ -100,7 +100,7 @@ TEST_CASE("a report is one page with nothing from outside, and tells of the swap
     CHECK(has(page,
               "At 1 s (step 100) contact.response was exchanged, Response/Impulse → Response/None: 2 µs per step before, 0.1 µs after"));
     CHECK(has(page, "1 warning and 0 failures"));
-    CHECK(has(page, "The recording is whole, and nothing is missing."));
+    CHECK(has(page, "The recording is complete, and nothing is missing."));
     CHECK(has(page, "run 2: reset"));
     for (const char* heading : {"Energy and momentum", "Cost and error of the interactions", "Pace", "Requests", "Events", "Runs"})
         CHECK_MESSAGE(has(page, std::string("<h2>") + heading), heading);

@@ -60,7 +60,7 @@ TEST_CASE("what is not understood is an error, whatever the text")
     CHECK(why("struct T { @optional long x; };").find("@optional") != std::string::npos);
     CHECK(why("struct T { long x }").find("';' is missing") != std::string::npos);
     CHECK(why("} ;").find("a '}' too many") != std::string::npos);
-    CHECK(why("struct T { sequence<long, many> x; };").find("'many' is no number") != std::string::npos);
+    CHECK(why("struct T { sequence<long, many> x; };").find("'many' is not a number") != std::string::npos);
     std::string deep = "struct T { ";
     for (int i = 0; i < 1000; ++i) deep += "sequence<";
     CHECK(why(deep).find("nested too deeply") != std::string::npos);

@@ -44,8 +44,8 @@ TEST_CASE("sizes that no picture can have are refused")
     {
         const auto made = make_renderer(width, height);
         REQUIRE_FALSE(made.ok());
-        CHECK(made.error().reason ==
-              "a picture must have from 16 to 8192 pixels each way, not " + std::to_string(width) + " x " + std::to_string(height));
+        CHECK(made.error().reason == "a picture must have from 16 to 8192 pixels in each direction, not " + std::to_string(width) + " x " +
+                                         std::to_string(height));
     }
     CHECK(make_renderer(16, 16).ok());
 }

@@ -263,11 +263,11 @@ TEST_CASE("a recording without a snapshot is refused, and so is a request that c
     taping.log.entries.back().operations = {{"remove", "nobody", "", "", {}}};
     const auto impossible = replay::replay(taping.log, simulation, library(), {});
     REQUIRE(!impossible);
-    CHECK(impossible.error().reason.find("the request of step 1 cannot be carried out again") != std::string::npos);
+    CHECK(impossible.error().reason.find("the request of step 1 cannot be replayed") != std::string::npos);
     MemoryLog empty;
     const auto nothing = replay::replay(empty, simulation, library(), {});
     REQUIRE(!nothing);
-    CHECK(nothing.error().reason.find("no snapshot to begin from") != std::string::npos);
+    CHECK(nothing.error().reason.find("no snapshot to start from") != std::string::npos);
 }
 
 }  // namespace plab::test

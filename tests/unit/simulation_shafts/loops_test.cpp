@@ -105,7 +105,7 @@ TEST_CASE("couplings that cannot be are refused by name")
         Train t;
         t.add_shaft(1, 1, Motion::Kinematic), t.add_shaft(1), t.add_shaft(1, 2, Motion::Kinematic);
         t.gear(0, 1, 1.0), t.gear(1, 2, 2.0);
-        CHECK(t.build_error() == "g1: joins s0 and s2, whose motion is prescribed both; at most one may be");
+        CHECK(t.build_error() == "g1: joins s0 and s2, but the motion of both is prescribed; at most one may be");
     }
     SUBCASE("itself")
     {
@@ -140,7 +140,7 @@ TEST_CASE("couplings that cannot be are refused by name")
         t.graph.drive(t.components++, shaft(3), shaft(0));
         t.build();
         t.gear(1, 2, 2.0);
-        CHECK(t.build_error() == "g0: one-way drives in a circle: g0 -> g1 -> g2 -> g0; one of them must be able to feel its driven shaft");
+        CHECK(t.build_error() == "g0: one-way drives form a cycle: g0 -> g1 -> g2 -> g0; one of them must react to its driven shaft");
     }
     SUBCASE("a drive of its own train, or of a prescribed shaft")
     {

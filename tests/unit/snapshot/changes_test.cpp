@@ -236,7 +236,7 @@ TEST_CASE("a refused snapshot changes nothing")
     broken->world.bodies.velocity[0].x += 1e-9;
     const auto refused = s->restore(simulation::Snapshot(broken));
     REQUIRE(!refused.ok());
-    CHECK(reasons(refused).find("not the one that was captured") != std::string::npos);
+    CHECK(reasons(refused).find("differs from the captured one") != std::string::npos);
 
     auto foreign = std::make_shared<simulation::SnapshotContent>(*before);
     auto scene = std::make_shared<model::SceneSpec>(*before->world.scene);

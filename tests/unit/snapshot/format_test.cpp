@@ -161,7 +161,7 @@ TEST_CASE("every cut is refused")
         const auto file = read_sections(std::span(whole).first(n), kSnapshotFormat);
         REQUIRE(!file.ok());
     }
-    CHECK(mentions(refusal({}), "cut"));
+    CHECK(mentions(refusal({}), "truncated"));
     CHECK(mentions(refusal(Bytes(whole.begin(), whole.end() - 1)), "should have"));
 }
 
@@ -204,11 +204,11 @@ TEST_CASE("versions, unknown names and missing parts are told by name")
     CHECK(mentions(refusal(rewritten(
                        whole, [](auto&) {}, 2)),
                    "has format 2, this build reads 1 to 1"));
-    CHECK(mentions(refusal(Bytes{'G', 'I', 'F', '8'}), "no snapshot of pLab"));
+    CHECK(mentions(refusal(Bytes{'G', 'I', 'F', '8'}), "not a pLab snapshot"));
     const auto with = [&](const std::function<void(std::vector<Section>&)>& change) { return refusal(rewritten(whole, change)); };
     CHECK(with([](auto&) {}).empty());
     CHECK(mentions(with([](auto& s) { s.push_back({"tides", 0, {}}); }), "'tides' is unknown"));
-    CHECK(mentions(with([](auto& s) { s.push_back(section(s, "bodies")); }), "'bodies' stands twice"));
+    CHECK(mentions(with([](auto& s) { s.push_back(section(s, "bodies")); }), "'bodies' occurs twice"));
     CHECK(mentions(with(
                        [](auto& s) {
                            section(s, "bodies").columns.push_back({"charge", std::vector<double>(3)});

@@ -127,7 +127,7 @@ TEST_CASE("a host that could not cut its step as finely as its contacts ask gets
     CHECK(a.place == b.place);
     CHECK(a.evaluations == b.evaluations);
     CHECK(automatic.resolved() == "RungeKutta4");
-    CHECK(automatic.rows.reason[0] == "RungeKutta4: contacts ask for more sub-steps than they may have, whatever the method");
+    CHECK(automatic.rows.reason[0] == "RungeKutta4: contacts need more substeps than are allowed, whatever the method");
     CHECK(automatic.events.all.empty());
     a.undersampled = false;
     a.run(0.01, 1, std::ref(automatic));

@@ -93,13 +93,13 @@ TEST_CASE("each run has a name of its own, and no setting is overridden unseen")
     };
     CHECK(why({"a: x=A", "b: x=B"}, {"dt=1/60,1/120", "y=A,B", "z=A,B"}) == "none");
     CHECK(has(why({}, {"dt=1/60", "dt=1/120"}), "--vary dt is given twice: write all values in one"));
-    CHECK(has(why({}, {"dt=1/60,1/60"}), "'1/60' and '1/60' are one value given twice"));
-    CHECK(has(why({}, {"dt=1/50,1/60,20 ms"}), "'1/50' and '20 ms' are one value"));
+    CHECK(has(why({}, {"dt=1/60,1/60"}), "'1/60' and '1/60' are the same value, given twice"));
+    CHECK(has(why({}, {"dt=1/50,1/60,20 ms"}), "'1/50' and '20 ms' are the same value"));
     CHECK(has(why({}, {"x=Kind/A,A"}), "two runs would have the name 'A'"));
     CHECK(has(why({"x=A", "y=A"}, {}), "two runs would have the name 'A'"));
     CHECK(has(why({"a: x=A", "a: x=B"}, {}), "two runs would have the name 'a'"));
     CHECK(has(why({"a: x=A x=B"}, {}), "--algorithm sets x twice"));
-    CHECK(has(why({"a: x=A dt=1/60"}, {"dt=1/60,1/30"}), "dt is set by a --algorithm and varied"));
+    CHECK(has(why({"a: x=A dt=1/60"}, {"dt=1/60,1/30"}), "dt is set by --algorithm and varied"));
 }
 
 TEST_CASE("settings: types, parameters, entries of scripts; what does not hold is said")
@@ -315,9 +315,9 @@ TEST_CASE("one run has no range, and runs that agree have none either")
             if (s.starts_with("Energy")) return s;
         return std::string();
     };
-    CHECK(energy({0.25}) == "Energy that nobody put in, beside the largest there was: 0.25 (R1).");
-    CHECK(energy({0.25, 0.25}) == "Energy that nobody put in, beside the largest there was: 0.25 by all.");
-    CHECK(energy({0.5, 0.25}) == "Energy that nobody put in, beside the largest there was: from 0.25 (R2) to 0.5 (R1).");
+    CHECK(energy({0.25}) == "Unexplained energy, relative to the largest energy of the run: 0.25 (R1).");
+    CHECK(energy({0.25, 0.25}) == "Unexplained energy, relative to the largest energy of the run: 0.25 by all.");
+    CHECK(energy({0.5, 0.25}) == "Unexplained energy, relative to the largest energy of the run: from 0.25 (R2) to 0.5 (R1).");
     CHECK(energy({0}) == "Energy is kept to round-off.");
     CHECK(energy({0, 0}) == "Energy is kept to round-off by all.");
 }
@@ -333,7 +333,7 @@ TEST_CASE("nothing to study is an error that says what would be right")
     CHECK(has(why(plan(file, {"dt=1/60"}, "none", {"bell.position"}, 1)), "did you mean 'ball'"));
     CHECK(
         has(why(plan(file, {"dt=1/60"}, "none", {"ball.positoin"}, 1)), "ball has no number 'positoin', did you mean 'position'?; it has"));
-    CHECK(has(why(plan(file, {"dt=1/60"}, "none", {"ball"}, 1)), "names no field of ball: write ID.field, such as ball."));
+    CHECK(has(why(plan(file, {"dt=1/60"}, "none", {"ball"}, 1)), "does not name a field of ball: write ID.field, such as ball."));
     CHECK(has(why(plan(file, {"dt=1/60"}, "none", {"bell"}, 1)), "did you mean 'ball'"));
     CHECK(
         has(why(plan("scenes/studies/bounce.xml", {"dt=1/60"}, "none", {"contact.respnse.sweeps"}, 1)), "did you mean 'contact.response'"));

@@ -76,7 +76,7 @@ TEST_CASE("a step is a whole number, a time has a unit; both come before the end
     CHECK(settled("119:solver=Exact", one) == "none 1983");
     for (const char* text : {"solver=Exact", ":solver=Exact", "0.5:solver=Exact", "-1:solver=Exact", "-1s:solver=Exact", "1 m:solver=Exact",
                              "s:solver=Exact", "30:solver=", "30:=Exact", "30:solver", "1e400s:solver=Exact"})
-        CHECK_MESSAGE(has(settled(text, one), "--swap wants STEP:ID=TYPE or TIME:ID=TYPE"), std::string(text));
+        CHECK_MESSAGE(has(settled(text, one), "--swap needs STEP:ID=TYPE or TIME:ID=TYPE"), std::string(text));
     CHECK(has(settled("120:solver=Exact", one), "the runs end at 2 s, before step 120"));
     CHECK(has(settled("2s:solver=Exact", two), "the runs end at 2 s"));
     CHECK(has(settled("9000000000000000000:solver=Exact", one), "the runs end at"));

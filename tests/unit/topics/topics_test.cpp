@@ -199,7 +199,7 @@ TEST_CASE("what is not understood is said by name, and is measured all the same"
     const Ticker ticker(20ms, [&] { (void)dds_write(writer.get(), &sample); });
     const Outcome out = topics({"print", "undecided", "-n", "1"});
     CHECK(out.code == 1);
-    CHECK(has(out.errors, "'choice' is a union, which is not understood"));
+    CHECK(has(out.errors, "'choice' is a union, which is not supported"));
     CHECK(topics({"rate", "undecided", "-n", "1"}).code == 0);
     const wire::Entity labels = bus.foreign(stranger_Labelled_desc, "labelled", false);
     const Outcome labelled = topics({"rate", "labelled", "-n", "1"});
@@ -256,7 +256,7 @@ TEST_CASE("a topic that nobody writes is 3, with the nearest name; wrong use is 
     Writers writers;
     const Outcome none = topics({"print", "plab/stats", "--timeout", "0.5"});
     CHECK(none.code == 3);
-    CHECK(has(none.errors, "nobody writes 'plab/stats'"));
+    CHECK(has(none.errors, "there is no writer of 'plab/stats'"));
     CHECK(has(none.errors, "plab/states"));
     CHECK(topics({"rate", "plab/states", "-d", "0.5"}).code == 3);
     CHECK(topics({"print"}).code == 2);

@@ -185,7 +185,7 @@ TEST_CASE("frames that cannot be had are told, and the exit code says so")
         FakeServer server({.first_time = 0.3, .until = 0.6});
         const Run run = view(server, "--at 0 --fps 10 --duration 0.5 --frames " + folder / "early");
         CHECK(run.code == 1);
-        CHECK_MESSAGE(has(run.text, "the first 3 frames cannot be had"), run.text);
+        CHECK_MESSAGE(has(run.text, "the first 3 frames cannot be made"), run.text);
         CHECK_FALSE(std::filesystem::exists(folder / "early/frame_0002.png"));
         CHECK(std::filesystem::exists(folder / "early/frame_0003.png"));
     }
@@ -194,7 +194,7 @@ TEST_CASE("frames that cannot be had are told, and the exit code says so")
         const Run run = view(server, "--at 0 --fps 10 --duration 0.5 --frames " + folder / "late");
         CHECK(run.code == 1);
         const bool reported =
-            has(run.text, "the server has gone; ") && has(run.text, " of 5 frames cannot be had, the last state was of t = 0.");
+            has(run.text, "the server has gone; ") && has(run.text, " of 5 frames cannot be made, the last state was of t = 0.");
         CHECK_MESSAGE(reported, run.text);
         CHECK(std::filesystem::exists(folder / "late/frame_0000.png"));
         CHECK_FALSE(std::filesystem::exists(folder / "late/frame_0004.png"));

@@ -176,13 +176,13 @@ TEST_CASE("wrong use ends with code 2 and says why")
     };
     CHECK(says({"--png", "a.png", "--at", "2", "--from", "1 2 3"}) == "fine");
     CHECK(says({"--mp4", "a.mp4", "--orbit", "0", "--until", "3"}) == "fine");
-    CHECK(says({}) == "2 plab-view: says not what to make: --png, --shot, --frames or --mp4; see plab-view --help\n");
+    CHECK(says({}) == "2 plab-view: needs an output: --png, --shot, --frames or --mp4; see plab-view --help\n");
     CHECK(says({"--png", "a.png", "--mp4", "b.mp4"}).substr(0, 2) == "2 ");
     CHECK(says({"--png", "a.png", "--until", "3"}).substr(0, 2) == "2 ");
     CHECK(says({"--frames", "d", "--until", "3", "--duration", "1"}).substr(0, 2) == "2 ");
     CHECK(says({"--frames", "d", "--until", "3", "--at", "4"}) == "2 plab-view: --until is before --at\n");
     CHECK(says({"--png", "a.png", "--camera", "x", "--from", "1 2 3"}).substr(0, 2) == "2 ");
-    CHECK(says({"--png", "a.png", "--from", "1 2"}) == "2 plab-view: --from: wants three numbers, \"x y z\", not '1 2'\n");
+    CHECK(says({"--png", "a.png", "--from", "1 2"}) == "2 plab-view: --from: needs three numbers, \"x y z\", not '1 2'\n");
     CHECK(says({"--png", "a.png", "--width", "8"}).substr(0, 2) == "2 ");
     CHECK(says({"--help"}).substr(0, 2) == "0 ");
 }

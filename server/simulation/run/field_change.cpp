@@ -1,4 +1,4 @@
-#include "simulation/requests/field_change.h"
+#include "simulation/run/field_change.h"
 
 #include <cmath>
 
@@ -65,7 +65,7 @@ Result<void> set_field(world::World& world, std::uint32_t component, const std::
     const BodyMotion before = motion_of(world, component);
     const bool quarantined = world.component(component).quarantined;
     if (auto done = world.set(component, name, value); !done) return done;
-    world.quarantine(component, false);  // a mended component gets another chance
+    world.quarantine(component, false);  // a corrected component is tried again
     if (field->kind == FieldKind::State && !quarantined) return {};
     prepared.insert(component);
     const BodyMotion moved = motion_of(world, component);

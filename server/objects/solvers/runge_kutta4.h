@@ -21,7 +21,7 @@ struct RungeKutta4Rows
 /// One step over context.dt, from coordinates 0.
 void advance_runge_kutta4(const StepContext& context, Row row, const RungeKutta4Rows& rows, DynamicSystem& system);
 
-/// The slopes k1 to k4 of a step, in the system's workspaces 3 to 10: for who judges it, and may take it back.
+/// The slopes k1 to k4 of a step, in the system's workspaces 3 to 10, for callers that judge the step and may undo it.
 struct StageSlopes
 {
     explicit StageSlopes(DynamicSystem& system);
@@ -29,11 +29,11 @@ struct StageSlopes
     std::array<std::span<double>, 4> dx, du;
 };
 
-/// The method itself; workspaces 0 to 2. Keeps the slopes if asked to.
+/// The method itself; uses workspaces 0 to 2. Stores the slopes if requested.
 void advance_by_runge_kutta4(double h, DynamicSystem& system, StageSlopes* slopes = nullptr);
-/// Only the slopes: nothing is booked, and the system is as it was.
+/// Computes only the slopes: nothing is booked, and the system is left as it was.
 void find_slopes(double h, DynamicSystem& system, StageSlopes& slopes);
-/// After an advance with slopes: back to the start. What had been booked is taken back.
+/// Returns to the start after an advance with slopes, and cancels its bookings.
 void take_back_runge_kutta4(double h, DynamicSystem& system, const StageSlopes& slopes);
 
 }  // namespace plab::solvers

@@ -1,4 +1,4 @@
-// A transaction's trials: one step with the old components and one with the new ones, of those whom the request can touch.
+// The trials of a transaction: one step with the old components and one with the new ones, for the objects that the request can affect.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,7 +6,7 @@
 #include "model/numbers.h"
 #include "simulation/costs/clock.h"
 #include "simulation/requests/request_words.h"
-#include "simulation/requests/transaction.h"
+#include "simulation/transaction/transaction.h"
 
 namespace plab::simulation
 {
@@ -17,18 +17,18 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const StepOutcome kNotTried{kNaN, {kNaN, kNaN, kNaN}, kNaN, kNaN};
 
 constexpr double kLeastBudget = 5e6;    // ns
-constexpr double kUnknownBudget = 1e8;  // ns: while no step has told what one costs
+constexpr double kUnknownBudget = 1e8;  // ns, as long as no step has been timed
 constexpr double kStepsOfBudget = 10;
-/// Shares of the budget that may have passed when no step is made any more for the sake of its cost. Where there is no budget: ns.
+/// Share of the budget after which no step is repeated for the sake of timing. kMeasureUnlimited, in ns, applies if there is no budget.
 constexpr double kMeasureOld = 0.45, kMeasureNew = 0.95;
 constexpr double kMeasureUnlimited = 2e7;
 
-/// With * for any text and ? for any character.
+/// `*` matches any text and `?` any character.
 bool is_pattern(const std::string& id) { return id.find_first_of("*?") != std::string::npos; }
 
 bool matches(std::string_view pattern, std::string_view text)
 {
-    // Greedy, with the last star as the place to try again from: linear but for stars that share what they swallow.
+    // Greedy, backtracking only to the last star, which takes linear time in practice.
     std::size_t p = 0, t = 0, star = std::string_view::npos, from = 0;
     while (t < text.size())
     {
@@ -51,8 +51,8 @@ std::chrono::nanoseconds as_duration(double ns) { return std::chrono::nanosecond
 
 Result<void> Transaction::expand(const SwapOperation& op, std::vector<Operation>& out) const
 {
-    const world::World& world = *s_->world_;
-    const std::vector<std::string> known = s_->world_->types().names();
+    const world::World& world = run_->world();
+    const std::vector<std::string> known = run_->world().types().names();
     std::size_t named = 0;
     const std::size_t first = out.size();
     for (const std::uint32_t i : world.in_id_order())
@@ -60,11 +60,11 @@ Result<void> Transaction::expand(const SwapOperation& op, std::vector<Operation>
         const world::Component& c = world.component(i);
         if (c.table == kNoIndex || !matches(op.id, c.id)) continue;
         ++named;
-        // A short name is one of the component's own family.
+        // A short type name is completed with the family of the component.
         const std::string& from = world.type_of(i)->info.name;
         const auto name = model::full_type_name(op.type, known, from.substr(0, from.rfind('/') + 1));
         if (!name) continue;
-        const auto type = s_->world_->types().require(*name);
+        const auto type = run_->world().types().require(*name);
         if (!type || !(*type)->why_not_exchangeable(*world.type_of(i)).empty()) continue;
         SwapOperation one = op;
         one.id = c.id;
@@ -97,7 +97,7 @@ void Transaction::mark_touched(TrialScope& scope) const
 {
     const auto mark = [&](const std::string& id)
     {
-        // What an earlier operation of the request adds is not there yet, what one removes is not there any more.
+        // A component that an earlier operation of this request adds does not exist yet, and one that it removes no longer exists.
         if (const auto component = find_typed(id))
             scope.add(*component);
         else
@@ -118,8 +118,8 @@ void Transaction::mark_touched(TrialScope& scope) const
 
 TrialStep Transaction::next_step() const
 {
-    const double start = s_->time_at(s_->tick_);
-    return {s_->tick_, start, s_->time_at(s_->tick_ + 1) - start};
+    const double start = run_->clock.time_at(run_->clock.tick);
+    return {run_->clock.tick, start, run_->clock.time_at(run_->clock.tick + 1) - start};
 }
 
 double Transaction::budget_ns() const
@@ -135,7 +135,7 @@ double Transaction::budget_ns() const
         case TrialChoice::Budget::Automatic:
             break;
     }
-    return s_->mean_step_ns_ > 0 ? std::max(kLeastBudget, kStepsOfBudget * s_->mean_step_ns_) : kUnknownBudget;
+    return context_->mean_step_ns > 0 ? std::max(kLeastBudget, kStepsOfBudget * context_->mean_step_ns) : kUnknownBudget;
 }
 
 std::vector<std::uint32_t> Transaction::swapped() const
@@ -144,7 +144,7 @@ std::vector<std::uint32_t> Transaction::swapped() const
     for (const Operation& op : operations_.empty() ? request_->operations : operations_)
         if (const auto* swap = std::get_if<SwapOperation>(&op))
         {
-            // What an earlier operation of the request adds is not there yet: it had no error.
+            // A component that an earlier operation of this request adds does not exist yet: it has no error to compare.
             const auto component = find_typed(swap->id);
             out.push_back(component ? *component : kNoIndex);
         }
@@ -160,12 +160,13 @@ std::uint64_t Transaction::measure_until(double share) const
 void Transaction::try_old(TrialScope& scope)
 {
     const double budget = budget_ns();
-    Interruption deadline(s_->interruption_);
-    // Half of it is for the new one, which has more to prove.
+    Interruption deadline(context_->interruption);
+    // The other half is for the new components, whose trial decides whether the request takes effect.
     if (std::isfinite(budget)) deadline.ask(as_duration(0.5 * budget));
-    s_->progress_.begin(Activity::TrialOfOld, s_->tick_, now_ns());
-    old_ = Trial(*s_->world_, *s_->stepper_, next_step()).run(scope, swapped(), deadline, s_->progress_, measure_until(kMeasureOld));
-    s_->progress_.end();
+    context_->progress.begin(Activity::TrialOfOld, run_->clock.tick, now_ns());
+    old_ =
+        Trial(run_->world(), run_->stepper(), next_step()).run(scope, swapped(), deadline, context_->progress, measure_until(kMeasureOld));
+    context_->progress.end();
     old_tried_ = !old_.given_up;
 }
 
@@ -173,28 +174,28 @@ Result<void> Transaction::try_new(TrialScope& scope)
 {
     TrialReport& reported = reply_.trial;
     reported.budget_ns = budget_ns();
-    Interruption deadline(s_->interruption_);
+    Interruption deadline(context_->interruption);
     const double spent = static_cast<double>(now_ns() - trial_begin_);
     if (std::isfinite(reported.budget_ns)) deadline.ask(as_duration(reported.budget_ns - spent));
-    s_->progress_.begin(Activity::TrialOfNew, s_->tick_, now_ns());
+    context_->progress.begin(Activity::TrialOfNew, run_->clock.tick, now_ns());
     std::vector<std::uint32_t> components;
-    for (const SwapReport& report : reply_.swaps) components.push_back(s_->world_->find(report.id));
+    for (const SwapReport& report : reply_.swaps) components.push_back(run_->world().find(report.id));
     const TrialResult with_new =
-        Trial(*s_->world_, *s_->stepper_, next_step())
-            .run(scope, components, deadline, s_->progress_, reply_.swaps.empty() ? 0 : measure_until(kMeasureNew));
-    s_->progress_.end();
+        Trial(run_->world(), run_->stepper(), next_step())
+            .run(scope, components, deadline, context_->progress, reply_.swaps.empty() ? 0 : measure_until(kMeasureNew));
+    context_->progress.end();
     reported.ns = static_cast<double>(now_ns() - trial_begin_), reported.objects = scope.objects(),
     reported.everything = scope.has_everything();
     reported.outcome = with_new.given_up                      ? TrialReport::Outcome::GivenUp
                        : !reply_.swaps.empty() && !old_tried_ ? TrialReport::Outcome::WithoutOld
                                                               : TrialReport::Outcome::Made;
     write_reports(with_new);
-    if (s_->interruption_ && s_->interruption_->due()) return reason("the server is to end: the trial was given up");
+    if (context_->interruption && context_->interruption->due()) return reason("the server is shutting down: the trial was interrupted");
     if (with_new.given_up)
     {
         if (!request_->trial.must) return {};
         return reason("its trial took longer than its budget of " + model::format_real(1e-6 * reported.budget_ns) +
-                      " ms and was given up, and without a trial it was not to be carried out");
+                      " ms and was interrupted, and the request must not take effect without a trial");
     }
     if (!with_new.failure.empty() && (!old_tried_ || old_.failure.empty())) return reason("the first step failed: " + with_new.failure);
     if (const std::string why = makes_energy(with_new); !why.empty()) return reason(why);
@@ -219,8 +220,8 @@ void Transaction::write_reports(const TrialResult& with_new)
     }
 }
 
-/// Motion that comes from nowhere: more of it than was there before, and more energy in all. What a spring or a height gives back is no
-/// gain, and what a field of another strength holds is no motion.
+/// Detects motion without a source: more kinetic energy than before and also more total energy. Energy that a spring or gravity releases
+/// is no gain in total, and a field of a different strength changes stored energy without creating motion.
 std::string Transaction::makes_energy(const TrialResult& with_new) const
 {
     if (reply_.swaps.empty() || !std::isfinite(request_->trial.energy_factor)) return {};
@@ -228,10 +229,10 @@ std::string Transaction::makes_energy(const TrialResult& with_new) const
     const double gain = energy_applied_ - energy_before_ + with_new.outcome.energy - with_new.before;
     const double made = std::min(with_new.kinetic_after, gain);
     if (!(made > request_->trial.energy_factor * scale)) return {};
-    return "the first step would take the kinetic energy of what it touches from " + model::format_real(with_new.moving) + " J to " +
-           model::format_real(with_new.kinetic_after) + " J, and nothing gives so much: more than " +
+    return "the first step would raise the kinetic energy of the objects concerned from " + model::format_real(with_new.moving) + " J to " +
+           model::format_real(with_new.kinetic_after) + " J without a source of that energy: a gain of more than " +
            model::format_real(request_->trial.energy_factor) +
-           " times as much has to be asked for (energy FACTOR; plabctl: --allow-energy)";
+           " times has to be allowed explicitly (energy FACTOR; plabctl: --allow-energy)";
 }
 
 }  // namespace plab::simulation

@@ -1,4 +1,4 @@
-#include "simulation/requests/trial_scope.h"
+#include "simulation/transaction/trial_scope.h"
 
 #include <algorithm>
 #include <utility>
@@ -84,7 +84,7 @@ std::size_t TrialScope::objects() const
     return n;
 }
 
-/// Groups that read one another are advanced together.
+/// Groups that read one another are advanced together, so a cluster is in the scope as a whole or not at all.
 bool TrialScope::close_over_clusters(const Groups& groups)
 {
     std::vector<std::uint8_t> in(groups.clusters, 0);
@@ -105,7 +105,7 @@ bool TrialScope::close_over_clusters(const Groups& groups)
     return grown;
 }
 
-/// What moves as it is told feels nothing, and passes nothing on.
+/// A prescribed object is not affected by forces, so it does not pass effects on to others.
 bool TrialScope::carries_on(Ref object) const { return object.facet == Facet::Body && world_->host().bodies.dynamic(object.index); }
 
 template <class Pairs>
@@ -118,7 +118,7 @@ bool TrialScope::close_over_pairs(const Pairs& pairs)
     return grown;
 }
 
-/// Somebody in it may collide, and whoever collides there takes the whole world back.
+/// A detector that rewinds the whole world at a collision acts on an object in the scope: then everything is in the scope.
 bool TrialScope::rewinds_everybody(const Stepper& stepper) const
 {
     const auto concerns = [&](const Detector& d) { return d.locates && !d.local && acts_on_scope(d.component); };

@@ -1,4 +1,4 @@
-#include "simulation/requests/transaction.h"
+#include "simulation/transaction/transaction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,7 @@
 #include "model/compile.h"
 #include "model/names.h"
 #include "model/values.h"
-#include "simulation/requests/field_change.h"
-#include "simulation/snapshot/history.h"
+#include "simulation/run/field_change.h"
 
 namespace plab::simulation
 {
@@ -22,74 +21,72 @@ std::vector<std::string> subtree_of(const model::SceneSpec& scene, const std::st
     return out;
 }
 
-Transaction::Transaction(Simulation& simulation, const Request& request) : s_(&simulation), request_(&request)
+Transaction::Transaction(Run& run, RunContext& context, RunOperations& operations, const Request& request)
+    : run_(&run), context_(&context), whole_(&operations), request_(&request)
 {
-    reply_.request = request.id, reply_.step = simulation.tick_;
+    reply_.request = request.id, reply_.step = run.clock.tick;
 }
 
 Transaction::State Transaction::capture() const
 {
-    Stepper& stepper = *s_->stepper_;
-    return {s_->world_->backup(),    stepper.contacts(),      stepper.work(),    stepper.contact_energy(),
+    Stepper& stepper = run_->stepper();
+    return {run_->world().backup(),  stepper.contacts(),      stepper.work(),    stepper.contact_energy(),
             stepper.departed_work(), stepper.requests_work(), stepper.reported()};
 }
 
 void Transaction::restore(const State& state, bool structure_changed)
 {
-    s_->world_->restore(state.world);
-    // Opaque parts (a script's chunk) are not in the backup: they are made again from what is.
-    for (const std::set<std::uint32_t>* made : {&prepared_, &s_->changed_by_scripts_})
+    run_->world().restore(state.world);
+    // Opaque parts (a script's compiled chunk) cannot be part of the backup: they are prepared again from the restored parameters.
+    for (const std::set<std::uint32_t>* made : {&prepared_, &run_->changed_by_scripts})
         for (const std::uint32_t i : *made)
-            if (i < s_->world_->components().size() && s_->world_->component(i).alive) (void)s_->world_->prepare(i);
-    // Preparing rewrites host rows from parameters; what moved on since (a body's pose) is in the backup.
-    s_->world_->host() = state.world.host;
-    if (structure_changed) (void)s_->stepper_->rebuild();
-    s_->world_->host() = state.world.host;
-    s_->stepper_->contacts() = state.contacts;
-    s_->stepper_->work() = state.work, s_->stepper_->contact_energy() = state.contact_energy;
-    s_->stepper_->reported() = state.reported;
-    s_->stepper_->reported().contradictory.resize(s_->world_->components().size(), 0);
-    s_->stepper_->departed_work() = state.departed_work, s_->stepper_->requests_work() = state.requests_work;
+            if (i < run_->world().components().size() && run_->world().component(i).alive) (void)run_->world().prepare(i);
+    // Preparing overwrites host rows with values from parameters, but later values (a body's pose) are in the backup.
+    run_->world().host() = state.world.host;
+    if (structure_changed) (void)run_->stepper().rebuild();
+    run_->world().host() = state.world.host;
+    run_->stepper().contacts() = state.contacts;
+    run_->stepper().work() = state.work, run_->stepper().contact_energy() = state.contact_energy;
+    run_->stepper().reported() = state.reported;
+    run_->stepper().reported().contradictory.resize(run_->world().components().size(), 0);
+    run_->stepper().departed_work() = state.departed_work, run_->stepper().requests_work() = state.requests_work;
 }
 
 Result<std::uint32_t> Transaction::find_typed(const std::string& id) const
 {
-    const std::uint32_t i = s_->world_->find(id);
-    if (i != kNoIndex && s_->world_->component(i).table != kNoIndex) return i;
-    // An object stands for the only State inside it, as in roles of the blueprint.
+    const std::uint32_t i = run_->world().find(id);
+    if (i != kNoIndex && run_->world().component(i).table != kNoIndex) return i;
+    // An object's id may be used for the only State inside it, as in the roles of a blueprint.
     std::vector<std::uint32_t> states;
     if (i != kNoIndex)
-        for (const std::string& inner : subtree_of(s_->world_->scene(), id))
+        for (const std::string& inner : subtree_of(run_->world().scene(), id))
         {
-            const std::uint32_t k = s_->world_->find(inner);
-            const Facet facet = s_->world_->component(k).facet;
+            const std::uint32_t k = run_->world().find(inner);
+            const Facet facet = run_->world().component(k).facet;
             if (facet == Facet::Body || facet == Facet::Shaft) states.push_back(k);
         }
     if (states.size() == 1) return states.front();
     std::vector<std::string> known;
-    for (const std::uint32_t k : s_->world_->in_id_order())
-        if (s_->world_->component(k).table != kNoIndex) known.push_back(s_->world_->id_of(k));
+    for (const std::uint32_t k : run_->world().in_id_order())
+        if (run_->world().component(k).table != kNoIndex) known.push_back(run_->world().id_of(k));
     if (i != kNoIndex) return Error{{}, id, "is a group; name one of its components"};
     return Error{{}, {}, "no component has the id '" + id + "'" + model::did_you_mean(id, known)};
 }
 
-/// The state is that of the past; pause and rate are the present's.
+/// Restores the past state but keeps the present pause and rate.
 template <class Op>
 Result<void> Transaction::go_back(const Op& op)
 {
-    const std::tuple clock(s_->paused_, s_->steps_left_, s_->rate_);
+    const std::tuple clock(run_->clock.paused, run_->clock.steps_left, run_->clock.rate);
     const auto go = [&]() -> Result<void>
     {
         if constexpr (std::is_same_v<Op, RestoreOperation>)
-        {
-            auto found = s_->history().find(op.name);
-            return found ? s_->restore(*found) : found.errors();
-        }
+            return whole_->restore(op.name);
         else
-            return s_->history().rewind(*s_, op.back ? s_->time() - op.time : op.time);
+            return whole_->rewind(op.back ? run_->clock.time() - op.time : op.time);
     };
     auto done = go();
-    if (done) std::tie(s_->paused_, s_->steps_left_, s_->rate_) = clock;
+    if (done) std::tie(run_->clock.paused, run_->clock.steps_left, run_->clock.rate) = clock;
     return done;
 }
 
@@ -102,31 +99,31 @@ Result<void> Transaction::apply(const Operation& operation)
             if constexpr (requires { this->apply_one(op); })
                 return apply_one(op);
             else if constexpr (std::is_same_v<T, PauseOperation>)
-                s_->paused_ = true, s_->steps_left_ = 0;
+                run_->clock.paused = true, run_->clock.steps_left = 0;
             else if constexpr (std::is_same_v<T, ResumeOperation>)
-                s_->paused_ = false, s_->steps_left_ = 0;
+                run_->clock.paused = false, run_->clock.steps_left = 0;
             else if constexpr (std::is_same_v<T, StepOperation>)
             {
                 if (op.steps < 1) return reason("needs at least one step, not " + std::to_string(op.steps));
-                s_->paused_ = true, s_->steps_left_ = op.steps;
+                run_->clock.paused = true, run_->clock.steps_left = op.steps;
             }
             else if constexpr (std::is_same_v<T, RateOperation>)
             {
-                if (!(op.factor >= 0)) return reason("a rate is 0 (as fast as it goes) or a positive factor");
-                s_->rate_ = op.factor;
+                if (!(op.factor >= 0)) return reason("the rate must be 0 (as fast as possible) or a positive factor");
+                run_->clock.rate = op.factor;
             }
             else if constexpr (std::is_same_v<T, StepLengthOperation>)
             {
                 const double dt = op.dt.seconds;
                 if (!(dt >= 1e-9 && dt <= 3600) || op.dt.denominator < 0 || op.dt.numerator <= 0)
-                    return reason("a step length is from 1e-9 s to 3600 s");
-                s_->base_time_ = s_->time(), s_->base_tick_ = s_->tick_;
-                s_->dt_ = op.dt;
+                    return reason("the step length must be between 1e-9 s and 3600 s");
+                run_->clock.base_time = run_->clock.time(), run_->clock.base_tick = run_->clock.tick;
+                run_->clock.dt = op.dt;
             }
             else if constexpr (std::is_same_v<T, SnapshotOperation>)
-                return s_->history().keep(op.name, s_->capture());
+                return whole_->keep(op.name);
             else if constexpr (std::is_same_v<T, ForgetOperation>)
-                return s_->history().forget(op.name);
+                return whole_->forget(op.name);
             else if constexpr (std::is_same_v<T, RestoreOperation> || std::is_same_v<T, RewindOperation>)
                 return go_back(op);
             else
@@ -136,9 +133,9 @@ Result<void> Transaction::apply(const Operation& operation)
                     if constexpr (std::is_same_v<T, LoadOperation>)
                         return op.scene;
                     else
-                        return *s_->loaded_;
+                        return *run_->loaded;
                 }();
-                return s_->load(scene);
+                return whole_->load(scene);
             }
             return {};
         },
@@ -149,12 +146,12 @@ Result<void> Transaction::apply_one(const AddOperation& op)
 {
     structural_ = true;
     for (const model::ComponentSpec& c : op.fragment.components) touched_.push_back(c.id);
-    return s_->world_->add(op.fragment);
+    return run_->world().add(op.fragment);
 }
 
 Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
 {
-    auto fragment = model::compile(op.blueprint, s_->world_->types(), &s_->world_->scene(), s_->limits_);
+    auto fragment = model::compile(op.blueprint, run_->world().types(), &run_->world().scene(), context_->limits);
     if (!fragment) return fragment.errors();
     return apply_one(AddOperation{fragment.take()});
 }
@@ -162,27 +159,27 @@ Result<void> Transaction::apply_one(const AddBlueprintOperation& op)
 Result<void> Transaction::apply_one(const RemoveOperation& op)
 {
     structural_ = true;
-    const std::uint32_t top = s_->world_->find(op.id);
+    const std::uint32_t top = run_->world().find(op.id);
     if (top == kNoIndex)
     {
         std::vector<std::string> known;
-        for (const std::uint32_t k : s_->world_->in_id_order()) known.push_back(s_->world_->id_of(k));
+        for (const std::uint32_t k : run_->world().in_id_order()) known.push_back(run_->world().id_of(k));
         return Error{{}, {}, "no component has the id '" + op.id + "'" + model::did_you_mean(op.id, known)};
     }
-    const std::vector<std::string> going = subtree_of(s_->world_->scene(), op.id);
+    const std::vector<std::string> going = subtree_of(run_->world().scene(), op.id);
     Errors errors;
     for (const std::string& id : going)
-        for (const std::uint32_t who : s_->world_->referrers(s_->world_->find(id)))
-            if (std::find(going.begin(), going.end(), s_->world_->id_of(who)) == going.end())
-                errors.push_back({{}, id, "is still used by '" + s_->world_->id_of(who) + "'"});
+        for (const std::uint32_t who : run_->world().referrers(run_->world().find(id)))
+            if (std::find(going.begin(), going.end(), run_->world().id_of(who)) == going.end())
+                errors.push_back({{}, id, "is still used by '" + run_->world().id_of(who) + "'"});
     if (!errors.empty()) return errors;
     for (const std::string& id : going)
     {
         touched_.push_back(id);
-        s_->stepper_->retire(s_->world_->find(id));
-        s_->world_->remove(s_->world_->find(id));
+        run_->stepper().retire(run_->world().find(id));
+        run_->world().remove(run_->world().find(id));
     }
-    s_->world_->refresh_open_roles();
+    run_->world().refresh_open_roles();
     return {};
 }
 
@@ -190,7 +187,7 @@ Result<void> Transaction::apply_one(const SetOperation& op)
 {
     auto component = find_typed(op.id);
     if (!component) return component.errors();
-    world::World& world = *s_->world_;
+    world::World& world = run_->world();
     const model::ComponentType& type = *world.type_of(*component);
     const std::string element = op.id + " (" + type.info.name + ")";
     const std::size_t dot = op.name.find('.');
@@ -230,7 +227,7 @@ Result<Value> Transaction::new_value(std::uint32_t component, const Field& field
         return value;
     }
     if (field.type != FieldType::EntryList) return reason("'" + field.name + "' has no entries");
-    Value cell = s_->world_->get(component, field.name);
+    Value cell = run_->world().get(component, field.name);
     for (Entry& entry : std::get<Entries>(cell))
     {
         if (entry.name != op.name.substr(dot + 1)) continue;
@@ -254,17 +251,17 @@ Result<void> Transaction::apply_one(const PushOperation& op)
 {
     auto component = find_typed(op.id);
     if (!component) return component.errors();
-    const world::Component& c = s_->world_->component(*component);
-    world::HostTables& host = s_->world_->host();
+    const world::Component& c = run_->world().component(*component);
+    world::HostTables& host = run_->world().host();
     if (!is_finite(op.impulse) || (op.point && !is_finite(*op.point))) return Error{{}, op.id, "an impulse must be finite"};
     if (c.facet == Facet::Body && host.bodies.dynamic(c.host_index))
         host.bodies.apply_impulse(c.host_index, op.impulse, op.point ? *op.point : host.bodies.position[c.host_index]);
     else if (c.facet == Facet::Shaft && host.shafts.dynamic(c.host_index))
         host.shafts.speed[c.host_index] += op.impulse.x * host.shafts.inverse_inertia[c.host_index];
     else
-        return Error{{}, op.id, "does not move by forces, so it cannot be pushed"};
+        return Error{{}, op.id, "is not dynamic, so it cannot be pushed"};
     const double energy = c.facet == Facet::Body ? host.bodies.kinetic_energy(c.host_index) : host.shafts.kinetic_energy(c.host_index);
-    if (!std::isfinite(energy)) return Error{{}, op.id, "would move faster than can be computed with"};
+    if (!std::isfinite(energy)) return Error{{}, op.id, "would get a kinetic energy that is not finite"};
     return {};
 }
 

@@ -1,10 +1,10 @@
-#include "simulation/requests/trial.h"
+#include "simulation/transaction/trial.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "simulation/costs/clock.h"
-#include "simulation/requests/field_change.h"
+#include "simulation/run/field_change.h"
 #include "simulation/step/totals.h"
 
 namespace plab::simulation
@@ -12,7 +12,7 @@ namespace plab::simulation
 namespace
 {
 
-constexpr int kMostRounds = 4;
+constexpr int kMostTrialRounds = 4;
 
 std::string failure_in(const std::vector<Event>& events)
 {
@@ -21,7 +21,7 @@ std::string failure_in(const std::vector<Event>& events)
     return {};
 }
 
-/// J, of those that move as told: what they drive may well come to move as fast.
+/// J, of prescribed objects: what they drive may well reach the same speed.
 double kinetic_of_prescribed(const world::HostTables& host)
 {
     double sum = 0;
@@ -63,7 +63,7 @@ void Trial::keep_cells(const TrialScope& scope)
     }
 }
 
-/// As before: values, and what was made of them.
+/// Restores the values of the components, what was prepared from them, and the host tables.
 void Trial::put_back()
 {
     ByteReader cells(cells_.bytes());
@@ -73,7 +73,7 @@ void Trial::put_back()
     world_.host() = host_;
 }
 
-/// The part's stepper at the boundary, as one that goes on from a snapshot is.
+/// Brings the partial stepper to the boundary, as one that continues from a snapshot would be.
 void Trial::set_up(Stepper& part, const TrialScope& scope) const
 {
     const auto concerns = [&](const auto& p) { return scope.holds(p.a) || scope.holds(p.b); };
@@ -93,11 +93,12 @@ void Trial::apply_changes(void* self, std::vector<ParameterChange>& changes)
     bool structure = false;
     for (const ParameterChange& change : changes)
     {
-        // What scripts change of others shows in the step itself; here only who takes part can be put back.
+        // A change that a script makes to a component outside the scope is ignored here, because only components in the scope can be
+        // restored.
         const std::uint32_t i = trial.world_.find(change.component);
         if (std::find(trial.kept_.begin(), trial.kept_.end(), i) == trial.kept_.end()) continue;
         const Facet facet = trial.world_.component(i).facet;
-        if (trial.world_.component(i).quarantined) continue;  // a set would let it in again, for good
+        if (trial.world_.component(i).quarantined) continue;  // setting a field would end its quarantine, also after the trial
         const Value before = trial.world_.get(i, change.name);
         if (set_field(trial.world_, i, change.name, change.value, trial.prepared_))
             structure = structure || trial.world_.type_of(i)->takes_part(Phase::Connect) || facet != Facet::Component;
@@ -107,7 +108,7 @@ void Trial::apply_changes(void* self, std::vector<ParameterChange>& changes)
     if (structure) (void)trial.part_->rebuild();
 }
 
-/// Movers outside that the step touched come in. False if there were none.
+/// Adds moving objects outside the scope that touched an object in it during the step. Returns false if there were none.
 bool Trial::grow(TrialScope& scope, const Stepper& part) const
 {
     if (scope.has_everything()) return false;
@@ -149,8 +150,8 @@ TrialResult Trial::once(Stepper& part, const std::vector<std::uint32_t>& compone
     return out;
 }
 
-/// The first step of a new stepper finds cold caches and allocates: not what it will cost, and one step says nothing of chance. No step is
-/// begun that would hardly be over in time.
+/// The first step of a new stepper has cold caches and allocates memory, so its time is not typical, and a single step shows no spread.
+/// No step is started that would hardly finish in time.
 Spread Trial::measure(Stepper& part, const TrialScope& scope, const Interruption& deadline, std::uint64_t until_ns)
 {
     constexpr std::size_t kRepeats = 11;
@@ -176,9 +177,9 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
                        std::uint64_t until_ns)
 {
     TrialResult out;
-    for (int round = 0; round < kMostRounds; ++round)
+    for (int round = 0; round < kMostTrialRounds; ++round)
     {
-        if (round + 1 == kMostRounds) scope.add_everything();
+        if (round + 1 == kMostTrialRounds) scope.add_everything();
         scope.close(stepper_);
         scope.choose_components();
         keep_cells(scope);
@@ -194,12 +195,12 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
             out.failure = built.error().text();
         else
         {
-            world_.host() = fixed;  // what a stepper derives from structure may touch it
+            world_.host() = fixed;  // a stepper that derives values from the structure may have written to the tables
             set_up(part, scope);
             out = once(part, components, deadline);
             tried = !out.given_up;
         }
-        put_back();  // before others come in: nobody is fixed then
+        put_back();  // before the scope grows: from here on nothing is fixed
         if (tried) grown = grow(scope, part);
         if (tried && !grown && out.failure.empty()) out.cost = measure(part, scope, deadline, until_ns);
         part_ = nullptr;

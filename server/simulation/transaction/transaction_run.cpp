@@ -1,16 +1,16 @@
-// A transaction's course: backup, operations, commit or rollback; its trials are in transaction_trial.cpp.
+// The order of a transaction: backup, operations, commit or rollback. The trials are in transaction_trial.cpp.
 #include <algorithm>
 
 #include "model/alike.h"
 #include "simulation/costs/clock.h"
-#include "simulation/requests/transaction.h"
+#include "simulation/transaction/transaction.h"
 
 namespace plab::simulation
 {
 namespace
 {
 
-/// Requests to the clock touch no component.
+/// Operations on the clock affect no component.
 bool concerns_the_scene(const Operation& op)
 {
     return std::holds_alternative<AddOperation>(op) || std::holds_alternative<AddBlueprintOperation>(op) ||
@@ -22,7 +22,7 @@ bool concerns_the_scene(const Operation& op)
 
 std::size_t Transaction::held_points(std::uint32_t component) const
 {
-    const Stepper& stepper = *s_->stepper_;
+    const Stepper& stepper = run_->stepper();
     const auto concerned = [&](std::uint32_t detector)
     {
         const auto is_it = [&](const Detector& d)
@@ -47,9 +47,9 @@ void Transaction::tell_contacts()
     for (std::size_t k = 0; k < reply_.swaps.size(); ++k)
     {
         SwapReport& report = reply_.swaps[k];
-        const std::uint32_t i = s_->world_->find(report.id);
+        const std::uint32_t i = run_->world().find(report.id);
         if (i == kNoIndex) continue;
-        const std::size_t converted = s_->stepper_->forces().converted(i), held = held_points(i);
+        const std::size_t converted = run_->stepper().forces().converted(i), held = held_points(i);
         tell(report, converted, FieldTransfer::Converted);
         if (converted > 0) continue;
         tell(report, held, FieldTransfer::Kept);
@@ -67,31 +67,32 @@ Reply Transaction::run()
         swaps = swaps || std::holds_alternative<SwapOperation>(op);
     }
     if (request_->operations.empty())
-        reply_.errors = {reason("a request without operations")};
+        reply_.errors = {reason("the request has no operations")};
     else if (anew && request_->operations.size() > 1)
-        reply_.errors = {reason("reset, load, restore and rewind stand alone in a request")};
+        reply_.errors = {reason("reset, load, restore and rewind must be the only operation of a request")};
     else if (scene)
         run_on_scene(swaps);
     else
         run_on_clock();
     reply_.done = reply_.errors.empty();
-    if (reply_.done && (structural_ || anew)) ++s_->revision_;
-    if (reply_.done) s_->changes_.touched.insert(s_->changes_.touched.end(), touched_.begin(), touched_.end());
+    if (reply_.done && (structural_ || anew)) ++run_->revision;
+    if (reply_.done) run_->changes.touched.insert(run_->changes.touched.end(), touched_.begin(), touched_.end());
     if (!reply_.done) reply_.swaps.clear();
-    reply_.revision = s_->revision_;
-    if (reply_.done && anew) reply_.step = s_->tick_;
+    reply_.revision = run_->revision;
+    if (reply_.done && anew) reply_.step = run_->clock.tick;
     reply_.pause_ns = static_cast<double>(now_ns() - begin);
     return std::move(reply_);
 }
 
 Transaction::Clock Transaction::read_clock() const
 {
-    return {s_->paused_, s_->steps_left_, s_->rate_, s_->dt_, s_->base_tick_, s_->base_time_};
+    return {run_->clock.paused, run_->clock.steps_left, run_->clock.rate, run_->clock.dt, run_->clock.base_tick, run_->clock.base_time};
 }
 
 void Transaction::write_clock(const Clock& clock)
 {
-    std::tie(s_->paused_, s_->steps_left_, s_->rate_, s_->dt_, s_->base_tick_, s_->base_time_) = clock;
+    std::tie(run_->clock.paused, run_->clock.steps_left, run_->clock.rate, run_->clock.dt, run_->clock.base_tick, run_->clock.base_time) =
+        clock;
 }
 
 void Transaction::apply_all()
@@ -114,9 +115,9 @@ void Transaction::run_on_clock()
 
 Result<void> Transaction::build_and_try(TrialScope& scope, bool swaps)
 {
-    if (auto built = s_->stepper_->rebuild(); !built) return model::first_of_alike(built.errors());
+    if (auto built = run_->stepper().rebuild(); !built) return model::first_of_alike(built.errors());
     tell_contacts();
-    const Totals now = s_->totals();
+    const Totals now = run_->totals();
     energy_applied_ = now.kinetic + now.stored;
     if (!request_->trial.is_wanted())
     {
@@ -136,18 +137,18 @@ void Transaction::run_on_scene(bool swaps)
     }
     const State before = capture();
     const Clock clock = read_clock();
-    const Totals first = s_->totals();
+    const Totals first = run_->totals();
     energy_before_ = first.kinetic + first.stored;
     trial_begin_ = now_ns();
-    TrialScope scope(*s_->world_);
+    TrialScope scope(run_->world());
     if (swaps && request_->trial.is_wanted()) mark_touched(scope), try_old(scope);
     apply_all();
-    if (reply_.errors.empty()) s_->stepper_->requests_work() += s_->totals().kinetic - first.kinetic;
+    if (reply_.errors.empty()) run_->stepper().requests_work() += run_->totals().kinetic - first.kinetic;
     if (reply_.errors.empty())
         if (auto done = build_and_try(scope, swaps); !done) reply_.errors = done.errors();
     if (reply_.errors.empty())
     {
-        s_->world_->release_parked();
+        run_->world().release_parked();
         return;
     }
     restore(before, true);

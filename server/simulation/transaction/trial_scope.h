@@ -1,4 +1,4 @@
-/// Who takes part in a trial: the objects that a swap can touch, and the components between them.
+/// The scope of a trial: the objects that a request can affect, and the components that act on them.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,22 @@ class TrialScope
 public:
     explicit TrialScope(const world::World& world) : world_(&world) {}
 
-    /// Whatever a change of this component acts on: an object itself; the participants of an interaction; of a part (response,
-    /// manager, solver, shape) those of whoever has it.
+    /// Adds everything that a change of this component acts on: an object itself; the participants of an interaction; for a part
+    /// (response, manager, solver, shape), the same for all components that refer to it.
     void add(std::uint32_t component);
-    /// This object.
+    /// Adds one object.
     void add(Ref object);
     void add_everything() { everything_ = true; }
     bool has_everything() const { return everything_; }
 
-    /// Goes on to whoever is integrated, coupled, read or touched together with those who are in: to be called with the stepper that knows
-    /// the structure.
+    /// Extends the scope to all objects that are integrated with, coupled to, read by or in contact with those in it. `stepper`: the one
+    /// that knows the present structure.
     void close(const Stepper& stepper);
-    /// Which components act on somebody in it, with their parts. After close().
+    /// Determines the components that act on an object in the scope, with their parts. To be called after close().
     void choose_components();
 
     bool holds(Ref object) const;
-    /// By directory index; after choose_components().
+    /// Flags by directory index; valid after choose_components().
     const std::vector<std::uint8_t>& components() const { return components_; }
     std::size_t objects() const;
 
@@ -49,8 +49,8 @@ private:
     const world::World* world_;
     bool everything_ = false;
     std::vector<std::uint8_t> bodies_, shafts_, quantities_;  ///< by host row
-    std::vector<std::uint8_t> fixed_;                         ///< static bodies that are changed: those who lie on them are in
-    std::vector<std::uint8_t> components_, visited_;          ///< by directory index
+    std::vector<std::uint8_t> fixed_;                 ///< static bodies that are changed, so that bodies resting on them are in the scope
+    std::vector<std::uint8_t> components_, visited_;  ///< by directory index
 };
 
 }  // namespace plab::simulation

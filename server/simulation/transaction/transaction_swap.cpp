@@ -1,10 +1,10 @@
-// Swaps: what a new component takes over from the old one, and its taking the place.
+// Swaps: what a new component takes over from the old one, and how it takes its place.
 #include <algorithm>
 
 #include "model/names.h"
 #include "model/values.h"
-#include "simulation/requests/field_change.h"
-#include "simulation/requests/transaction.h"
+#include "simulation/run/field_change.h"
+#include "simulation/transaction/transaction.h"
 
 namespace plab::simulation
 {
@@ -15,11 +15,12 @@ bool carries_over(FieldKind kind) { return kind == FieldKind::Param || kind == F
 
 struct Carried
 {
-    Value value;  ///< none: the new type's default
+    Value value;  ///< empty: the default of the new type
     FieldTransfer transfer = FieldTransfer::Fresh;
 };
 
-/// The value of one field of the new type: given by the request, else the old component's live one, else the default.
+/// The value of one field of the new type: from the request if given there, else the present value of the old component, else the
+/// default.
 Result<Carried> carry_over(const world::World& world, std::uint32_t component, const Field& field, const SwapOperation& op)
 {
     Carried out;
@@ -41,7 +42,7 @@ Result<Carried> carry_over(const world::World& world, std::uint32_t component, c
             return reason(op.type + " needs " + field.name + ", which " + world.type_of(component)->info.name + " does not have");
         return Carried{};
     }
-    // A value that is kept keeps its bits; it is checked all the same, the new type's rules may be stricter.
+    // A kept value keeps its bits. It is checked all the same, because the rules of the new type may be stricter.
     Value checked = out.value;
     if (auto fits = model::check_value(checked, field); !fits) return reason(field.name + ": " + fits.error().reason);
     if (out.transfer != FieldTransfer::Kept) out.value = checked;
@@ -58,14 +59,14 @@ void Transaction::fit_roles(model::ComponentSpec& spec, const Schema& schema, Sw
     for (const Role& role : schema.roles())
     {
         const bool given = std::any_of(spec.roles.begin(), spec.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
-        // Whoever names no solver has the scene's, also after a swap from a type that needed none.
-        if (!given && role.family == "Solver/" && s_->world_->find(s_->world_->scene().settings.solver) != kNoIndex)
-            spec.roles.push_back({role.name, {s_->world_->scene().settings.solver}, false, {}});
+        // A component that names no solver uses the scene's, also after a swap from a type that needs none.
+        if (!given && role.family == "Solver/" && run_->world().find(run_->world().scene().settings.solver) != kNoIndex)
+            spec.roles.push_back({role.name, {run_->world().scene().settings.solver}, false, {}});
     }
 }
 
-/// A required role that the old type did not have is filled as the short form of a blueprint would: by a part of its
-/// default type. It stays when the component is exchanged back, and serves again.
+/// A required role that the old type did not have is filled as in the short form of a blueprint: with a part of the role's default type.
+/// The part remains when the component is swapped back, and is used again by the next swap.
 Result<void> Transaction::make_missing(model::ComponentSpec& spec, const Schema& schema, SwapReport& report)
 {
     for (const Role& role : schema.roles())
@@ -73,14 +74,14 @@ Result<void> Transaction::make_missing(model::ComponentSpec& spec, const Schema&
         const bool given = std::any_of(spec.roles.begin(), spec.roles.end(), [&](const model::RoleSpec& r) { return r.name == role.name; });
         if (given || role.min == 0) continue;
         if (role.default_type.empty())
-            return reason(spec.type + " needs somebody in the role '" + role.name + "', which the old type does not have");
+            return reason(spec.type + " needs a participant in the role '" + role.name + "', which the old type does not have");
         model::ComponentSpec part;
         part.id = spec.id + "." + role.name, part.type = role.default_type, part.generated = true;
-        if (s_->world_->find(part.id) == kNoIndex)
+        if (run_->world().find(part.id) == kNoIndex)
         {
             model::SceneSpec fragment;
             fragment.components.push_back(part);
-            if (auto added = s_->world_->add(fragment); !added) return added;
+            if (auto added = run_->world().add(fragment); !added) return added;
             touched_.push_back(part.id);
         }
         spec.roles.push_back({role.name, {part.id}, false, {}});
@@ -91,7 +92,7 @@ Result<void> Transaction::make_missing(model::ComponentSpec& spec, const Schema&
 
 Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component, const SwapOperation& op, SwapReport& report)
 {
-    world::World& world = *s_->world_;
+    world::World& world = run_->world();
     const model::ComponentType& old = *world.type_of(component);
     const std::string element = op.id + " (" + old.info.name + ")";
     auto found = world.types().require(op.type);
@@ -126,18 +127,18 @@ Result<model::ComponentSpec> Transaction::spec_for_swap(std::uint32_t component,
     if (!errors.empty()) return errors;
     fit_roles(spec, type.schema, report);
     if (auto done = make_missing(spec, type.schema, report); !done) return done.errors();
-    // A scene that selects commands keeps selecting the same ones where the new type has them.
+    // If the scene selects commands explicitly, the selection is kept as far as the new type has these commands.
     if (spec.explicit_commands) std::erase_if(spec.commands, [&](const std::string& c) { return type.find_command(c) < 0; });
     return spec;
 }
 
 Result<void> Transaction::exchange(std::uint32_t component, const model::ComponentSpec& spec, const SwapReport& report)
 {
-    world::World& world = *s_->world_;
+    world::World& world = run_->world();
     const BodyMotion before = motion_of(world, component);
     if (auto done = world.exchange(component, spec); !done) return done;
     keep_motion(world, component, before);
-    // The host keeps the motion of objects; what the request gives of it is set there.
+    // The host tables keep the motion of objects; values that the request gives for it are set there.
     for (const TransferredField& f : report.fields)
     {
         const Field* field = world.type_of(component)->schema.find_field(f.field);
@@ -155,8 +156,8 @@ Result<void> Transaction::apply_one(const SwapOperation& asked)
     auto component = find_typed(asked.id);
     if (!component) return component.errors();
     SwapReport report;
-    report.id = s_->world_->id_of(*component), report.from = s_->world_->type_of(*component)->info.name;
-    auto name = model::full_type_name(asked.type, s_->world_->types().names(), report.from.substr(0, report.from.rfind('/') + 1));
+    report.id = run_->world().id_of(*component), report.from = run_->world().type_of(*component)->info.name;
+    auto name = model::full_type_name(asked.type, run_->world().types().names(), report.from.substr(0, report.from.rfind('/') + 1));
     if (!name) return Error{{}, report.id + " (" + report.from + ")", name.error().reason};
     SwapOperation op = asked;
     op.type = report.to = name.take();

@@ -10,7 +10,7 @@ namespace
 struct StageOfMethod
 {
     double time;        ///< share of h at which this stage is evaluated
-    double next;        ///< share of h of this stage's slope in the next stage's point; 0: the last one
+    double next;        ///< share of h of this stage's slope in the next stage's point; 0: last stage
     double weight;      ///< share in the result
     double sum_weight;  ///< six times that: exact
 };
@@ -27,7 +27,7 @@ void copy(std::span<const double> from, std::span<double> to)
     for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[i];
 }
 
-/// The point of stage s, of the slope before it.
+/// Moves to the point of stage s, using the slope of the stage before it.
 void go_to_stage(std::size_t s, double h, DynamicSystem& system, const StageSlopes& slopes)
 {
     const auto x = system.coordinates();

@@ -1,0 +1,66 @@
+/// One step of a part of the scene that is made and undone again: the measurement on which swaps are judged.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "simulation/requests/requests.h"
+#include "simulation/transaction/trial_scope.h"
+
+namespace plab::simulation
+{
+
+/// A step at a boundary, as Simulation would make it next.
+struct TrialStep
+{
+    Tick tick = 0;
+    double start = 0, h = 0;  ///< s
+};
+
+struct TrialResult
+{
+    bool given_up = false;
+    std::string failure;         ///< "" or the first event of severity Failure
+    double before = 0;           ///< J, kinetic and stored energy of the objects in the scope at the start of the step
+    double moving = 0;           ///< J, kinetic energy at that time, including prescribed objects
+    double kinetic_after = 0;    ///< J, at the end of the step
+    double least = 0;            ///< J: kinetic energy below which no motion is noticeable within one step
+    StepOutcome outcome;         ///< of the objects in the scope; without error and cost
+    Spread cost;                 ///< ns, of repeated steps; no samples: not measured
+    std::vector<double> errors;  ///< of the components that were given
+};
+
+/// A trial uses a stepper of its own for the objects in the scope, starting from the present state of the world. All other objects are
+/// fixed meanwhile, and nothing inside the scene's own stepper is touched. So the cost of a trial depends only on the affected part of
+/// the scene, and the trial cannot change a bit of the run.
+class Trial
+{
+public:
+    Trial(world::World& world, const Stepper& stepper, const TrialStep& step);
+    /// Makes the step and undoes it. If an object in the scope touches one outside during the step, the scope is extended by it and the
+    /// step is made again. `components`: those whose errors are wanted. `until_ns`: until then the step is repeated a limited number of
+    /// times to measure its cost (0: no repetition). The world is left as it was, whatever the result.
+    TrialResult run(TrialScope& scope, const std::vector<std::uint32_t>& components, const Interruption& deadline, Progress& progress,
+                    std::uint64_t until_ns);
+
+private:
+    void fix_everybody_else(const TrialScope& scope);
+    void set_up(Stepper& part, const TrialScope& scope) const;
+    void keep_cells(const TrialScope& scope);
+    void put_back();
+    bool grow(TrialScope& scope, const Stepper& part) const;
+    TrialResult once(Stepper& part, const std::vector<std::uint32_t>& components, const Interruption& deadline);
+    Spread measure(Stepper& part, const TrialScope& scope, const Interruption& deadline, std::uint64_t until_ns);
+    static void apply_changes(void* self, std::vector<ParameterChange>& changes);
+
+    world::World& world_;
+    const Stepper& stepper_;  ///< of the scene
+    TrialStep step_;
+    world::HostTables host_;
+    std::vector<std::uint32_t> kept_;  ///< components
+    ByteWriter cells_;                 ///< their values
+    std::set<std::uint32_t> prepared_;
+    Stepper* part_ = nullptr;  ///< the stepper in use during a trial
+};
+
+}  // namespace plab::simulation
