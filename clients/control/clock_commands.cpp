@@ -45,12 +45,12 @@ void add_plain(const Command& app, Context& context, const CommandText& text)
 void add_step(const Command& app, Context& context)
 {
     auto count = std::make_shared<std::int64_t>(1);
-    const Command command = add_command(
-        app, context,
-        {"step", "let a paused server execute a number of steps", "  plabctl pause && plabctl step\n  plabctl step 100 && plabctl wait --step 700\n"},
-        [count](Context& c) {
-            return send(c, {{"step", "", std::to_string(*count)}});
-        });
+    const Command command = add_command(app, context,
+                                        {"step", "let a paused server execute a number of steps",
+                                         "  plabctl pause && plabctl step\n  plabctl step 100 && plabctl wait --step 700\n"},
+                                        [count](Context& c) {
+                                            return send(c, {{"step", "", std::to_string(*count)}});
+                                        });
     command.add_option("count", *count, "steps, default 1").check(link::check_count).type_name("N");
 }
 
@@ -124,7 +124,9 @@ void add_cancel(const Command& app, Context& context)
                                         [name](Context& c) {
                                             return send(c, {{"cancel", "", *name}});
                                         });
-    command.add_option("request", *name, "name of the request, as printed at the time-out: client:number").required().type_name("CLIENT:NUMBER");
+    command.add_option("request", *name, "name of the request, as printed at the time-out: client:number")
+        .required()
+        .type_name("CLIENT:NUMBER");
 }
 
 Exit run_shutdown(Context& c)
@@ -157,7 +159,8 @@ void add_clock_commands(const Command& app, Context& context)
     add_plain(app, context, {"reset", "return to the scene as it was loaded; a new run begins", "  plabctl reset\n"});
     add_load(app, context);
     add_cancel(app, context);
-    add_command(app, context, {"shutdown", "shut the server down, and wait until it has ended", "  plabctl shutdown --server lab\n"}, run_shutdown);
+    add_command(app, context, {"shutdown", "shut the server down, and wait until it has ended", "  plabctl shutdown --server lab\n"},
+                run_shutdown);
 }
 
 }  // namespace plab::cli

@@ -53,7 +53,8 @@ void add_global_options(CLI::App& app, Settings& s)
     app.add_option("--timeout", s.timeout, "how long to wait for a server and a reply; default 5 (wait: 30, servers: 0.5)")
         ->check(plab::link::check_positive)
         ->type_name("SECONDS");
-    app.add_flag("--progress", s.progress, "print the progress of long work every five seconds on standard error, even if that is not a terminal");
+    app.add_flag("--progress", s.progress,
+                 "print the progress of long work every five seconds on standard error, even if that is not a terminal");
     app.add_flag("--json", s.json, "print one JSON object; for streams, one per line");
     app.add_option("--color", s.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
     app.add_option("-n,--count", s.count, "end a stream after this many samples")->check(plab::link::check_count)->type_name("N");

@@ -33,7 +33,8 @@ void add_options(CLI::App& app, LoggerOptions& options, std::string& severity)
     app.add_option("--out", options.out, "file to append to instead of standard output");
     app.add_flag("--metrics", options.metrics, "also log metrics");
     app.add_flag("--status", options.status, "also log the server's state");
-    app.add_option("--kind", options.filter.kinds, "only kinds with this prefix; \"collision\" for all collisions")->allow_extra_args(false);
+    app.add_option("--kind", options.filter.kinds, "only kinds with this prefix; \"collision\" for all collisions")
+        ->allow_extra_args(false);
     app.add_option("--object", options.filter.objects, "only entries that refer to this component")->allow_extra_args(false);
     app.add_option("--severity", severity, "minimum severity: info, warning, failure; collisions are info")
         ->check(CLI::IsMember({"info", "warning", "failure"}));

@@ -90,7 +90,8 @@ void add_pictures(CLI::App& app, ViewerOptions& options, Texts& texts)
 void add_view(CLI::App& app, ViewerOptions& options, Texts& texts)
 {
     auto* const camera = app.add_option("--camera", options.view.camera, "camera of the scene")->type_name("NAME")->group("View");
-    auto* const from = app.add_option("--from", texts.from, "position of the camera")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
+    auto* const from =
+        app.add_option("--from", texts.from, "position of the camera")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
     app.add_option("--look-at", texts.look_at, "point to look at")->type_name("\"X Y Z\"")->excludes(camera)->group("View");
     app.add_option("--up", texts.up, "up direction of the picture")->type_name("\"X Y Z\"")->group("View");
     app.add_option("--orbit", options.view.orbit, "move the camera on a circle of this radius; 0: as large as the scene needs")
@@ -226,7 +227,8 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerO
     if (texts.timeout) options.timeout = link::Seconds(*texts.timeout);
     options.captions = !texts.no_captions, options.ground = !texts.no_ground;
     if (!options.link.server.empty() && !wire::is_server_name(options.link.server))
-        return ParseEnd{2, "plab-view: '" + options.link.server + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'\n"};
+        return ParseEnd{
+            2, "plab-view: '" + options.link.server + "' is not a valid server name: use 1 to 64 letters, digits, '.', '_' or '-'\n"};
     for (const auto& taken : {take_vectors(texts, options.view), take_task(texts, options)})
         if (!taken) return ParseEnd{2, "plab-view: " + taken.error().reason + "\n"};
     return {};

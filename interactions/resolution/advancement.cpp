@@ -28,7 +28,7 @@ void advance_to_contact(const StepContext& context, Row row, const AdvancementRo
     if (trial.iteration >= rows.max_iterations[row])
     {
         trial.decision = Trial::Decision::GiveUp;
-        tell_grazing(context, row, trial);
+        report_grazing(context, row, trial);
         return;
     }
     trial.decision = Trial::Decision::Try;

@@ -27,7 +27,7 @@ inline void describe_work(Schema& s, Column<double>& max_work)
 }
 
 /// Two bodies that pass one another at a small distance require many small steps.
-inline void tell_grazing(const StepContext& context, Row row, const Trial& trial)
+inline void report_grazing(const StepContext& context, Row row, const Trial& trial)
 {
     context.emit(row, "resolution.grazing", Severity::Warning,
                  "two bodies pass one another within " + rounded_text(trial.gap_begin) + " m; after " + std::to_string(trial.iteration) +

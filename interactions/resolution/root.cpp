@@ -69,7 +69,7 @@ void find_root(const StepContext& context, Row row, const RootRows& rows, Trial&
     if (trial.iteration >= rows.max_iterations[row])
     {
         trial.decision = Trial::Decision::GiveUp;
-        tell_grazing(context, row, trial);
+        report_grazing(context, row, trial);
         return;
     }
     trial.decision = Trial::Decision::Try;

@@ -173,7 +173,7 @@ void Run::tell_given_up()
     const publish::Busy busy = publish::words_of(s_.progress().look(), simulation::now_ns());
     spdlog::error("{}: abandoned, because the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy),
                   s_.time());
-    service_.take_requests();
+    service_.take_last_requests();
 }
 
 /// Requests that still wait are saved with the snapshot. True if a snapshot was made.

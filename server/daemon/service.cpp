@@ -18,8 +18,6 @@ namespace
 
 constexpr std::size_t kMostTimed = 4096;
 
-void wake_up(void* wake) { static_cast<const Wake*>(wake)->wake(); }
-
 /// Makes foreign text safe for a log: no control characters, at most one line.
 std::string one_line(std::string text)
 {
@@ -66,6 +64,11 @@ Service::Service(simulation::Simulation& simulation, plugins::PluginLibrary& lib
 {
 }
 
+Service::~Service()
+{
+    if (reader_) reader_->stop();
+}
+
 Result<void> Service::open_bus(const DaemonOptions& options, const Wake& wake, Interruption& interruption)
 {
     auto module = plugins::open_module("bus", bus::kEntryName, plugins::PluginLibrary::default_directories());
@@ -82,11 +85,17 @@ Result<void> Service::open_bus(const DaemonOptions& options, const Wake& wake, I
         return busy.what.empty() ? std::string() : publish::text_of(busy);
     };
     bus.busy_argument = const_cast<simulation::Progress*>(&simulation_->progress());
-    bus.wake = &wake_up, bus.wake_argument = const_cast<Wake*>(&wake);
+    bus.wake = [](void* service) { static_cast<Service*>(service)->wake_up(); };
+    bus.wake_argument = this;
+    wake_ = &wake;
+    // The reader exists before the bus, which may call wake_up() as soon as it is open.
+    reader_ = std::make_unique<RequestReader>([this](publish::RequestText& text) { return bus_is_open_ && bus_->take(text); }, *library_,
+                                              simulation_->limits(), [&wake] { wake.wake(); });
     Error error;
     auto opened = reinterpret_cast<bus::Open>(module->entry)(bus, error);
     if (!opened) return error;
-    module_ = module.take(), bus_ = std::move(opened), wake_ = &wake;
+    module_ = module.take(), bus_ = std::move(opened), bus_is_open_ = true;
+    reader_->notify();
     collector_.attach(*bus_);
     simulation_->draw_for(this);
     return {};
@@ -109,25 +118,35 @@ void Service::post(simulation::Request request, Origin origin)
     simulation_->post(std::move(request));
 }
 
+/// Something happened on the bus: perhaps a request, which is read before the loop can use it, perhaps something else.
+void Service::wake_up() const
+{
+    reader_->notify();
+    wake_->wake();
+}
+
 void Service::take_requests()
 {
     if (!bus_) return;
     note_restart();
-    publish::RequestText text;
-    while (bus_->take(text))
+    RequestReader::ReadRequest next;
+    while (reader_->take(next))
     {
-        const std::uint64_t begin = simulation::now_ns();
-        auto wanted = control::wanted_of(text, *library_, simulation_->limits());
-        const auto read_ns = static_cast<double>(simulation::now_ns() - begin);
-        if (!wanted)
-            refuse(text, wanted.errors(), read_ns);
-        else if (wanted->shutdown)
-            shut_down(text);
-        else if (wanted->cancel)
-            cancel(text, *wanted->cancel);
+        if (!next.wanted)
+            refuse(next.text, next.wanted.errors());
+        else if (next.wanted->shutdown)
+            shut_down(next.text);
+        else if (next.wanted->cancel)
+            cancel(next.text, *next.wanted->cancel);
         else
-            accept(text, wanted.take(), read_ns);
+            accept(next.text, next.wanted.take());
     }
+}
+
+void Service::take_last_requests()
+{
+    if (reader_) reader_->finish(kGrace);
+    take_requests();
 }
 
 void Service::note_restart()
@@ -139,11 +158,11 @@ void Service::note_restart()
     collector_.note(*simulation_, std::move(event));
 }
 
-void Service::accept(const publish::RequestText& text, control::Wanted wanted, double read_ns)
+void Service::accept(const publish::RequestText& text, control::Wanted wanted)
 {
     Origin origin;
     origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
-    origin.read_ns = read_ns, origin.texts = text.operations;
+    origin.texts = text.operations;
     post(std::move(wanted.request), std::move(origin));
 }
 
@@ -154,7 +173,7 @@ std::optional<Service::Origin> Service::origin_of(std::uint64_t request)
     const auto said = timed_.find(request);
     if (said == timed_.end()) return {};
     Origin origin = said->second;
-    origin.was_answered = true, origin.read_ns = 0;
+    origin.was_answered = true;
     return origin;
 }
 
@@ -196,7 +215,7 @@ void Service::cancel(const publish::RequestText& text, const control::Wanted::Ca
     const auto waits = std::find_if(waiting_.begin(), waiting_.end(),
                                     [&](const auto& w) { return w.second.client == which.client && w.second.number == which.number; });
     if (waits == waiting_.end() || !simulation_->withdraw(waits->first))
-        return refuse(text, Errors{reason("no such request is waiting: it took effect, was refused, or never arrived")}, 0);
+        return refuse(text, Errors{reason("no such request is waiting: it took effect, was refused, or never arrived")});
     simulation::Reply taken_back;
     taken_back.step = simulation_->tick(), taken_back.revision = simulation_->revision();
     taken_back.errors = {reason("cancelled before it took effect")};
@@ -214,13 +233,12 @@ void Service::cancel(const publish::RequestText& text, const control::Wanted::Ca
     answer_client(asker, std::move(reply));
 }
 
-void Service::refuse(const publish::RequestText& text, Errors errors, double read_ns)
+void Service::refuse(const publish::RequestText& text, Errors errors)
 {
     Origin origin;
     origin.from_bus = true, origin.client = text.client, origin.number = text.number, origin.arrived_ns = text.arrived_ns;
     for (const publish::OperationText& op : text.operations) origin.operations.push_back({op.verb, op.target, op.argument});
     simulation::Reply reply;
-    reply.pause_ns = read_ns;
     reply.errors = std::move(errors), reply.step = simulation_->tick(), reply.revision = simulation_->revision();
     ++refused_;
     note(origin, reply);
@@ -244,7 +262,6 @@ bool Service::answer()
         const auto asked = origin_of(reply.request);
         if (!asked) continue;  // no client sent a request with this number
         const Origin& origin = *asked;
-        reply.pause_ns += origin.read_ns;
         ++(reply.done ? done_ : refused_);
         if (reply.done) write_journal(origin, reply);
         note(origin, reply);

@@ -2,6 +2,7 @@
 /// only.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 
@@ -9,6 +10,7 @@
 #include "control/operations.h"
 #include "daemon/options.h"
 #include "daemon/recording.h"
+#include "daemon/request_reader.h"
 #include "daemon/snapshot_desk.h"
 #include "daemon/wake.h"
 #include "plugins/library.h"
@@ -21,6 +23,9 @@ class Service final : public ImageSink
 {
 public:
     Service(simulation::Simulation& simulation, plugins::PluginLibrary& library, const DaemonOptions& options);
+    ~Service();
+    Service(const Service&) = delete;
+    Service& operator=(const Service&) = delete;
 
     /// Loads bus.so and joins the bus. `wake` must outlive this object, and so must `interruption`, which a client's shutdown
     /// request sets.
@@ -35,8 +40,10 @@ public:
     Result<void> take_over(const std::vector<std::string>& waiting);
     /// A snapshot of the current state, with the waiting requests.
     Result<void> save(const std::string& file) const;
-    /// Passes requests that have arrived on the bus to the simulation; invalid ones are refused.
+    /// Passes requests that have arrived on the bus, and have been read, to the simulation; invalid ones are refused.
     void take_requests();
+    /// The same, after those that have arrived have been read, for which it waits a moment: the run is to end.
+    void take_last_requests();
     /// Answers requests that took effect or failed: to clients, as events, as log lines. False if one of the command line was
     /// refused, because the run is then not the one that was asked for.
     bool answer();
@@ -68,15 +75,15 @@ private:
         publish::ClientId client{};
         std::uint64_t number = 0;
         std::int64_t arrived_ns = 0;
-        double read_ns = 0;  ///< time to parse it, on the step thread
         std::vector<control::Description> operations;
         std::vector<publish::OperationText> texts;  ///< the same as text, for the journal
     };
-    void accept(const publish::RequestText& text, control::Wanted wanted, double read_ns);
-    void refuse(const publish::RequestText& text, Errors errors, double read_ns);
+    void accept(const publish::RequestText& text, control::Wanted wanted);
+    void refuse(const publish::RequestText& text, Errors errors);
     void answer_client(const Origin& origin, simulation::Reply reply);
     void shut_down(const publish::RequestText& text);
     void cancel(const publish::RequestText& text, const control::Wanted::Cancelled& which);
+    void wake_up() const;
     void note_restart();
     void note(const Origin& origin, const simulation::Reply& reply);
     void post(simulation::Request request, Origin origin);
@@ -92,8 +99,10 @@ private:
     plugins::PluginLibrary* library_;
     std::string scene_file_;
     std::uint32_t threads_;
-    plugins::Module module_;  // destroyed after bus_
+    plugins::Module module_;                 // destroyed after bus_
+    std::unique_ptr<RequestReader> reader_;  // stopped before bus_ goes, destroyed after it: the bus calls wake_up()
     std::unique_ptr<bus::Bus> bus_;
+    std::atomic<bool> bus_is_open_ = false;
     std::optional<RecordModule> record_module_;  // destroyed after recording_
     std::unique_ptr<record::Recording> recording_;
     publish::Collector collector_;

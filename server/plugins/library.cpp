@@ -56,6 +56,7 @@ std::vector<std::string> PluginLibrary::default_directories()
 
 std::vector<std::string> PluginLibrary::names() const
 {
+    const std::lock_guard lock(mutex_);
     std::vector<std::string> out;
     for (const auto& [type, homes] : homes_) out.push_back(type);
     for (const PluginInfo& plugin : loaded_) out.insert(out.end(), plugin.types.begin(), plugin.types.end());
@@ -66,6 +67,7 @@ std::vector<std::string> PluginLibrary::names() const
 
 std::vector<model::TypeSummary> PluginLibrary::summaries() const
 {
+    const std::lock_guard lock(mutex_);
     std::vector<model::TypeSummary> out;
     for (const std::string& name : names())
     {
@@ -91,6 +93,7 @@ Error PluginLibrary::unknown(const std::string& name) const
 
 Result<const model::ComponentType*> PluginLibrary::require(const std::string& name)
 {
+    const std::lock_guard lock(mutex_);
     if (const model::ComponentType* type = registry_.find(name)) return type;
     const auto at = homes_.find(name);
     if (at == homes_.end()) return unknown(name);
@@ -104,6 +107,7 @@ Result<const model::ComponentType*> PluginLibrary::require(const std::string& na
 
 Result<PluginInfo> PluginLibrary::load_plugin(const std::string& path)
 {
+    const std::lock_guard lock(mutex_);
     const std::string file = canonical(path);
     for (const PluginInfo& plugin : loaded_)
         if (plugin.path == file) return plugin;

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,8 @@ struct PluginInfo
     std::vector<std::string> types;  ///< in the order of their declaration
 };
 
-/// Plugins stay loaded as long as the library exists; everything that uses their types must be destroyed before it. Not
-/// thread-safe: use it while a scene is built, not during a step.
+/// Plugins stay loaded as long as the library exists; everything that uses their types must be destroyed before it. Types may be
+/// requested from any thread; who reads loaded() meanwhile must know that no other thread loads.
 class PluginLibrary final : public model::TypeSource
 {
 public:
@@ -52,6 +53,7 @@ private:
     Result<PluginInfo> open(const std::string& path);
     Error unknown(const std::string& name) const;
 
+    mutable std::recursive_mutex mutex_;
     // Members are destroyed in reverse order: the registry, which holds tables and declarations made by plugins, before their
     // code.
     std::vector<LibraryHandle> libraries_;

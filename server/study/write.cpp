@@ -35,20 +35,24 @@ std::string row_of(const StudyResult& r, const Point& p)
     std::string settings, resolved;
     for (const Setting& s : p.combination.settings) settings += (settings.empty() ? "" : " ") + s.text();
     for (const PartFigures& part : x.parts) resolved += (resolved.empty() ? "" : "; ") + part.id + "=" + part.resolved;
-    std::string out = cell(p.combination.algorithm) + "," + cell(settings) + "," + exact_number(x.dt) + "," + std::string(name_of(x.outcome)) +
-                      "," + cell(x.why) + "," + exact_number(x.reached) + "," + std::to_string(x.steps) + "," + exact_number(p.error()) + "," +
-                      exact_number(p.final_error()) + "," + exact_number(digits(p.error())) + "," + (p.is_resolved() ? "1" : "0");
+    std::string out = cell(p.combination.algorithm) + "," + cell(settings) + "," + exact_number(x.dt) + "," +
+                      std::string(name_of(x.outcome)) + "," + cell(x.why) + "," + exact_number(x.reached) + "," + std::to_string(x.steps) +
+                      "," + exact_number(p.error()) + "," + exact_number(p.final_error()) + "," + exact_number(digits(p.error())) + "," +
+                      (p.is_resolved() ? "1" : "0");
     for (std::size_t k = 0; k < r.quantities.size(); ++k)
     {
         const Distance e = k < p.errors.size() ? p.errors[k] : Distance{NAN, NAN, NAN, NAN};
-        out += "," + exact_number(e.series) + "," + exact_number(e.last) + "," + exact_number(e.series_absolute) + "," + exact_number(e.last_absolute);
+        out += "," + exact_number(e.series) + "," + exact_number(e.last) + "," + exact_number(e.series_absolute) + "," +
+               exact_number(e.last_absolute);
     }
-    out += "," + exact_number(p.energy_drift) + "," + exact_number(x.momentum_change) + "," + exact_number(x.angular_momentum_change) + "," +
-           exact_number(x.shaft_momentum_change) + "," + exact_number(x.violation) + "," + exact_number(x.penetration) + "," + exact_number(x.residual);
+    out += "," + exact_number(p.energy_drift) + "," + exact_number(x.momentum_change) + "," + exact_number(x.angular_momentum_change) +
+           "," + exact_number(x.shaft_momentum_change) + "," + exact_number(x.violation) + "," + exact_number(x.penetration) + "," +
+           exact_number(x.residual);
     out += "," + (p.contacts.known ? std::to_string(p.contacts.expected) + "," + std::to_string(p.contacts.missed) + "," +
                                          std::to_string(p.contacts.extra) + "," + exact_number(p.contacts.worst_time_error)
                                    : std::string(",,,"));
-    out += "," + exact_number(p.cpu_min) + "," + exact_number(p.cpu_median) + "," + exact_number(p.cpu_per_second()) + "," + exact_number(p.cpu_per_step());
+    out += "," + exact_number(p.cpu_min) + "," + exact_number(p.cpu_median) + "," + exact_number(p.cpu_per_second()) + "," +
+           exact_number(p.cpu_per_step());
     out += "," + std::to_string(x.evaluations) + "," + std::to_string(x.trials) + "," + std::to_string(x.rewinds) + "," +
            count(x.allocations) + "," + model::hash_text(x.hash) + "," + cell(x.first_warning) + "," + cell(resolved);
     return out + "\n";

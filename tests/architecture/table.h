@@ -96,7 +96,7 @@ inline const std::vector<Layer>& layers()
         {"server/daemon",
          {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation", "server/publish",
           "server/control", "server/bus", "server/record", "server/replay", "server/program"},
-         {"spdlog/", "CLI/", "nlohmann/", "unistd.h", "poll.h", "sys/eventfd.h"},
+         {"spdlog/", "CLI/", "nlohmann/", "unistd.h", "poll.h", "pthread.h", "sys/eventfd.h"},
          false},
         {"server/study",
          {"server/sdk", "server/model", "server/world", "server/blueprint", "server/plugins", "server/simulation", "server/publish",

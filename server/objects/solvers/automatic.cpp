@@ -140,12 +140,12 @@ private:
         {
             say(Method::DormandPrince54);
             const DormandPrinceCounts counts = advance_by_dormand_prince(h_, kTolerance, kMaxSubsteps, m_.dormand, system_);
-            if (!trial_ && counts.reached < h_) tell_dormand_prince_gave_up(start_, row_, counts);
+            if (!trial_ && counts.reached < h_) report_dormand_prince_gave_up(start_, row_, counts);
             return;
         }
         say(Method::Radau5);
         const Radau5Counts counts = advance_by_radau(h_, kTolerance, kMaxSubsteps, m_.exponential.radau, system_);
-        if (!trial_ && counts.reached < h_) tell_radau_gave_up(start_, row_, counts);
+        if (!trial_ && counts.reached < h_) report_radau_gave_up(start_, row_, counts);
     }
 
     std::string why(Method method) const

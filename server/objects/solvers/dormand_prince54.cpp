@@ -186,9 +186,9 @@ DormandPrinceCounts advance_by_dormand_prince(double h, const Tolerance& toleran
     return Advance(h, tolerance, memory, system).run(max_substeps);
 }
 
-void tell_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts)
+void report_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts)
 {
-    tell_gave_up(start, row, counts, "raise max_substeps, loosen the tolerances, or use Solver/Radau5 if it is stiff");
+    report_gave_up(start, row, counts, "raise max_substeps, loosen the tolerances, or use Solver/Radau5 if it is stiff");
 }
 
 void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince54Rows& rows, DynamicSystem& system)
@@ -198,7 +198,7 @@ void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince
     const DormandPrinceCounts counts = advance_by_dormand_prince(start.dt, tolerance, rows.max_substeps[row], rows.memory[row], system);
     if (is_trial(start)) return;
     rows.report(row, counts);
-    if (counts.reached < start.dt) tell_dormand_prince_gave_up(start, row, counts);
+    if (counts.reached < start.dt) report_dormand_prince_gave_up(start, row, counts);
 }
 
 }  // namespace plab::solvers

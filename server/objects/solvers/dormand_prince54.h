@@ -45,7 +45,7 @@ struct DormandPrince54Rows : ErrorControlRows
 DormandPrinceCounts advance_by_dormand_prince(double h, const Tolerance& tolerance, std::int64_t max_substeps, DormandPrinceMemory& memory,
                                               DynamicSystem& system);
 /// The event solver.gave_up.
-void tell_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts);
+void report_dormand_prince_gave_up(const StepContext& start, Row row, const DormandPrinceCounts& counts);
 
 /// One step over context.dt, from coordinates 0.
 void advance_dormand_prince54(const StepContext& context, Row row, DormandPrince54Rows& rows, DynamicSystem& system);

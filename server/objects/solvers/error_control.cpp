@@ -32,7 +32,7 @@ void ErrorControlRows::report(Row row, const SubstepCounts& counts)
     substeps[row] = counts.accepted, refused[row] = counts.refused, evaluations[row] = counts.evaluations;
 }
 
-void tell_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice)
+void report_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice)
 {
     start.emit(row, "solver.gave_up", Severity::Warning,
                std::to_string(counts.accepted) + " internal steps (" + std::to_string(counts.refused) + " more refused) reached " +

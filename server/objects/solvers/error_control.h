@@ -25,6 +25,6 @@ struct ErrorControlRows
 };
 
 /// Emits the event solver.gave_up; `advice` is the end of its message.
-void tell_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice);
+void report_gave_up(const StepContext& start, Row row, const SubstepCounts& counts, std::string_view advice);
 
 }  // namespace plab::solvers

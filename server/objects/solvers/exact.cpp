@@ -42,7 +42,7 @@ void rotate_freely(double h, DynamicSystem& system, std::size_t body)
 bool is_rotation(const DynamicSystem& system, std::size_t i) { return i < 6 * system.body_count() && i % 6 >= 3; }
 
 /// A uniform field exerts no torque: the rates of angular momentum are 0. For needles the rates are those of free rotation.
-bool nobody_is_turned(const DynamicSystem& system)
+bool nothing_is_turned(const DynamicSystem& system)
 {
     const auto du = system.speed_rates();
     for (std::size_t i = 0; i < system.body_count(); ++i)
@@ -55,7 +55,7 @@ bool same_rates(const DynamicSystem& system, std::span<const double> before)
     const auto du = system.speed_rates();
     for (std::size_t i = 0; i < du.size(); ++i)
         if (!is_rotation(system, i) && !(std::fabs(du[i] - before[i]) <= 1e-12 * std::fabs(before[i]))) return false;
-    return nobody_is_turned(system);
+    return nothing_is_turned(system);
 }
 
 }  // namespace

@@ -387,7 +387,7 @@ void advance_exponential(const StepContext& context, Row row, ExponentialRows& r
     const Radau5Counts done = advance_by_radau(start.dt, kRadauTolerance, kRadauSubsteps, memory.radau, system);
     if (is_trial(start)) return;
     rows.evaluations[row] = done.evaluations, rows.linear[row] = false;
-    if (done.reached < start.dt) tell_radau_gave_up(start, row, done);
+    if (done.reached < start.dt) report_radau_gave_up(start, row, done);
 }
 
 }  // namespace plab::solvers

@@ -184,9 +184,9 @@ Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t
     return Advance(h, tolerance, memory, system).run(max_substeps);
 }
 
-void tell_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts)
+void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts)
 {
-    tell_gave_up(start, row, counts, "raise max_substeps or loosen the tolerances");
+    report_gave_up(start, row, counts, "raise max_substeps or loosen the tolerances");
 }
 
 namespace
@@ -195,7 +195,7 @@ namespace
 /// Above this many numbers an internal step takes more than about a tenth of a second.
 constexpr std::size_t kLarge = 300;
 
-void tell_size(const StepContext& start, Row row, Radau5Rows& rows, std::size_t n)
+void report_size(const StepContext& start, Row row, Radau5Rows& rows, std::size_t n)
 {
     if (n <= kLarge || rows.reported_size[row]) return;
     rows.reported_size[row] = true;
@@ -215,10 +215,10 @@ void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, Dynam
     const Tolerance tolerance{rows.relative_tolerance[row], rows.absolute_tolerance[row]};
     const Radau5Counts counts = advance_by_radau(start.dt, tolerance, rows.max_substeps[row], rows.memory[row], system);
     if (is_trial(start)) return;
-    tell_size(start, row, rows, FlatSystem(system).size());
+    report_size(start, row, rows, FlatSystem(system).size());
     rows.report(row, counts);
     rows.factorisations[row] = counts.factorisations;
-    if (counts.reached < start.dt) tell_radau_gave_up(start, row, counts);
+    if (counts.reached < start.dt) report_radau_gave_up(start, row, counts);
 }
 
 }  // namespace plab::solvers

@@ -42,6 +42,6 @@ void advance_radau5(const StepContext& context, Row row, Radau5Rows& rows, Dynam
 /// The method itself, for solvers that choose it. Tells of failure by reached < h.
 Radau5Counts advance_by_radau(double h, const Tolerance& tolerance, std::int64_t max_substeps, Radau5Memory& memory, DynamicSystem& system);
 /// The event of an advance that did not reach its end; h in s.
-void tell_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts);
+void report_radau_gave_up(const StepContext& start, Row row, const Radau5Counts& counts);
 
 }  // namespace plab::solvers

@@ -283,7 +283,7 @@ void ContactForces::commit(double t, double h)
         known->slack = c.impulse == Vec3{} && c.depth > known->open_depth + rounding(c);
         ForcePair* pair = find_pair(contacts_.detectors()[found_[i].detector].component, c.a, c.b);
         pair->normal = c.normal;
-        if (time - known->begin > 2 * known->half_period) tell_impact_once(*pair, *known, c, time);
+        if (time - known->begin > 2 * known->half_period) report_impact_once(*pair, *known, c, time);
     }
     anchor();
 }

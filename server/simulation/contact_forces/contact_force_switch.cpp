@@ -139,7 +139,7 @@ void ContactForces::let_go(const Seen& seen, ForcePair& pair, double time)
     const Contact& c = seen.found.contact;
     ForceContact& known = *pair.find(c.feature);
     if (!(known.rest_depth > 0) || c.depth <= 1e3 * rounding(c)) return end_contact(pair, c, time);
-    tell_impact_once(pair, known, c, time);
+    report_impact_once(pair, known, c, time);
     known.dormant = true, known.depth = c.depth;
     known.force = known.stretch = {};
 }
@@ -174,7 +174,7 @@ void ContactForces::drop_dormant(const std::vector<Seen>& seen)
 void ContactForces::end_contact(ForcePair& pair, const Contact& at, double time)
 {
     ForceContact* known = pair.find(at.feature);
-    tell_impact_once(pair, *known, at, time);
+    report_impact_once(pair, *known, at, time);
     *known = pair.contacts[--pair.count];
 }
 
@@ -183,7 +183,7 @@ void ContactForces::tell(ForceHappening::Kind kind, const ForcePair& pair, const
     live_.happenings.push_back({kind, time, pair.detector, pair.a, pair.b, at.point, at.normal, impulse, at.depth});
 }
 
-void ContactForces::tell_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time)
+void ContactForces::report_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time)
 {
     if (std::exchange(contact.reported, true)) return;
     tell(ForceHappening::Kind::Impact, pair, at, contact.impulse, time);

@@ -199,7 +199,7 @@ private:
     void list_gone(const std::vector<Seen>& seen);
     void end_gone(double time);
     void tell(ForceHappening::Kind kind, const ForcePair& pair, const Contact& at, const Vec3& impulse, double time);
-    void tell_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time);
+    void report_impact_once(const ForcePair& pair, ForceContact& contact, const Contact& at, double time);
 
     // contact_force_advance.cpp
     void advance_island(const Island& island, double from, double to, WorkBook book, bool trial);

@@ -74,7 +74,7 @@ bool ContactBook::note_release(PairState& pair, const Contact& first, const Pres
     return true;
 }
 
-bool ContactBook::tell_release(PairState& pair)
+bool ContactBook::report_release(PairState& pair)
 {
     if (pair.pressed_tick != step_.frame.tick || pair.release >= kUndecided) return false;
     step_.emit(std::move(releases_[std::exchange(pair.release, PairHead::kNoRelease)]));
@@ -89,7 +89,7 @@ bool ContactBook::is_paradox(const Contact& contact) const
 
 /// Reports the paradox in the first step in which it occurs. What follows is one of several possible solutions: an impulse that ends the
 /// sliding.
-void ContactBook::tell_paradox(const Contact& contact, PairState& pair, double time)
+void ContactBook::report_paradox(const Contact& contact, PairState& pair, double time)
 {
     const bool goes_on = pair.paradox_tick >= step_.frame.tick - 1;
     pair.paradox_tick = step_.frame.tick;

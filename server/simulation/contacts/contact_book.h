@@ -77,7 +77,7 @@ public:
     Event contact_event(const char* kind, const PairState& pair, double time, const Contact& at, const Vec3& impulse = {}) const;
     /// Whether two touching bodies slide in such a way that pressing harder would close them faster (paradox.h).
     bool is_paradox(const Contact& contact) const;
-    void tell_paradox(const Contact& contact, PairState& pair, double time);
+    void report_paradox(const Contact& contact, PairState& pair, double time);
     /// Sums over the points of a pair in an advance, from which its release is decided.
     struct Pressing
     {
@@ -93,7 +93,7 @@ public:
     /// step. The event is emitted when the step is over, because after a rewind the pair may turn out to hold on.
     bool note_release(PairState& pair, const Contact& first, const Pressing& pressing, double from, double h);
     /// Emits the release that was noted for this pair. True if there is one.
-    bool tell_release(PairState& pair);
+    bool report_release(PairState& pair);
 
 private:
     void measure_bodies();

@@ -83,7 +83,7 @@ void HardContacts::finish_step()
             touches = touches || found[at].contact.depth > (pair.resting ? -contacts_.persistence_margin(pair) : 0.0);
         const std::span<FoundContact> own = std::span(found).subspan(begin, at - begin);
         const bool was_held = pressed(pair);
-        const bool released = contacts_.tell_release(pair);
+        const bool released = contacts_.report_release(pair);
         update_pair(pair, own);
         const bool ahead = held_.keeps_ahead(pair, touches, own, time);
         if (!touches && !ahead)

@@ -61,17 +61,17 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
     if (fresh_.empty()) return;
     contacts_.cache().add_sorted(fresh_, step_.world);
     for (std::size_t k = 0; k < fresh_.size(); ++k)
-        if (!fresh_[k].ahead) tell_begin(fresh_[k], found[first_found_[k]].contact, time);
+        if (!fresh_[k].ahead) report_begin(fresh_[k], found[first_found_[k]].contact, time);
 }
 
-void HeldIslands::tell_begin(const PairState& pair, const Contact& c, double time) const
+void HeldIslands::report_begin(const PairState& pair, const Contact& c, double time) const
 {
     step_.emit(contacts_.contact_event("contact.begin", pair, time, c));
 }
 
 bool HeldIslands::keeps_ahead(PairState& pair, bool touches, std::span<const FoundContact> found, double time) const
 {
-    if (touches && pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, tell_begin(pair, found.front().contact, time);
+    if (touches && pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, found.front().contact, time);
     return !touches && !found.empty() && contacts_.detectors()[found.front().detector].speculates;
 }
 
@@ -155,7 +155,7 @@ void HeldIslands::share_contacts(double h)
                 number = island_of_group_[step_.groups.of(r)];
         if (number == kNoIndex) continue;
         HeldIsland& island = *islands_[number];
-        island.turns = island.turns || (!island.has_rows && midway_.turns(c, h));
+        island.turns = island.turns || (!island.has_rows && midpoint_.turns(c, h));
         island.contacts.push_back(c);
         island.places.push_back(i);
     }
@@ -211,14 +211,14 @@ void HeldIslands::note_releases(HeldIsland& island, double from, double h) const
     }
 }
 
-void HeldIslands::tell_impacts(const HeldIsland& island, double time)
+void HeldIslands::report_impacts(const HeldIsland& island, double time)
 {
     for (std::size_t i = 0; i < island.contacts.size(); ++i)
     {
         const Contact& c = island.contacts[i];
         if (!(c.approach > 0) || c.impulse == Vec3{}) continue;
         PairState& pair = *pair_of_contact_[island.places[i]];
-        if (pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, tell_begin(pair, touching_[island.places[i]].contact, time);
+        if (pair.ahead) pair.ahead = false, pair.since = step_.frame.tick, report_begin(pair, touching_[island.places[i]].contact, time);
         Event e = contacts_.contact_event("contact.impact", pair, time, c, c.impulse);
         e.contact->depth = touching_[island.places[i]].contact.depth;
         step_.emit(std::move(e));

@@ -170,7 +170,7 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
         if (!step_.frame.give_up()) solve(*island, system, from, to, book, trial);
     const bool given_up = step_.frame.give_up();  // then islands may be unsolved, and the booked work is discarded
     if (book.work && !given_up) book_forces(system, islands, to - from);
-    midway_.take_back();
+    midpoint_.take_back();
     system.finish_held();
     if (!given_up)
         for (const HeldIsland* island : islands) report_rows(*island, system, to - from, book);
@@ -179,23 +179,23 @@ void HeldIslands::run(std::span<HeldIsland*> islands, std::span<const std::uint3
 }
 
 /// Advances islands in which a body moves along a curved surface to the midpoint of the step, where contacts and forces are evaluated
-/// (midway_contacts.h). Islands with an impact are left out, as its impulse acts at the start of the step along the normals there; so are
+/// (midpoint_contacts.h). Islands with an impact are left out, as its impulse acts at the start of the step along the normals there; so are
 /// islands with kinematic bodies.
 void HeldIslands::lead(std::span<HeldIsland*> islands, GroupSystem& system, double h)
 {
-    const auto stays = [this](const Contact& c) { return c.approach > 0 || midway_.is_driven(c); };
+    const auto stays = [this](const Contact& c) { return c.approach > 0 || midpoint_.is_driven(c); };
     led_places_.clear();
     for (HeldIsland* island : islands)
     {
         island->turns = island->turns && std::none_of(island->contacts.begin(), island->contacts.end(), stays);
         if (!island->turns) continue;
-        midway_.lead(system, island->members, h);
+        midpoint_.lead(system, island->members, h);
         led_places_.insert(led_places_.end(), island->places.begin(), island->places.end());
     }
     if (led_places_.empty()) return;
     system.evaluate(0, 0);
     std::sort(led_places_.begin(), led_places_.end());
-    midway_.bend(led_places_, touching_, h);
+    midpoint_.bend(led_places_, touching_, h);
     for (HeldIsland* island : islands)
         for (std::size_t i = 0; island->turns && i < island->places.size(); ++i) island->contacts[i] = touching_[island->places[i]].contact;
 }
@@ -213,7 +213,7 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
     if (!trial)
         for (std::size_t i = 0; i < held.contacts.size(); ++i)
             if (contacts_.is_paradox(held.contacts[i]))
-                contacts_.tell_paradox(held.contacts[i], *pair_of_contact_[held.places[i]], step_.frame.start_time + from);
+                contacts_.report_paradox(held.contacts[i], *pair_of_contact_[held.places[i]], step_.frame.start_time + from);
     held.motion.begin(system, host.bodies, host.shafts, held.members, held.roots, held.contacts, held.rows, book.work != nullptr);
     Island island;
     island.interruption = step_.frame.interruption;
@@ -243,7 +243,7 @@ void HeldIslands::solve(HeldIsland& held, GroupSystem& system, double from, doub
     step_.report.worst_residual = std::max(step_.report.worst_residual, island.residual);
     note_releases(held, from, to - from);
     keep(held);
-    tell_impacts(held, island.time);
+    report_impacts(held, island.time);
 }
 
 /// Books the work of the manager. Contacts dissipate energy, so on bodies that nothing else drives their work must not be positive, apart

@@ -6,7 +6,7 @@
 /// independent. In each step this class
 ///   1. collects the persistent contacts, from the end of the last step if nothing has moved since, or by a new detection;
 ///   2. joins groups to islands with disjoint sets, and hands each island its contacts, joint rows and members;
-///   3. evaluates the forces once, at the start of the step, or at the midpoint for bodies on curved surfaces (midway_contacts.h);
+///   3. evaluates the forces once, at the start of the step, or at the midpoint for bodies on curved surfaces (midpoint_contacts.h);
 ///   4. calls the island's manager. The manager decides the order of substeps through IslandMotion: kick() applies the forces for a time h,
 ///      move() integrates the poses, and in between it solves contacts and rows for impulses;
 ///   5. books the work in the energy ledger, and keeps the impulses to warm-start the next step.
@@ -22,7 +22,7 @@
 #include "plab/island.h"
 #include "simulation/contacts/contact_book.h"
 #include "simulation/contacts/kicked_bodies.h"
-#include "simulation/contacts/midway_contacts.h"
+#include "simulation/contacts/midpoint_contacts.h"
 #include "simulation/motion/group_motion.h"
 
 namespace plab::simulation
@@ -89,7 +89,7 @@ class HeldIslands
 {
 public:
     HeldIslands(StepState& step, GroupMotion& motion, ContactBook& contacts)
-        : step_(step), motion_(motion), contacts_(contacts), midway_(step, contacts)
+        : step_(step), motion_(motion), contacts_(contacts), midpoint_(step, contacts)
     {
     }
 
@@ -149,8 +149,8 @@ private:
     void lead(std::span<HeldIsland*> islands, GroupSystem& system, double h);
     void book_contacts(HeldIsland& island, double gained, WorkBook book);
     void keep(const HeldIsland& island);
-    void tell_begin(const PairState& pair, const Contact& contact, double time) const;
-    void tell_impacts(const HeldIsland& island, double time);
+    void report_begin(const PairState& pair, const Contact& contact, double time) const;
+    void report_impacts(const HeldIsland& island, double time);
     void note_releases(HeldIsland& island, double from, double h) const;
     void find_yielding_rows();
     static void report_rows(const HeldIsland& island, GroupSystem& system, double h, WorkBook book);
@@ -169,7 +169,7 @@ private:
     std::vector<std::uint32_t> island_of_group_;
     std::vector<std::unique_ptr<HeldIsland>> islands_;
     std::size_t island_count_ = 0;
-    MidwayContacts midway_;
+    MidpointContacts midpoint_;
     std::vector<HeldIsland*> plain_, jointed_;
     std::vector<std::uint32_t> led_places_;
     std::vector<std::uint32_t> plain_groups_;

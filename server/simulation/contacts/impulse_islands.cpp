@@ -48,7 +48,8 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     if (led) bend_touching(h);
     if (!trial)
         for (const FoundContact& f : touching_)
-            if (contacts_.is_paradox(f.contact)) contacts_.tell_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
+            if (contacts_.is_paradox(f.contact))
+                contacts_.report_paradox(f.contact, *contacts_.find_pair(f), step_.frame.start_time + from);
     if (!led && meets_any(system, h)) stop_closing(h, book), system.join();
 
     moved_.kick(system, bodies, members_, h);
@@ -57,7 +58,7 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
     if (!trial) keep_impulses(touching_, from, h);
     system.join();  // contact impulses ignore joints: project the velocities onto them
     const double work = moved_.move_mean(h);
-    if (led) midway_.take_back();
+    if (led) midpoint_.take_back();
     if (book.work && !system.rows()) book_rest(work, book);
     system.move_shafts(h, shafts);
     system.move_prescribed();
@@ -68,13 +69,13 @@ void ImpulseIslands::advance(std::span<const std::uint32_t> island, std::span<co
 /// Advances an island to the midpoint if a body moves along a curved surface and there is no impact.
 bool ImpulseIslands::lead_touching(GroupSystem& system, double h)
 {
-    const auto turns = [&](const FoundContact& f) { return midway_.turns(f.contact, h); };
-    const auto is_driven = [&](const FoundContact& f) { return midway_.is_driven(f.contact); };
+    const auto turns = [&](const FoundContact& f) { return midpoint_.turns(f.contact, h); };
+    const auto is_driven = [&](const FoundContact& f) { return midpoint_.is_driven(f.contact); };
     if (system.rows() || std::none_of(touching_.begin(), touching_.end(), turns)) return false;
     if (std::any_of(touching_.begin(), touching_.end(), is_driven)) return false;
     system.evaluate(0, 0);
     if (meets_any(system, h)) return false;
-    midway_.lead(system, members_, h);
+    midpoint_.lead(system, members_, h);
     return true;
 }
 
@@ -82,7 +83,7 @@ void ImpulseIslands::bend_touching(double h)
 {
     places_.resize(touching_.size());
     std::iota(places_.begin(), places_.end(), 0u);
-    midway_.bend(places_, touching_, h);
+    midpoint_.bend(places_, touching_, h);
 }
 
 /// Corrects the booked work of resting contacts. Along the actual displacements it must not be positive if no kinematic body takes part.

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "simulation/contacts/kicked_bodies.h"
-#include "simulation/contacts/midway_contacts.h"
+#include "simulation/contacts/midpoint_contacts.h"
 #include "simulation/contacts/position_correction.h"
 
 namespace plab::simulation
@@ -15,7 +15,7 @@ class ImpulseIslands
 {
 public:
     ImpulseIslands(StepState& step, GroupMotion& motion, ContactBook& contacts, PositionCorrection& positions)
-        : step_(step), motion_(motion), contacts_(contacts), positions_(positions), midway_(step, contacts)
+        : step_(step), motion_(motion), contacts_(contacts), positions_(positions), midpoint_(step, contacts)
     {
     }
 
@@ -35,7 +35,7 @@ private:
     GroupMotion& motion_;
     ContactBook& contacts_;
     PositionCorrection& positions_;
-    MidwayContacts midway_;
+    MidpointContacts midpoint_;
     KickedBodies moved_;
     std::vector<FoundContact> touching_;
     std::vector<std::uint32_t> members_, places_;

@@ -207,7 +207,7 @@ void EventLocator::record(Candidate& candidate, const std::vector<FoundContact>&
         (void)contacts_.cache().contact_of(pair, f.contact.feature);
         if (!detector.responds) continue;
         step_.emit(contacts_.contact_event("contact.impact", pair, time, f.contact, f.contact.impulse));
-        if (paradox_[i]) contacts_.tell_paradox(f.contact, pair, time);
+        if (paradox_[i]) contacts_.report_paradox(f.contact, pair, time);
         announce_rest(f, pair);
     }
 }

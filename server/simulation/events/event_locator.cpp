@@ -322,7 +322,7 @@ void EventLocator::begin_budget()
     budget_.begin(plain, multiple > 0 ? multiple : WorkBudget::kMultiple);
 }
 
-void EventLocator::tell_too_many(std::size_t left)
+void EventLocator::report_too_many(std::size_t left)
 {
     Event e;
     e.time = step_.frame.start_time + step_.frame.step, e.kind = "resolution.over_budget", e.severity = Severity::Warning;
@@ -340,7 +340,7 @@ void EventLocator::tell_too_many(std::size_t left)
 /// as with Resolution/None.
 void EventLocator::answer_the_rest(std::size_t left, std::vector<FoundContact>& found)
 {
-    tell_too_many(left);
+    report_too_many(left);
     queue_.clear(), free_.clear(), chosen_.clear();
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) free_.push_back(i);
     contacts_.detect_all(found);

@@ -129,7 +129,7 @@ private:
     void begin_budget();
     double sweeps_and_queries() const;
     void answer_the_rest(std::size_t left, std::vector<FoundContact>& found);
-    void tell_too_many(std::size_t left);
+    void report_too_many(std::size_t left);
     double overlap_tolerance(Ref a, Ref b) const;
 
     // event_candidates.cpp: pairs that may meet anywhere in the piece.

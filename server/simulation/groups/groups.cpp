@@ -149,12 +149,12 @@ private:
                              const Participation p = participation(world_, component);
                              // A constraint row belongs to the group of the dynamic participants, which can follow it. If no participant
                              // is dynamic it stays with the prescribed ones, so that its violation can still be reported.
-                             const bool somebody_moves =
+                             const bool something_moves =
                                  std::any_of(p.acts_on.begin(), p.acts_on.end(), [&](Ref r) { return is_dynamic(world_, r); });
                              for (const Ref ref : p.acts_on)
                              {
                                  if (groups_.of(ref) == kNoIndex) continue;
-                                 if (phase == Phase::Constrain && somebody_moves && !is_dynamic(world_, ref)) continue;
+                                 if (phase == Phase::Constrain && something_moves && !is_dynamic(world_, ref)) continue;
                                  Group& group = groups_.all[groups_.of(ref)];
                                  auto& rows = phase == Phase::Force ? group.forces : phase == Phase::Couple ? group.couplings : group.rows;
                                  rows.push_back({block, world_.rank(component), row});

@@ -343,14 +343,14 @@ ProjectionReport RowSystem::project(const StepContext& context, const RowBook& b
     factored_ = false;
     relax_positions(context, report);
     // Rows that nothing can satisfy because all participants are prescribed or static cannot be corrected, only reported.
-    const auto nobody_moves = [this](const ConstraintRow& row)
+    const auto nothing_moves = [this](const ConstraintRow& row)
     {
         const auto mobile = [this](const RowBlock& b) { return is_mobile(b.who); };
         return !row.may_yield() && std::none_of(row.blocks.begin(), row.blocks.begin() + row.count, mobile);
     };
     double left = measure_positions();
     for (std::size_t i = 0; i < rows_.size(); ++i)
-        if (rows_[i].kind == RowKind::Equality && rows_[i].error != 0 && nobody_moves(rows_[i]))
+        if (rows_[i].kind == RowKind::Equality && rows_[i].error != 0 && nothing_moves(rows_[i]))
             position_error_[i] = rows_[i].error, left = std::fmax(left, std::fabs(rows_[i].error) / position_scale(rows_[i]));
     report.places_hold = left < kContradiction || !positions_contradict();
     report.converged = report.places_hold;
@@ -361,7 +361,7 @@ ProjectionReport RowSystem::project(const StepContext& context, const RowBook& b
     if (!report.converged) book_speed_work(book);
     double stuck = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i)
-        if (nobody_moves(rows_[i]) && speed_of(rows_[i]) != rows_[i].rate)
+        if (nothing_moves(rows_[i]) && speed_of(rows_[i]) != rows_[i].rate)
             speed_error_[i] = speed_of(rows_[i]) - rows_[i].rate,
             stuck = std::fmax(stuck, std::fabs(speed_error_[i]) / speed_scale(rows_[i], context.dt));
     if (stuck >= kSpeedContradiction) report.converged = false, name_contradictory(speed_error_, report);

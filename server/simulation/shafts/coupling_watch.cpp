@@ -126,14 +126,14 @@ void CouplingWatch::tell(const world::World& world, const ShaftSystem& system, c
                          std::vector<std::uint8_t>& reported)
 {
     time_ = time, events_ = &events;
-    tell_conflict(world, done, reported);
-    for (const Fault& fault : faults_) tell_fault(fault, world.host().shafts, done, reported);
+    report_conflict(world, done, reported);
+    for (const Fault& fault : faults_) report_fault(fault, world.host().shafts, done, reported);
     misses_.clear();
     for (std::size_t i = 0; i < pairs_.size(); ++i) look_at(i, world, system, reported);
-    if (!misses_.empty()) tell_unsettled(world.host().shafts, done.sweeps, reported);
+    if (!misses_.empty()) report_unsettled(world.host().shafts, done.sweeps, reported);
 }
 
-void CouplingWatch::tell_conflict(const world::World& world, const CouplingReport& done, std::vector<std::uint8_t>& reported)
+void CouplingWatch::report_conflict(const world::World& world, const CouplingReport& done, std::vector<std::uint8_t>& reported)
 {
     const std::uint32_t second = done.conflict ? done.conflict->second : kNoIndex;
     if (done.conflict && reported[second] == 0)
@@ -150,7 +150,7 @@ bool CouplingWatch::is_faulty(std::uint32_t part, const ShaftSystem& system) con
     return std::any_of(faults_.begin(), faults_.end(), [&](const Fault& f) { return system.part_of(pairs_[f.pair].driven) == part; });
 }
 
-void CouplingWatch::tell_fault(const Fault& fault, const Shafts& shafts, const CouplingReport& done, std::vector<std::uint8_t>& reported)
+void CouplingWatch::report_fault(const Fault& fault, const Shafts& shafts, const CouplingReport& done, std::vector<std::uint8_t>& reported)
 {
     const CouplingPair& p = pairs_[fault.pair];
     if (std::exchange(reported[p.component], 1)) return;
@@ -192,7 +192,7 @@ void CouplingWatch::look_at(std::size_t index, const world::World& world, const 
 }
 
 /// One event per train, because the sweeps distribute the error over many of its couplings.
-void CouplingWatch::tell_unsettled(const Shafts& shafts, int sweeps, std::vector<std::uint8_t>& reported)
+void CouplingWatch::report_unsettled(const Shafts& shafts, int sweeps, std::vector<std::uint8_t>& reported)
 {
     std::stable_sort(misses_.begin(), misses_.end(), [](const Miss& x, const Miss& y) { return x.part < y.part; });
     for (std::size_t first = 0, end = 0; first < misses_.size(); first = end)

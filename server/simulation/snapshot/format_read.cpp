@@ -168,7 +168,7 @@ private:
         directory_->components[component].host_index = static_cast<std::uint32_t>(row);
         return {};
     }
-    Result<void> nobody_missing(const char* name, Facet facet) const
+    Result<void> none_missing(const char* name, Facet facet) const
     {
         for (const world::Component& c : directory_->components)
             if (c.table != kNoIndex && c.facet == facet && c.host_index == kNoIndex)
@@ -195,7 +195,7 @@ private:
             if (watch_.knows_missed) w.tunnels.reported.push_back(r.reported_missed ? 1 : 0);
             w.tunnels.sinking.push_back(r.sinking);
         }
-        return nobody_missing("bodies", Facet::Body);
+        return none_missing("bodies", Facet::Body);
     }
 
     Result<void> read_shafts()
@@ -218,7 +218,7 @@ private:
             if (!there) return reason("the snapshot's section 'shafts' names a root that is not a shaft");
             s.root.push_back(directory_->components[r.root].host_index);
         }
-        return nobody_missing("shafts", Facet::Shaft);
+        return none_missing("shafts", Facet::Shaft);
     }
 
     Result<void> read_quantities()
@@ -231,7 +231,7 @@ private:
             if (auto done = claim("quantities", q.component, Facet::Quantities, values.size()); !done) return done;
             values.push_back(std::move(q.values));
         }
-        return nobody_missing("quantities", Facet::Quantities);
+        return none_missing("quantities", Facet::Quantities);
     }
 
     template <class List, class Head, class Point>

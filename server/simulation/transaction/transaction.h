@@ -102,7 +102,7 @@ private:
     /// The number of persistent contact points of which the component is detector, resolution, response or manager.
     std::size_t held_points(std::uint32_t component) const;
     /// Records in the reports of the swaps what happened to persistent contacts.
-    void tell_contacts();
+    void report_contacts();
 
     Run* run_;
     RunContext* context_;

@@ -38,7 +38,7 @@ std::size_t Transaction::held_points(std::uint32_t component) const
     return n;
 }
 
-void Transaction::tell_contacts()
+void Transaction::report_contacts()
 {
     const auto tell = [](SwapReport& report, std::size_t n, FieldTransfer transfer)
     {
@@ -116,7 +116,7 @@ void Transaction::run_on_clock()
 Result<void> Transaction::build_and_try(TrialScope& scope, bool swaps)
 {
     if (auto built = run_->stepper().rebuild(); !built) return model::first_of_alike(built.errors());
-    tell_contacts();
+    report_contacts();
     const Totals now = run_->totals();
     energy_applied_ = now.kinetic + now.stored;
     if (!request_->trial.is_wanted())

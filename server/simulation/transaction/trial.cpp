@@ -41,7 +41,7 @@ Trial::Trial(world::World& world, const Stepper& stepper, const TrialStep& step)
 {
 }
 
-void Trial::fix_everybody_else(const TrialScope& scope)
+void Trial::fix_all_others(const TrialScope& scope)
 {
     if (scope.has_everything()) return;
     Bodies& bodies = world_.host().bodies;
@@ -159,7 +159,7 @@ Spread Trial::measure(Stepper& part, const TrialScope& scope, const Interruption
     std::uint64_t longest = 0;
     for (std::uint64_t begin = now_ns(); ns.size() < kRepeats && begin + longest < until_ns && !deadline.due();)
     {
-        fix_everybody_else(scope);
+        fix_all_others(scope);
         set_up(part, scope);
         const std::uint64_t before = now_ns();
         part.step(step_.tick, step_.start, step_.h);
@@ -183,7 +183,7 @@ TrialResult Trial::run(TrialScope& scope, const std::vector<std::uint32_t>& comp
         scope.close(stepper_);
         scope.choose_components();
         keep_cells(scope);
-        fix_everybody_else(scope);
+        fix_all_others(scope);
         const world::HostTables fixed = world_.host();
         Stepper part(world_, 1);
         part.restrict_to(scope.has_everything() ? nullptr : &scope.components());

@@ -44,7 +44,7 @@ public:
                     std::uint64_t until_ns);
 
 private:
-    void fix_everybody_else(const TrialScope& scope);
+    void fix_all_others(const TrialScope& scope);
     void set_up(Stepper& part, const TrialScope& scope) const;
     void keep_cells(const TrialScope& scope);
     void put_back();

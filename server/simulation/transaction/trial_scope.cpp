@@ -119,7 +119,7 @@ bool TrialScope::close_over_pairs(const Pairs& pairs)
 }
 
 /// A detector that rewinds the whole world at a collision acts on an object in the scope: then everything is in the scope.
-bool TrialScope::rewinds_everybody(const Stepper& stepper) const
+bool TrialScope::rewinds_everything(const Stepper& stepper) const
 {
     const auto concerns = [&](const Detector& d) { return d.locates && !d.local && acts_on_scope(d.component); };
     return std::any_of(stepper.detectors().begin(), stepper.detectors().end(), concerns);
@@ -134,7 +134,7 @@ void TrialScope::close(const Stepper& stepper)
         grown = close_over_pairs(stepper.contacts().pairs()) || grown;
         grown = close_over_pairs(stepper.contacts().force_pairs()) || grown;
     }
-    everything_ = everything_ || rewinds_everybody(stepper);
+    everything_ = everything_ || rewinds_everything(stepper);
 }
 
 bool TrialScope::acts_on_scope(std::uint32_t component) const

@@ -41,7 +41,7 @@ private:
     void add_object(Ref object);
     template <class Pairs>
     bool close_over_pairs(const Pairs& pairs);
-    bool rewinds_everybody(const Stepper& stepper) const;
+    bool rewinds_everything(const Stepper& stepper) const;
     bool carries_on(Ref object) const;
     void choose_with_parts(std::uint32_t component);
     bool acts_on_scope(std::uint32_t component) const;

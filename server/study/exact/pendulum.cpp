@@ -78,7 +78,8 @@ Result<std::unique_ptr<ExactSolution>> make_hung(const SceneFacts& facts, std::u
 {
     const std::string id = facts.world().id_of(object);
     const std::vector<std::uint32_t> hinges = facts.of_type("Constraint/Hinge"), balls = facts.of_type("Constraint/Ball");
-    if (hinges.size() + balls.size() != 1) return reason(id + " is not attached to a joint of its own: one Constraint/Hinge or one Constraint/Ball");
+    if (hinges.size() + balls.size() != 1)
+        return reason(id + " is not attached to a joint of its own: one Constraint/Hinge or one Constraint/Ball");
     const bool on_hinge = !hinges.empty();
     const std::uint32_t joint = on_hinge ? hinges.front() : balls.front();
     if (const auto other = facts.foreign_force({"Field/Gravity", "Constraint/Hinge", "Constraint/Ball"}); !other.empty())

@@ -32,10 +32,10 @@
 namespace plab::simulation
 {
 
-class MidwayContacts
+class MidpointContacts
 {
 public:
-    MidwayContacts(StepState& step, ContactBook& contacts) : step_(step), contacts_(contacts) {}
+    MidpointContacts(StepState& step, ContactBook& contacts) : step_(step), contacts_(contacts) {}
 
     /// Whether two round bodies move along one another so far in h (s) that the rotation of their normal matters.
     bool turns(const Contact& contact, double h) const;
@@ -65,7 +65,7 @@ private:
     ContactBook& contacts_;
     std::vector<Led> led_;
     std::vector<Vec3> displacements_;  ///< m, by host row; zero between steps
-    std::vector<FoundContact> midway_;
+    std::vector<FoundContact> midpoint_;
     std::vector<PersistentPair> persistent_;
 };
 

@@ -1,4 +1,4 @@
-#include "simulation/contacts/midway_contacts.h"
+#include "simulation/contacts/midpoint_contacts.h"
 
 #include <algorithm>
 #include <tuple>
@@ -35,13 +35,13 @@ bool is_round(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
 
 }  // namespace
 
-bool MidwayContacts::is_driven(const Contact& c) const
+bool MidpointContacts::is_driven(const Contact& c) const
 {
     const Bodies& bodies = step_.world.host().bodies;
     return bodies.motion[c.a.index] == Motion::Kinematic || bodies.motion[c.b.index] == Motion::Kinematic;
 }
 
-bool MidwayContacts::turns(const Contact& c, double h) const
+bool MidpointContacts::turns(const Contact& c, double h) const
 {
     const world::HostTables& host = step_.world.host();
     const Bodies& bodies = host.bodies;
@@ -51,7 +51,7 @@ bool MidwayContacts::turns(const Contact& c, double h) const
     return is_round(bodies, host.shapes, c.a.index) && is_round(bodies, host.shapes, c.b.index);
 }
 
-void MidwayContacts::lead(GroupSystem& system, std::span<const std::uint32_t> members, double h)
+void MidpointContacts::lead(GroupSystem& system, std::span<const std::uint32_t> members, double h)
 {
     const Bodies& bodies = step_.world.host().bodies;
     const std::span<double> x = system.coordinates();
@@ -68,9 +68,9 @@ void MidwayContacts::lead(GroupSystem& system, std::span<const std::uint32_t> me
 }
 
 /// Detects the same pairs at the midpoint, with a margin for the gap that the curvature opens: less than displacement^2 / 2r.
-void MidwayContacts::query(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all)
+void MidpointContacts::query(std::span<const std::uint32_t> places, const std::vector<FoundContact>& all)
 {
-    midway_.clear();
+    midpoint_.clear();
     for (std::size_t i = 0; i < places.size();)
     {
         const std::uint32_t detector = all[places[i]].detector;
@@ -85,10 +85,10 @@ void MidwayContacts::query(std::span<const std::uint32_t> places, const std::vec
                          opens = radius > 0 ? dot(displacement, displacement) / (2 * radius) : 0.0;
             margin = std::max(margin, std::max(0.0, -c.depth) + opens + contacts_.overlap_tolerance(c.a, c.b));
         }
-        contacts_.detect(contacts_.detectors()[detector], detector, persistent_, true, midway_, margin);
+        contacts_.detect(contacts_.detectors()[detector], detector, persistent_, true, midpoint_, margin);
     }
-    sort_contacts(midway_, step_.world);
-    for (FoundContact& f : midway_)
+    sort_contacts(midpoint_, step_.world);
+    for (FoundContact& f : midpoint_)
     {
         const Contact& c = f.contact;
         const std::uint32_t detector = contacts_.detectors()[f.detector].component;
@@ -97,7 +97,7 @@ void MidwayContacts::query(std::span<const std::uint32_t> places, const std::vec
     }
 }
 
-void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h)
+void MidpointContacts::bend(std::span<const std::uint32_t> places, std::vector<FoundContact>& all, double h)
 {
     Bodies& bodies = step_.world.host().bodies;
     for (const Led& led : led_)
@@ -111,9 +111,9 @@ void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<Fou
     for (const std::uint32_t place : places)
     {
         Contact& c = all[place].contact;
-        const auto found = std::lower_bound(midway_.begin(), midway_.end(), key(all[place]),
+        const auto found = std::lower_bound(midpoint_.begin(), midpoint_.end(), key(all[place]),
                                             [&](const FoundContact& f, const auto& wanted) { return key(f) < wanted; });
-        const bool same = found != midway_.end() && key(*found) == key(all[place]) && dot(found->contact.normal, c.normal) > kSameCurve;
+        const bool same = found != midpoint_.end() && key(*found) == key(all[place]) && dot(found->contact.normal, c.normal) > kSameCurve;
         if (!same)
         {
             // Not found at the midpoint: keep the normal, and let the contact point move with the led bodies.
@@ -127,7 +127,7 @@ void MidwayContacts::bend(std::span<const std::uint32_t> places, std::vector<Fou
     }
 }
 
-void MidwayContacts::take_back()
+void MidpointContacts::take_back()
 {
     Bodies& bodies = step_.world.host().bodies;
     for (const Led& led : led_) bodies.position[led.body] -= led.displacement, displacements_[led.body] = {};
