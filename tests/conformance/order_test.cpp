@@ -9,12 +9,12 @@ using namespace plab::test;
 namespace
 {
 
-constexpr int kSteps = 100;
+constexpr int kOrderSteps = 100;
 
 std::vector<std::uint64_t> hashes_of(const model::Blueprint& blueprint, int threads = 1)
 {
     const auto running = started(compiled(blueprint), threads);
-    return hashes(*running, kSteps);
+    return hashes(*running, kOrderSteps);
 }
 
 /// Fisher and Yates' shuffle with a generator of its own (SplitMix64's step): the same on every system.
@@ -74,7 +74,7 @@ TEST_CASE("two worlds that take turns equal one alone")
         b->step();
         b->step();
         std::vector<std::uint64_t> together;
-        for (int i = 0; i < kSteps; ++i)
+        for (int i = 0; i < kOrderSteps; ++i)
         {
             together.push_back(hashes(*a, 1).front());
             b->step();

@@ -201,7 +201,7 @@ std::string missing(const NamedThing& thing, const Declared& declared)
 std::vector<std::string> options_in(const std::string& text)
 {
     static const std::regex begins("(--|(plabctl|plabd|plab-log|plab-view|plab-study|plab-hello) ).*");
-    static const std::regex option("(^|[ \\[|,])(--[a-z][a-z-]*)");
+    static const std::regex option("(^|[ \\[|,])(--[a-z][a-z0-9-]*)");
     std::vector<std::string> out;
     if (!std::regex_match(text, begins)) return out;
     for (std::sregex_iterator at(text.begin(), text.end(), option), end; at != end; ++at) out.push_back((*at)[2]);

@@ -155,7 +155,7 @@ TEST_CASE("two medians differ where quartiles of eight samples, or all of four, 
     CHECK_FALSE(simulation::differ(spread({1, 2, 3, 4, 50}), high));
     CHECK(simulation::differ(spread({1, 2, 3, 4, 5, 6, 7, 50}), spread({11, 12, 13, 14, 15, 16, 17, 18})));
     CHECK(spread({}).samples == 0);
-    CHECK_FALSE(spread({1, 2}).is_reported());
+    CHECK_FALSE(spread({1, 2}).is_known());
 }
 
 TEST_CASE("equal costs differ by chance in less than 6 of 100 cases, whatever the number of samples")

@@ -9,7 +9,7 @@ namespace plab::stability
 namespace
 {
 
-std::string settings(const std::string& solver) { return dt(1.0 / 60) + attribute("solver", "Solver/" + solver); }
+std::string inertia_settings(const std::string& solver) { return dt(1.0 / 60) + attribute("solver", "Solver/" + solver); }
 
 /// Largest change of kinetic energy and angular momentum, relative, of all that turns freely.
 double drift(Trial& t, double until)
@@ -51,7 +51,7 @@ Case spin()
         {}};
     c.run = [solvers, speeds](std::size_t r, std::size_t v)
     {
-        Trial t(body("top", 1, {1, 2, 2.5}, {}, attribute("angular_velocity", Vec3{0.01, 1, 0.01} * speeds[v])), settings(solvers[r]),
+        Trial t(body("top", 1, {1, 2, 2.5}, {}, attribute("angular_velocity", Vec3{0.01, 1, 0.01} * speeds[v])), inertia_settings(solvers[r]),
                 kManyEvaluations);
         return t.judge(drift(t, 2), {1e-3, 1.01});
     };
@@ -141,7 +141,7 @@ Case degenerate()
         Trial t(component("top", "State/RigidBody",
                           attribute("mass", 1) + attribute("inertia", std::string(kinds[v].value)) +
                               attribute("angular_velocity", Vec3{0.1, 0.1, 10})),
-                settings(solvers[r]), kManyEvaluations);
+                inertia_settings(solvers[r]), kManyEvaluations);
         return t.judge(drift(t, 2), {1e-3, 1});
     };
     c.quick = [solvers](std::size_t r, std::size_t) { return solvers[r] == "RungeKutta4" || solvers[r] == "Exact"; };
@@ -171,7 +171,7 @@ Case denormal()
                     component("spring", "Constraint/SpringDamper",
                               attribute("b", "mass") + attribute("anchor_a", Vec3{}) + attribute("anchor_b", Vec3{}) +
                                   attribute("length", 0) + attribute("stiffness", 100)),
-                settings(solvers[r]), kManyEvaluations);
+                inertia_settings(solvers[r]), kManyEvaluations);
         t.run(1);
         if (!t.loaded()) return t.judge(0, {});
         return t.judge(std::fabs(t.vec("mass", "position").x / sizes[v] - std::cos(10 * t.simulation().time())), {0.1, 3});

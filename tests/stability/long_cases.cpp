@@ -9,7 +9,7 @@ namespace plab::stability
 namespace
 {
 
-constexpr double kStep = 1.0 / 240;
+constexpr double kLongStep = 1.0 / 240;
 constexpr std::uint64_t kNoLimit = 1'000'000'000;  // of evaluations: time is the limit here
 const std::vector<double> kCounts{1e4, 1e6, 1e7};
 
@@ -36,8 +36,8 @@ Case oscillator()
                     component("spring", "Constraint/SpringDamper",
                               attribute("b", std::string("mass")) + attribute("anchor_a", Vec3{}) + attribute("anchor_b", Vec3{}) +
                                   attribute("length", 1) + attribute("stiffness", 100)),
-                dt(kStep) + attribute("solver", "Solver/" + solvers[r]), kNoLimit);
-        t.run(kCounts[v] * kStep);
+                dt(kLongStep) + attribute("solver", "Solver/" + solvers[r]), kNoLimit);
+        t.run(kCounts[v] * kLongStep);
         if (!t.loaded()) return t.judge(0, {});
         const double x = t.vec("mass", "position").x - 1, speed = t.vec("mass", "linear_velocity").x;
         return t.judge(std::fabs((100 * x * x + speed * speed) / 1.0 - 1), {1e-2, 1});
@@ -64,9 +64,9 @@ Case free_body()
     c.run = [solvers](std::size_t r, std::size_t v)
     {
         Trial t(body("top", 1, {1, 2, 2.5}, {}, attribute("angular_velocity", Vec3{1, 2, 3})),
-                dt(kStep) + attribute("solver", "Solver/" + solvers[r]), kNoLimit);
+                dt(kLongStep) + attribute("solver", "Solver/" + solvers[r]), kNoLimit);
         const auto start = t.loaded() ? t.simulation().totals() : simulation::Totals{};
-        t.run(kCounts[v] * kStep);
+        t.run(kCounts[v] * kLongStep);
         if (!t.loaded()) return t.judge(0, {});
         const auto end = t.simulation().totals();
         return t.judge(std::fmax(std::fabs(end.kinetic / start.kinetic - 1),
@@ -99,8 +99,8 @@ Case pendulum()
         const Vec3 start{kLength * std::sin(kTilt), 0, -kLength * std::cos(kTilt)};
         Trial t(body("bob", 1, {0.01, 0.01, 0.01}, start) + gravity() +
                     component("joint", "Constraint/Ball", attribute("b", std::string("bob")) + attribute("anchor", Vec3{})),
-                dt(kStep) + attribute("solver", "Solver/" + solvers[r]), kNoLimit);
-        t.run(kCounts[v] * kStep);
+                dt(kLongStep) + attribute("solver", "Solver/" + solvers[r]), kNoLimit);
+        t.run(kCounts[v] * kLongStep);
         if (!t.loaded()) return t.judge(0, {});
         const double swing = kG * kLength * (1 - std::cos(kTilt));
         const double height = t.vec("bob", "position").z - start.z;
@@ -142,8 +142,8 @@ Case resting_cube()
         Trial t(ground() + box("cube", {0.5, 0.5, 0.5}, 1, {0, 0, 0.5}) +
                     component("weight", "Field/Gravity", attribute("between", std::string("*")) + attribute("acceleration", weight)) +
                     contact(algorithms[r], attribute("response.friction", 0.5)),
-                dt(kStep), kNoLimit);
-        t.run(kCounts[v] * kStep);
+                dt(kLongStep), kNoLimit);
+        t.run(kCounts[v] * kLongStep);
         if (!t.loaded()) return t.judge(0, {});
         return t.judge(length(t.vec("cube", "position") - Vec3{0, 0, 0.5}), {1e-6, 0.1});
     };

@@ -230,7 +230,7 @@ TEST_CASE("a refused snapshot changes nothing")
     const auto s = started(scene_of(kBoxes));
     for (int i = 0; i < 20; ++i) s->step();
     const simulation::Snapshot before = s->capture();
-    CHECK(!s->restore({}).ok());
+    CHECK(!s->restore(simulation::Snapshot()).ok());
 
     auto broken = std::make_shared<simulation::SnapshotContent>(*before);
     broken->world.bodies.velocity[0].x += 1e-9;

@@ -178,7 +178,7 @@ TEST_CASE("large groups and overflow go to Radau5, told once")
     Points p({1, 2}, {0, 0}, [](double, const auto& q, const auto&, auto& a) { a[0] = -q[0], a[1] = -q[1]; });
     p.run(0.5, 2, std::ref(solver));
     CHECK(p.place[0] == doctest::Approx(std::cos(1.0)).epsilon(1e-8));
-    CHECK(solver.rows.reported.resolved[0] == "Radau5");
+    CHECK(solver.rows.resolved.resolved[0] == "Radau5");
     REQUIRE(solver.events.count("solver.fell_back") == 1);
     CHECK(solver.events.all[0].message.find("4 numbers") != std::string::npos);
     // What does not move is not counted.
@@ -186,7 +186,7 @@ TEST_CASE("large groups and overflow go to Radau5, told once")
     still.rows.max_size[0] = 2;
     Points q({1, 0}, {0, 0}, [](double, const auto& x, const auto&, auto& a) { a[0] = -x[0], a[1] = -x[1]; });
     q.run(0.5, 2, std::ref(still));
-    CHECK(still.rows.reported.resolved[0] == "Exponential");
+    CHECK(still.rows.resolved.resolved[0] == "Exponential");
 }
 
 TEST_CASE("derivatives by extrapolated differences are right to 1e-9")

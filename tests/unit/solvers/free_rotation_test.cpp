@@ -130,7 +130,7 @@ TEST_CASE("the box of reference problem A2, at steps from 1 ms to 100 s")
         CHECK(attitude_error(box.orientation, kBoxAt5) < 2e-12);
         CHECK(length(box.spin_B() - kBoxSpinAt5) < 2e-12);
         CHECK(box.momentum() == L);
-        CHECK(exact.rows.reported.resolved[0] == "Exact");
+        CHECK(exact.rows.resolved.resolved[0] == "Exact");
         CHECK(exact.events.all.empty());
     }
     Solver<ExactRows> exact(advance_exact);
@@ -235,7 +235,7 @@ TEST_CASE("what is not in closed form is advanced by a stated method, told once"
     Body b(diagonal(kBoxInertia), kBoxSpin, drag);
     b.set_velocity({1, 0, 0});
     b.run(0.01, 100, std::ref(exact));
-    CHECK(exact.rows.reported.resolved[0] == "RotationSplitting");
+    CHECK(exact.rows.resolved.resolved[0] == "RotationSplitting");
     CHECK(exact.events.count("solver.fell_back") == 1);
     CHECK(b.velocity().x == doctest::Approx(std::exp(-0.1)).epsilon(1e-11));
 
@@ -243,7 +243,7 @@ TEST_CASE("what is not in closed form is advanced by a stated method, told once"
     Body liar(diagonal(kBoxInertia), kBoxSpin, drag);
     liar.uniform = true, liar.set_velocity({1, 0, 0});
     liar.run(0.01, 1, std::ref(exact));
-    CHECK(exact.rows.reported.resolved[0] == "RotationSplitting");
+    CHECK(exact.rows.resolved.resolved[0] == "RotationSplitting");
     CHECK(liar.booked == doctest::Approx(1).epsilon(1e-12));
 
     Body held(diagonal(kBoxInertia), kBoxSpin), reference(diagonal(kBoxInertia), kBoxSpin);
@@ -256,11 +256,11 @@ TEST_CASE("what is not in closed form is advanced by a stated method, told once"
                       c.dt = h;
                       advance_runge_kutta4(c, 0, {}, s);
                   });
-    CHECK(exact.rows.reported.resolved[0] == "RungeKutta4");
+    CHECK(exact.rows.resolved.resolved[0] == "RungeKutta4");
     CHECK(held.orientation == reference.orientation);
     CHECK(exact.events.count("solver.fell_back") == 2);
 
-    exact.trial = true, exact.rows.reported.resolved[0] = "untouched";
+    exact.trial = true, exact.rows.resolved.resolved[0] = "untouched";
     held.run(0.01, 1, std::ref(exact));
-    CHECK(exact.rows.reported.resolved[0] == "untouched");
+    CHECK(exact.rows.resolved.resolved[0] == "untouched");
 }

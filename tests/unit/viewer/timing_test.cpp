@@ -51,7 +51,7 @@ std::vector<State> states_from(double first, double last, double spacing)
     return out;
 }
 
-std::optional<ParseEnd> parse(std::vector<const char*> words, Options& options)
+std::optional<ParseEnd> parse(std::vector<const char*> words, ViewerOptions& options)
 {
     words.insert(words.begin(), "plab-view");
     return parse_options(static_cast<int>(words.size()), words.data(), options);
@@ -170,7 +170,7 @@ TEST_CASE("wrong use ends with code 2 and says why")
 {
     const auto says = [](std::vector<const char*> words)
     {
-        Options options;
+        ViewerOptions options;
         const auto end = parse(std::move(words), options);
         return end ? std::to_string(end->code) + " " + end->message : std::string("fine");
     };
@@ -189,7 +189,7 @@ TEST_CASE("wrong use ends with code 2 and says why")
 
 TEST_CASE("shots are taken in the order of their times, the present one first")
 {
-    Options options;
+    ViewerOptions options;
     REQUIRE_FALSE(parse({"--shot", "2=b.png", "--shot", "0.5@x=a.png", "--png", "now.png"}, options));
     REQUIRE(options.shots.size() == 3);
     CHECK(options.shots[0].file == "now.png");
