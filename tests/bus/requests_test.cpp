@@ -27,8 +27,7 @@ TEST_CASE("a swap takes effect at the step that it names, and the reply says wha
     Server server(scene_file("fan_and_balloons.xml"), {"--rate", "max", "--paused"});
     Client client(server);
     link::Request swap{{{"swap", "gears", "Constraint/AngularVelocity/Impulse"}}, 100, {}};
-    auto number = client.caller.send(swap);
-    REQUIRE(number.ok());
+    const std::uint64_t number = send_waiting(client.caller, swap);
     Client other(server);
     CHECK(ask(other.caller, {"step", "", "200"}).done());
     bool answered = false;
@@ -39,7 +38,7 @@ TEST_CASE("a swap takes effect at the step that it names, and the reply says wha
             [&](std::uint64_t of, link::Reply reply)
             {
                 answered = true;
-                CHECK(of == *number);
+                CHECK(of == number);
                 CHECK_MESSAGE(reply.done(), reasons(reply));
                 CHECK(reply.step == 100);
                 CHECK(reply.revision == 1);
@@ -172,8 +171,7 @@ TEST_CASE("clients whose requests wait are told when the server ends, and it end
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     Client client(server);
-    auto number = client.caller.send(link::Request{{{"pause"}}, 900'000'000, {}});
-    REQUIRE(number.ok());
+    const std::uint64_t number = send_waiting(client.caller, link::Request{{{"pause"}}, 900'000'000, {}});
     Client other(server);
     CHECK(ask(other.caller, {"step", "", "1"}).done());
     server.process().signal(15);
@@ -184,7 +182,7 @@ TEST_CASE("clients whose requests wait are told when the server ends, and it end
         client.caller.take(
             [&](std::uint64_t of, const link::Reply& reply)
             {
-                if (of != *number) return;
+                if (of != number) return;
                 reported = true;
                 CHECK(reply.outcome == "refused");
                 CHECK(has(reasons(reply), "the server ended"));
@@ -198,8 +196,7 @@ TEST_CASE("a request for a step of a run that is over is refused, not carried ou
 {
     Server server(scene_file("fan_and_balloons.xml"), {"--paused"});
     Client client(server);
-    auto number = client.caller.send(link::Request{{{"remove", "gears"}}, 600, {}});
-    REQUIRE(number.ok());
+    const std::uint64_t number = send_waiting(client.caller, link::Request{{{"remove", "gears"}}, 600, {}});
     Client other(server);  // call() of the first would throw the other reply away
     const link::Reply reset = ask(other.caller, {"reset"});
     CHECK(reset.done());
@@ -209,7 +206,7 @@ TEST_CASE("a request for a step of a run that is over is refused, not carried ou
     {
         std::this_thread::sleep_for(Milliseconds(20));
         client.caller.take([&](std::uint64_t of, const link::Reply& reply)
-                           { reported = reported || (of == *number && has(reasons(reply), "new run")); });
+                           { reported = reported || (of == number && has(reasons(reply), "new run")); });
     }
     CHECK(reported);
 }

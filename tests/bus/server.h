@@ -84,6 +84,20 @@ inline link::Reply ask(link::Caller& caller, link::Operation operation)
     return ask(caller, link::Request{{std::move(operation)}, {}, {}});
 }
 
+/// Sends a request that will wait for its step, and returns its number. It is sent several times: the server's reader may discover a new
+/// writer slightly later than the writer discovers it, and keeps nothing that came before. The server carries it out once.
+inline std::uint64_t send_waiting(link::Caller& caller, const link::Request& request)
+{
+    const auto number = caller.send(request);
+    REQUIRE(number.ok());
+    for (int i = 0; i < 10; ++i)
+    {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        REQUIRE(caller.send_again(request, *number).ok());
+    }
+    return *number;
+}
+
 /// plabctl against that server.
 inline Outcome control(const Server& server, std::vector<std::string> arguments)
 {

@@ -42,8 +42,8 @@ TEST_CASE("SIGTERM and SIGINT end a step that takes minutes within a second; wha
         const std::string out = scratch_file("long_step.json"), recording = scratch_file("long_step.mcap");
         Process plabd({program("plabd"), long_scene(), "--no-bus", "--until", "10000", "--table", "--out", out, "--record", recording,
                        "--overwrite"});
-        // The table says what it is at while it lasts.
-        REQUIRE_MESSAGE(plabd.wait_for("in work: step 0: advance", Milliseconds(10000)), plabd.output(), plabd.errors());
+        // The table says what it is doing while it lasts.
+        REQUIRE_MESSAGE(plabd.wait_for("in progress: step 0: advance", Milliseconds(10000)), plabd.output(), plabd.errors());
         const Clock::time_point begin = Clock::now();
         plabd.signal(signal);
         CHECK(plabd.wait(Milliseconds(5000)) == 128 + signal);

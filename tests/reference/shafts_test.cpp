@@ -138,7 +138,7 @@ TEST_CASE("an Impulse between prescribed shafts that disagree says so, and says 
     s.run(1);
     const Event e = only(s, "constraint.contradiction");
     CHECK(e.component == s.simulation().world().find("g"));
-    CHECK(e.message.find("10 rad/s are left") != std::string::npos);
+    CHECK(e.message.find("an error of 10 rad/s remains") != std::string::npos);
     CHECK(s.spin("b") == 20);
     const auto set = [&](double factor)
     {

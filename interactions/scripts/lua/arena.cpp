@@ -10,12 +10,12 @@ namespace plab::scripts
 namespace
 {
 
-constexpr std::size_t kStep = 16, kSmall = 512, kSmallClasses = kSmall / kStep;
+constexpr std::size_t kGranularity = 16, kSmall = 512, kSmallClasses = kSmall / kGranularity;
 
 /// Steps of 16 bytes to 512, then four sizes per octave.
 constexpr std::size_t class_of(std::size_t size)
 {
-    if (size <= kSmall) return (size + kStep - 1) / kStep;
+    if (size <= kSmall) return (size + kGranularity - 1) / kGranularity;
     const auto octave = static_cast<std::size_t>(std::bit_width(size - 1)) - 1;
     const std::size_t quarter = (size - 1) >> (octave - 2);  // 4..7
     return kSmallClasses + (octave - 9) * 4 + (quarter - 4) + 1;
@@ -23,7 +23,7 @@ constexpr std::size_t class_of(std::size_t size)
 
 constexpr std::size_t size_of(std::size_t piece_class)
 {
-    if (piece_class <= kSmallClasses) return piece_class * kStep;
+    if (piece_class <= kSmallClasses) return piece_class * kGranularity;
     const std::size_t k = piece_class - kSmallClasses - 1;
     return (k % 4 + 5) << (9 + k / 4 - 2);
 }

@@ -41,7 +41,7 @@ TEST_CASE("what looks like a number and is none is not taken for a text")
     CHECK(refusal("3 apples") == "'3 apples' is not a number; write it in double quotes if it is a text");
     CHECK(refusal("inf") == "'inf' is not finite; write it in double quotes if it is a text");
     CHECK(refusal("1e999") == "'1e999' is out of range; write it in double quotes if it is a text");
-    CHECK(refusal("nan").starts_with("'nan' is not a number"));
+    CHECK(refusal("nan").starts_with("'nan' is not a finite number"));
     CHECK(refusal("\"open") == "the quote of the text '\"open' is not closed");
     CHECK(refusal("\"") == "the quote of the text '\"' is not closed");
 }

@@ -109,7 +109,8 @@ TEST_CASE("when a request can be taken, the plugins of the types that it names a
     REQUIRE_MESSAGE(next.wanted.ok(), next.wanted.error().text());
     CHECK(has_loaded(library, "Response/Penalty"));
     CHECK_FALSE(has_loaded(library, "Field/Gravity"));
-    bus.send(operation("add", "", "", "<plab><component id=\"o\"><component id=\"down\" type=\"Field/Gravity\"/></component></plab>"));
+    bus.send(operation("add", "", "",
+                       "<plab version=\"1\"><component id=\"o\"><component id=\"down\" type=\"Field/Gravity\"/></component></plab>"));
     reader.notify();
     REQUIRE(await(reader, next));
     REQUIRE_MESSAGE(next.wanted.ok(), next.wanted.error().text());

@@ -148,7 +148,7 @@ TEST_CASE("couplings that cannot be are refused by name")
         t.add_shaft(1), t.add_shaft(1), t.add_shaft(1, 0, Motion::Static);
         t.gear(0, 1, 1.0);
         t.graph.drive(7, shaft(0), shaft(1));
-        CHECK(contains(t.build_error(), "in a circle: g7 -> g7"));
+        CHECK(contains(t.build_error(), "form a cycle: g7 -> g7"));
         t.graph.clear();
         t.graph.drive(7, shaft(0), shaft(2));
         CHECK(t.build_error() == "g7: drives s2, whose motion is prescribed; it must be dynamic");
