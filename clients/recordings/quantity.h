@@ -37,6 +37,9 @@ struct Quantity
 /// An error says which ids or quantities there are that are near.
 Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Things& things);
 
+/// All that can be named in a recording of these, outputs of interactions left out: who completes a command line shows them.
+std::vector<std::string> quantity_names(const Things& things);
+
 /// Measured over the time since the sample before: a cost, the pace. What the first sample of a run says of it reaches back to
 /// before the run, over a load, a rewind or a restore and the steps that were made again for it: it is no figure of the run.
 bool is_measured(const Quantity& quantity);

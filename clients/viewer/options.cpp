@@ -8,6 +8,7 @@
 
 #include "idl/topics.h"
 #include "link/numbers.h"
+#include "program/completion.h"
 
 namespace plab::view
 {
@@ -170,6 +171,14 @@ Result<void> take_task(const Texts& texts, Options& options)
     return {};
 }
 
+/// Names of files; ids and servers are what plabctl completes.
+program::Values shell_values(const program::Wanted& wanted)
+{
+    program::Values out;
+    out.are_files = wanted.value.find("FILE") != std::string::npos || wanted.value == "DIR" || wanted.option == "--out";
+    return out;
+}
+
 }  // namespace
 
 Result<Vec3> parse_vector(const std::string& text)
@@ -213,6 +222,7 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options
     add_pictures(app, options, texts);
     add_view(app, options, texts);
     add_server(app, options, texts);
+    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, &shell_values)) return ParseEnd{0, *answer};
     try
     {
         app.parse(argc, argv);

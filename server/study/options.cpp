@@ -3,7 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "completion/scene_values.h"
 #include "model/numbers.h"
+#include "program/completion.h"
+#include "program/installation.h"
 
 namespace plab::study
 {
@@ -159,6 +162,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
     auto* const quiet = app.add_flag("--quiet", options.quiet, "no progress on standard error");
     app.add_flag("--progress", options.progress, "a line every five seconds on standard error, also where that is no terminal")
         ->excludes(quiet);
+    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return ParseEnd{0, *answer};
     try
     {
         app.parse(argc, argv);
@@ -169,6 +173,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, Options& options)
         const int code = app.exit(e, out, err);
         return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
     }
+    options.scene = program::file_or_installed(options.scene);
     options.suite = app.count("--suite") > 0;
     if (options.suite && !options.scene.empty()) return ParseEnd{2, "plab-study: --suite names its scenes itself: leave SCENE out\n"};
     if (options.suite) options.scene = suite.empty() ? usual_suite() : suite;

@@ -1,0 +1,218 @@
+#include "control/completion_values.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "control/commands.h"
+#include "idl/topics.h"
+#include "link/catalogue.h"
+#include "recordings/quantity.h"
+
+namespace plab::control
+{
+namespace
+{
+
+using program::Candidate;
+using program::Values;
+using program::Wanted;
+
+constexpr link::Seconds kForServer(0.4), kForCatalogue(0.4), kForFile(0.8);
+constexpr unsigned kAtMost = 2;  ///< s: whatever hangs, the terminal goes on
+
+void override(link::Options& options, const Wanted& wanted)
+{
+    if (const std::string given = wanted.first("--server"); !given.empty()) options.server = given;
+    if (const std::string given = wanted.first("--interface"); !given.empty()) options.domain.network_interface = given;
+    if (const std::string given = wanted.first("--domain"); !given.empty() && given.find_first_not_of("0123456789") == std::string::npos)
+        options.domain.id = static_cast<std::uint32_t>(std::strtoul(given.c_str(), nullptr, 10));
+}
+
+/// What the server tells of its scene; empty if nobody answers.
+link::Snapshot snapshot_of(const link::Options& options, link::Parts parts)
+{
+    const auto session = link::Session::find(options, kForServer);
+    if (!session) return {};
+    auto catalogue = link::Catalogue::open(*session, parts | link::Part::Server);
+    if (!catalogue) return {};
+    (void)catalogue->fetch(kForCatalogue);  // what came in time is worth telling
+    return catalogue->now();
+}
+
+std::vector<Candidate> servers(link::Options options)
+{
+    options.server.clear();
+    const auto session = link::Session::join(options);
+    std::vector<Candidate> out;
+    if (!session) return out;
+    for (const link::ServerInfo& s : session->servers(kForServer)) out.push_back({s.name, s.scene_file});
+    return out;
+}
+
+std::vector<Candidate> interfaces()
+{
+    std::vector<Candidate> out;
+    std::error_code failed;
+    for (std::filesystem::directory_iterator it("/sys/class/net", failed), end; !failed && it != end; it.increment(failed))
+        out.push_back({it->path().filename().string(), ""});
+    return out;
+}
+
+/// Ids with their types.
+std::vector<Candidate> ids_of(const link::Snapshot& now)
+{
+    std::vector<Candidate> out;
+    for (const auto& [id, o] : now.objects) out.push_back({id, o.type});
+    for (const auto& [id, i] : now.interactions) out.push_back({id, i.type});
+    return out;
+}
+
+std::vector<Candidate> ids(const Wanted& wanted, const link::Options& options)
+{
+    link::Parts parts = static_cast<link::Parts>(link::Part::Objects);
+    if (wanted.command != "push") parts = parts | link::Part::Interactions;
+    if (wanted.command == "show") parts = parts | link::Part::Types;
+    const link::Snapshot now = snapshot_of(options, parts);
+    std::vector<Candidate> out = ids_of(now);
+    for (const auto& [name, t] : now.types) out.push_back({name, t.doc});
+    return out;
+}
+
+std::string type_of(const link::Snapshot& now, const std::string& id)
+{
+    if (const auto at = now.interactions.find(id); at != now.interactions.end()) return at->second.type;
+    if (const auto at = now.objects.find(id); at != now.objects.end()) return at->second.type;
+    return {};
+}
+
+/// Those that can take the place of the component that the line names; all where it names none.
+std::vector<Candidate> types(const Wanted& wanted, const link::Options& options)
+{
+    const link::Snapshot now = snapshot_of(options, link::Part::Objects | link::Part::Interactions | link::Part::Types);
+    const auto old = now.types.find(type_of(now, wanted.first("id")));
+    std::vector<Candidate> out;
+    for (const auto& [name, t] : now.types)
+        if (old == now.types.end() || (t.family == old->second.family && name != old->first)) out.push_back({name, t.doc});
+    return out;
+}
+
+std::vector<Candidate> families(const link::Options& options)
+{
+    std::vector<Candidate> out;
+    for (const auto& [name, t] : snapshot_of(options, static_cast<link::Parts>(link::Part::Types)).types) out.push_back({t.family, ""});
+    return out;
+}
+
+/// Fields of a type that a request may write, with `before` in front.
+std::vector<Candidate> fields_of(const link::Snapshot& now, const std::string& type, const std::string& before)
+{
+    std::vector<Candidate> out;
+    const auto at = now.types.find(type);
+    if (at == now.types.end()) return out;
+    for (const link::FieldInfo& f : at->second.fields)
+        if (f.kind == "param" || f.kind == "state")
+            out.push_back({before + f.name + "=", f.doc + (f.unit.empty() ? std::string() : ", " + f.unit)});
+    return out;
+}
+
+/// "gears" becomes "gears.", and that "gears.velocity_factor=".
+Values assignments(const Wanted& wanted, const link::Options& options)
+{
+    Values out;
+    out.go_on = true;
+    const link::Snapshot now = snapshot_of(options, link::Part::Objects | link::Part::Interactions | link::Part::Types);
+    for (const Candidate& c : ids_of(now))
+    {
+        const std::string before = c.word + ".";
+        if (wanted.begun.starts_with(before))
+            for (Candidate& field : fields_of(now, c.help, before)) out.candidates.push_back(std::move(field));
+        else
+            out.candidates.push_back({before, c.help});
+    }
+    return out;
+}
+
+/// Values of the new component: those of the type behind --to, whose last words may be enough.
+Values parameters(const Wanted& wanted, const link::Options& options)
+{
+    Values out;
+    out.go_on = true;
+    const link::Snapshot now = snapshot_of(options, link::Part::Objects | link::Part::Interactions | link::Part::Types);
+    const std::string to = wanted.first("--to").empty() ? type_of(now, wanted.first("id")) : wanted.first("--to");
+    for (const auto& [name, t] : now.types)
+        if (name == to || name.ends_with("/" + to)) out.candidates = fields_of(now, name, "");
+    return out;
+}
+
+std::vector<Candidate> snapshots(const link::Options& options)
+{
+    std::vector<Candidate> out;
+    const link::Snapshot now = snapshot_of(options, static_cast<link::Parts>(link::Part::Server));
+    if (!now.server) return out;
+    for (const auto& s : now.server->snapshots) out.push_back({s.name, "step " + std::to_string(s.step)});
+    return out;
+}
+
+/// What is in the recording that the line names.
+std::vector<Candidate> quantities(const Wanted& wanted)
+{
+    const auto end = std::chrono::steady_clock::now() + kForFile;
+    const auto log = recordings::Log::open(wanted.first("file"), [end](double) { return std::chrono::steady_clock::now() < end; });
+    std::vector<Candidate> out;
+    if (!log) return out;
+    for (const std::string& name : recordings::quantity_names(log->things())) out.push_back({name, ""});
+    return out;
+}
+
+std::vector<Candidate> topics(bool is_short)
+{
+    std::vector<Candidate> out;
+    for (const wire::Topic& topic : wire::topics())
+    {
+        const std::string name = topic.name;
+        out.push_back({is_short ? name.substr(name.find('/') + 1) : name, topic.doc});
+    }
+    return out;
+}
+
+}  // namespace
+
+program::Values completion_values(const Wanted& wanted, link::Options options)
+{
+    alarm(kAtMost);
+    override(options, wanted);
+    const std::string& value = wanted.value;
+    Values out;
+    if (value.starts_with("FILE") || value == "PATH")
+        out.are_files = true;
+    else if (wanted.option == "--server")
+        out.candidates = servers(options);
+    else if (wanted.option == "--interface")
+        out.candidates = interfaces();
+    else if (wanted.option == "--quantity")
+        out.candidates = quantities(wanted);
+    else if (wanted.option == "name" && (wanted.command == "restore" || wanted.command == "forget"))
+        out.candidates = snapshots(options);
+    else if (value == "ID")
+        out.candidates = ids(wanted, options);
+    else if (value == "TYPE")
+        out.candidates = types(wanted, options);
+    else if (value == "FAMILY")
+        out.candidates = families(options);
+    else if (value == "ID.NAME=VALUE")
+        return assignments(wanted, options);
+    else if (value == "NAME=VALUE")
+        return parameters(wanted, options);
+    else if (value == "STREAM")
+        for (const std::string& name : watch_streams()) out.candidates.push_back({name, ""});
+    else if (value.starts_with("TOPIC") || wanted.option == "topic")
+        out.candidates = topics(value == "TOPIC");
+    else if (value == "RATE")
+        out.candidates = {{"real", "as time passes"}, {"max", "as fast as it goes"}};
+    return out;
+}
+
+}  // namespace plab::control
