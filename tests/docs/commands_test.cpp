@@ -42,7 +42,8 @@ struct Special
 constexpr Special kSpecial[] = {
     {"server/run ", How::Skip, "", "installs packages and builds"},
     {"tests/run ", How::Skip, "", "runs this test, among others"},
-    {"cmake --install ", How::Skip, "", "tests/outside installs"},
+    {"cmake ", How::Skip, "", "builds and installs; tests/outside does it"},
+    {"(cd build && cpack)", How::Skip, "", "makes packages; tests/outside does it"},
     {"docker ", How::Skip, "", "containers have a test of their own, tests/container"},
     {"podman ", How::Skip, "", "containers have a test of their own, tests/container"},
     {"DOCKER_HOST=", How::Skip, "", "containers have a test of their own, tests/container"},

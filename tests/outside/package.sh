@@ -10,6 +10,8 @@ root=$(cd "$here/../.." && pwd)
 build=$(cd "${1:?usage: package.sh BUILD}" && pwd)
 work=$build/package
 bare=$work/bare
+# shellcheck source=tests/outside/tutorial.sh
+source "$here/tutorial.sh"
 
 fail() { echo "package: failed: $*" >&2; exit 1; }
 skip() { echo "package: skipped: $*"; exit 77; }
@@ -40,12 +42,12 @@ make_packages() {
 
 make_bare() {
     if [[ ! -s $work/bare.tar ]]; then
-        quietly bare timeout 900 mmdebstrap --variant=minbase --skip=output/dev --dpkgopt=force-unsafe-io bookworm "$work/bare.new" ||
+        quietly bare timeout 900 mmdebstrap --variant=minbase --skip=output/dev --dpkgopt=force-unsafe-io bookworm "$work/bare_new.tar" ||
             skip "mmdebstrap cannot make a Debian; is the package archive there?"
-        mv "$work/bare.new" "$work/bare.tar"
+        mv "$work/bare_new.tar" "$work/bare.tar"
     fi
     rm -rf "$bare"
-    mkdir -p "$bare"
+    mkdir -p "$bare/dev" "$bare/proc"
     tar -xf "$work/bare.tar" -C "$bare"
     cp /etc/resolv.conf "$bare/etc/resolv.conf"
 }
@@ -83,11 +85,22 @@ use_server() {
     grep -q 'swapped gears' "$work/bus.log" || fail "no swap"
 }
 
+# The tutorial as it is written, with plab-dev and a compiler.
+use_sdk() {
+    quietly apt_dev inside env DEBIAN_FRONTEND=noninteractive apt-get -qy --no-install-recommends install \
+        "/root/$1" cyclonedds-dev g++ cmake make || fail "apt cannot install plab-dev"
+    write_tutorial "$bare/root/tutorial"
+    inside env "PLAB_DOMAIN=$((20 + $$ % 200))" bash -ec 'cd /root/tutorial; source ./commands.sh' >"$work/tutorial.log" 2>&1 ||
+        { tail "$work/tutorial.log"; fail "the tutorial's commands"; }
+    check_tutorial "$work/tutorial.log"
+}
+
 require
 mkdir -p "$work"
 make_packages
 make_bare
 install_packages "$(cd "$build/packages" && ls plab_*.deb)" || fail "apt cannot install plab"
 use_server
+use_sdk "$(cd "$build/packages" && ls plab-dev_*.deb)"
 inside du -sxh /usr/bin/plabd /usr/bin/plabctl /usr/lib/plab
 echo "package: passed"

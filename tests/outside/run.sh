@@ -10,6 +10,8 @@ root=$(cd "$here/../.." && pwd)
 build=$(cd "${1:?usage: run.sh BUILD}" && pwd)
 work=$build/outside
 prefix=$work/moved
+# shellcheck source=tests/outside/tutorial.sh
+source "$here/tutorial.sh"
 
 fail() { echo "outside: failed: $*" >&2; exit 1; }
 
@@ -32,42 +34,19 @@ install_and_move() {
         fail "installed files name folders of the machine that made them"
 }
 
-# Files of the tutorial: a block of code below a line that ends with the file's name in backquotes and a colon.
-write_files() {
-    awk -v folder="$1" '
-        /`[^`]+`:$/ { name = $0; sub(/`:$/, "", name); sub(/.*`/, "", name); next }
-        /^```/ && inside { inside = 0; close(file); name = ""; next }
-        /^```/ && name != "" { inside = 1; file = folder "/" name; path = file; sub(/\/[^\/]*$/, "", path); system("mkdir -p " path); next }
-        inside { print > file; next }
-        NF > 0 { name = "" }' "$root/server/docs/tutorial.md"
-}
-
-# Commands of the tutorial: all blocks of shell, in their order.
-commands() { awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$root/server/docs/tutorial.md"; }
-
 # As it is written; only where pLab is, and whom else it must not meet, is said from outside.
 run_tutorial() {
     local tree=$work/tutorial
-    mkdir -p "$tree"
-    write_files "$tree"
-    for file in inverse_square.cpp exchange.cpp ball.xml CMakeLists.txt conformance/Field.Gravity.InverseSquare.xml; do
-        [[ -s $tree/$file ]] || fail "the tutorial does not show $file"
-    done
-    commands >"$tree/commands.sh"
+    write_tutorial "$tree"
     (
         cd "$tree"
         unset CMAKE_EXPORT_COMPILE_COMMANDS PLAB_PLUGIN_PATH PLAB_INTERFACE CYCLONEDDS_URI
         PATH=$prefix/bin:$PATH CMAKE_PREFIX_PATH=$prefix PLAB_DOMAIN=$domain PLAB_SERVER=outside_$$ \
             quietly tutorial timeout -k 5 300 bash -ex -c 'trap "kill \$(jobs -p) 2>/dev/null || true" EXIT; source ./commands.sh'
     ) || fail "the tutorial's commands"
-    expect "conformance" 'inverse_square.so: 1 types conform'
-    expect "the client's exchange" 'weight: Field/Gravity -> Field/Gravity/InverseSquare'
-    expect "plabctl's exchange" 'weight: Field/Gravity/InverseSquare -> Field/Gravity'
-    expect "what is carried over" 'kept.*acceleration'
+    check_tutorial "$work/tutorial.log"
     ! PLAB_DOMAIN=$domain "$prefix/bin/plabctl" servers >"$work/left.log" 2>&1 || fail "a server is left over: $(cat "$work/left.log")"
 }
-
-expect() { grep -q -- "$2" "$work/tutorial.log" || { tail -n 60 "$work/tutorial.log"; fail "$1: no line with '$2'"; }; }
 
 # The same sources with the compiler and pkg-config alone.
 run_pkg_config() {
@@ -85,9 +64,18 @@ run_pkg_config() {
     cmp -s "$tree/inverse_square.manifest" "$work/tutorial/build/inverse_square.manifest" || fail "the two manifests differ"
 }
 
-# What is refused, and how.
+# What is refused, and how. A plugin that breaks its word does not conform: its doc ends with a full stop here.
 check_refusals() {
     local said
+    mkdir -p "$work/bent/conformance"
+    sed 's/"of the planet"/"of the planet."/' "$work/tutorial/inverse_square.cpp" >"$work/bent/inverse_square.cpp"
+    cp "$work"/tutorial/conformance/*.xml "$work/bent/conformance/"
+    sed -e '/exchange/d' -e '/configure_file/d' "$work/tutorial/CMakeLists.txt" >"$work/bent/CMakeLists.txt"
+    quietly bent_build bash -ec 'cmake -S "$1" -B "$1" -DCMAKE_PREFIX_PATH="$2" && cmake --build "$1"' - "$work/bent" "$prefix" || fail "bent plugin"
+    ! "$prefix/bin/plab-conformance" "$work/bent/inverse_square.so" >"$work/bent.log" 2>&1 || fail "a bent plugin conforms"
+    grep -q 'is_doc(field.doc)' "$work/bent.log" || fail "it is not said what is bent: $(tail "$work/bent.log")"
+    said=$("$prefix/bin/plab-conformance" "$work/no_such.so" 2>&1 || true)
+    [[ $said == *"no_such.so"*"cannot be loaded"* ]] || fail "a plugin that is not there: $said"
     said=$(PLAB_PLUGIN_PATH=$work/tutorial/build:$work/pkg "$prefix/bin/plabd" --reference InverseSquare 2>&1 || true)
     [[ ! -d $work/pkg ]] || [[ $said == *"$work/tutorial/build/inverse_square.so"*"$work/pkg/inverse_square.so"* ]] || fail "two plugins with one type: $said"
     said=$(PLAB_PLUGIN_PATH=$work/nothing "$prefix/bin/plabd" "$work/tutorial/ball.xml" --check 2>&1 || true)
@@ -109,6 +97,13 @@ check_help() {
     said=$(bash -c 'source "$1"; COMP_LINE="plabctl sw"; COMP_POINT=10; PATH=$2:$PATH; _plab_complete plabctl; echo "${COMPREPLY[*]}"' - \
         "$prefix/share/bash-completion/completions/plabctl" "$prefix/bin")
     [[ $said == swap ]] || fail "bash completes 'plabctl sw' to '$said'"
+    if command -v zsh >/dev/null; then
+        for program in "$prefix"/share/zsh/vendor-completions/_*; do zsh -n "$program" || fail "completion for zsh: $program"; done
+    fi
+    if command -v fish >/dev/null; then
+        said=$(PATH=$prefix/bin:$PATH fish --no-config -c "source $prefix/share/fish/vendor_completions.d/plabctl.fish; complete -C 'plabctl sw'")
+        [[ $said == swap* ]] || fail "fish completes 'plabctl sw' to '$said'"
+    fi
 }
 
 # No other test is likely to use it.
