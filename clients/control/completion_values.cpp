@@ -1,14 +1,10 @@
 #include "control/completion_values.h"
 
-#include <unistd.h>
-
-#include <algorithm>
 #include <chrono>
-#include <filesystem>
 
+#include "completion/server_values.h"
 #include "control/commands.h"
 #include "idl/topics.h"
-#include "link/catalogue.h"
 #include "recordings/quantity.h"
 
 namespace plab::control
@@ -16,59 +12,13 @@ namespace plab::control
 namespace
 {
 
+using completion::ids_in;
+using completion::snapshot_of;
 using program::Candidate;
 using program::Values;
 using program::Wanted;
 
-constexpr link::Seconds kForServer(0.4), kForCatalogue(0.4), kForFile(0.8);
-constexpr unsigned kAtMost = 2;  ///< s: whatever hangs, the terminal goes on
-
-void override(link::Options& options, const Wanted& wanted)
-{
-    if (const std::string given = wanted.first("--server"); !given.empty()) options.server = given;
-    if (const std::string given = wanted.first("--interface"); !given.empty()) options.domain.network_interface = given;
-    if (const std::string given = wanted.first("--domain"); !given.empty() && given.find_first_not_of("0123456789") == std::string::npos)
-        options.domain.id = static_cast<std::uint32_t>(std::strtoul(given.c_str(), nullptr, 10));
-}
-
-/// What the server tells of its scene; empty if nobody answers.
-link::Snapshot snapshot_of(const link::Options& options, link::Parts parts)
-{
-    const auto session = link::Session::find(options, kForServer);
-    if (!session) return {};
-    auto catalogue = link::Catalogue::open(*session, parts | link::Part::Server);
-    if (!catalogue) return {};
-    (void)catalogue->fetch(kForCatalogue);  // what came in time is worth telling
-    return catalogue->now();
-}
-
-std::vector<Candidate> servers(link::Options options)
-{
-    options.server.clear();
-    const auto session = link::Session::join(options);
-    std::vector<Candidate> out;
-    if (!session) return out;
-    for (const link::ServerInfo& s : session->servers(kForServer)) out.push_back({s.name, s.scene_file});
-    return out;
-}
-
-std::vector<Candidate> interfaces()
-{
-    std::vector<Candidate> out;
-    std::error_code failed;
-    for (std::filesystem::directory_iterator it("/sys/class/net", failed), end; !failed && it != end; it.increment(failed))
-        out.push_back({it->path().filename().string(), ""});
-    return out;
-}
-
-/// Ids with their types.
-std::vector<Candidate> ids_of(const link::Snapshot& now)
-{
-    std::vector<Candidate> out;
-    for (const auto& [id, o] : now.objects) out.push_back({id, o.type});
-    for (const auto& [id, i] : now.interactions) out.push_back({id, i.type});
-    return out;
-}
+constexpr link::Seconds kForFile(0.8);
 
 std::vector<Candidate> ids(const Wanted& wanted, const link::Options& options)
 {
@@ -76,7 +26,7 @@ std::vector<Candidate> ids(const Wanted& wanted, const link::Options& options)
     if (wanted.command != "push") parts = parts | link::Part::Interactions;
     if (wanted.command == "show") parts = parts | link::Part::Types;
     const link::Snapshot now = snapshot_of(options, parts);
-    std::vector<Candidate> out = ids_of(now);
+    std::vector<Candidate> out = ids_in(now);
     for (const auto& [name, t] : now.types) out.push_back({name, t.doc});
     return out;
 }
@@ -124,7 +74,7 @@ Values assignments(const Wanted& wanted, const link::Options& options)
     Values out;
     out.go_on = true;
     const link::Snapshot now = snapshot_of(options, link::Part::Objects | link::Part::Interactions | link::Part::Types);
-    for (const Candidate& c : ids_of(now))
+    for (const Candidate& c : ids_in(now))
     {
         const std::string before = c.word + ".";
         if (wanted.begun.starts_with(before))
@@ -182,17 +132,11 @@ std::vector<Candidate> topics(bool is_short)
 
 program::Values completion_values(const Wanted& wanted, link::Options options)
 {
-    alarm(kAtMost);
-    override(options, wanted);
+    completion::limit_time();
+    options = completion::options_on(wanted, std::move(options));
     const std::string& value = wanted.value;
     Values out;
-    if (value.starts_with("FILE") || value == "PATH")
-        out.are_files = true;
-    else if (wanted.option == "--server")
-        out.candidates = servers(options);
-    else if (wanted.option == "--interface")
-        out.candidates = interfaces();
-    else if (wanted.option == "--quantity")
+    if (wanted.option == "--quantity")
         out.candidates = quantities(wanted);
     else if (wanted.option == "name" && (wanted.command == "restore" || wanted.command == "forget"))
         out.candidates = snapshots(options);
@@ -212,6 +156,8 @@ program::Values completion_values(const Wanted& wanted, link::Options options)
         out.candidates = topics(value == "TOPIC");
     else if (value == "RATE")
         out.candidates = {{"real", "as time passes"}, {"max", "as fast as it goes"}};
+    else
+        return completion::common_values(wanted, options);
     return out;
 }
 

@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "completion/server_values.h"
 #include "link/numbers.h"
-#include "program/completion.h"
 
 namespace plab::logger
 {
@@ -42,14 +42,6 @@ void add_options(CLI::App& app, Options& options, std::string& severity)
     app.add_option("-d,--duration", options.duration, "end after so many seconds")->check(link::check_positive);
 }
 
-/// Names of files; ids and servers are what plabctl completes.
-program::Values shell_values(const program::Wanted& wanted)
-{
-    program::Values out;
-    out.are_files = wanted.value.find("FILE") != std::string::npos || wanted.value == "DIR" || wanted.option == "--out";
-    return out;
-}
-
 }  // namespace
 
 std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options& options)
@@ -63,7 +55,8 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options
     app.footer(kExamples);
     app.set_version_flag("--version", std::string("plab-log ") + PLAB_VERSION);
     add_options(app, options, severity);
-    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, &shell_values)) return ParseEnd{0, *answer};
+    const auto values = [&](const program::Wanted& wanted) { return completion::common_values(wanted, options.link); };
+    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, values)) return ParseEnd{0, *answer};
     try
     {
         app.parse(argc, argv);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "completion/server_values.h"
 #include "idl/topics.h"
 #include "link/numbers.h"
-#include "program/completion.h"
 
 namespace plab::view
 {
@@ -171,14 +171,6 @@ Result<void> take_task(const Texts& texts, Options& options)
     return {};
 }
 
-/// Names of files; ids and servers are what plabctl completes.
-program::Values shell_values(const program::Wanted& wanted)
-{
-    program::Values out;
-    out.are_files = wanted.value.find("FILE") != std::string::npos || wanted.value == "DIR" || wanted.option == "--out";
-    return out;
-}
-
 }  // namespace
 
 Result<Vec3> parse_vector(const std::string& text)
@@ -222,7 +214,8 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, Options
     add_pictures(app, options, texts);
     add_view(app, options, texts);
     add_server(app, options, texts);
-    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, &shell_values)) return ParseEnd{0, *answer};
+    const auto values = [&](const program::Wanted& wanted) { return completion::common_values(wanted, options.link); };
+    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, values)) return ParseEnd{0, *answer};
     try
     {
         app.parse(argc, argv);
