@@ -3,9 +3,11 @@
 #include <sstream>
 
 #include "control/commands.h"
+#include "control/completion_values.h"
 #include "control/topics.h"
 #include "link/names.h"
 #include "link/numbers.h"
+#include "program/completion.h"
 #include "program/interruption.h"
 
 namespace
@@ -119,6 +121,9 @@ int main(int argc, char** argv)
     add_recording_views(commands, context);
     add_record_command(commands, context);
     add_play_command(commands, context);
+    const auto values = [&](const plab::program::Wanted& wanted) { return completion_values(wanted, context.settings.link); };
+    if (const auto answer = plab::program::answer_for_shell(app, argc, argv, PLAB_VERSION, values, kExitCodes))
+        return std::fputs(answer->c_str(), stdout) < 0 ? static_cast<int>(Exit::Failed) : 0;
     try
     {
         app.parse(argc, argv);

@@ -186,6 +186,8 @@ std::string check_stream(const std::string& text)
 
 }  // namespace
 
+const std::vector<std::string>& watch_streams() { return kStreams; }
+
 void add_watch_command(const Command& app, Context& context)
 {
     auto o = std::make_shared<WatchOptions>();

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "completion/server_values.h"
 #include "link/numbers.h"
 
 namespace plab::logger
@@ -55,6 +56,8 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, LoggerO
     app.footer(kExamples);
     app.set_version_flag("--version", std::string("plab-log ") + PLAB_VERSION);
     add_options(app, options, severity);
+    const auto values = [&](const program::Wanted& wanted) { return completion::common_values(wanted, options.link); };
+    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, values)) return ParseEnd{0, *answer};
     try
     {
         app.parse(argc, argv);

@@ -206,6 +206,19 @@ double norm(const plab_v2_Vector& v) { return std::sqrt(v.x * v.x + v.y * v.y + 
 
 std::string Quantity::name() const { return id + (id.empty() ? "" : ".") + what + (component.empty() ? "" : ".") + component; }
 
+std::vector<std::string> quantity_names(const Things& things)
+{
+    std::vector<std::string> out;
+    for (const std::string& id : things.objects())
+        for (const Field& field : kObjectFields)
+            if (field.same_as.empty() && (field.name == "speed" || is_of_shaft(field) == things.is_shaft(id)))
+                out.push_back(id + "." + std::string(field.name));
+    for (const std::string& id : things.interactions())
+        for (const Field& field : kInteractionFields) out.push_back(id + "." + std::string(field.name));
+    for (const Field& field : kSceneFields) out.emplace_back(field.name);
+    return out;
+}
+
 Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Things& things)
 {
     std::string id = id_in(text, things.objects());

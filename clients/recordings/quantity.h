@@ -37,6 +37,9 @@ struct Quantity
 /// An error lists similar existing ids or quantities.
 Result<std::vector<Quantity>> parse_quantity(const std::string& text, const Things& things);
 
+/// All quantities that can be named in a recording of these, except outputs of interactions: for the completion of command lines.
+std::vector<std::string> quantity_names(const Things& things);
+
 /// Measured over the time since the previous sample: a cost, the pace. In the first sample of a run, that time extends to
 /// before the run, across a load, a rewind or a restore and the steps that were repeated for it: it is not a figure of the run.
 bool is_measured(const Quantity& quantity);

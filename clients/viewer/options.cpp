@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "completion/server_values.h"
 #include "idl/topics.h"
 #include "link/numbers.h"
 
@@ -214,6 +215,8 @@ std::optional<ParseEnd> parse_options(int argc, const char* const* argv, ViewerO
     add_pictures(app, options, texts);
     add_view(app, options, texts);
     add_server(app, options, texts);
+    const auto values = [&](const program::Wanted& wanted) { return completion::common_values(wanted, options.link); };
+    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, values)) return ParseEnd{0, *answer};
     try
     {
         app.parse(argc, argv);

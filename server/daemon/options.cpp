@@ -3,7 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
+#include "completion/scene_values.h"
 #include "control/operations.h"
+#include "program/completion.h"
+#include "program/installation.h"
 
 namespace plab::daemon
 {
@@ -255,6 +258,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
     std::string recorded_states;
     add_record_options(app, options, recorded_states);
     add_past_options(app, options);
+    if (auto answer = program::answer_for_shell(app, argc, argv, PLAB_VERSION, &completion::scene_values)) return ParseEnd{0, *answer};
     try
     {
         app.parse(argc, argv);
@@ -265,6 +269,7 @@ std::optional<ParseEnd> parse_options(int argc, char** argv, DaemonOptions& opti
         const int code = app.exit(e, out, err);
         return ParseEnd{code == 0 ? 0 : 2, out.str() + err.str()};
     }
+    options.scene = program::file_or_installed(options.scene);
     const bool reference = app.count("--reference") > 0;
     if (int(check) + int(expand) + int(explain) + int(reference) > 1)
         return ParseEnd{2, "plabd: --check, --expand, --explain and --reference exclude one another\n"};

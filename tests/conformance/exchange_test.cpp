@@ -88,7 +88,8 @@ TEST_CASE("H1: there and back between two steps, with what the reply called lost
         for (const std::string& other : library().names())
         {
             const auto type = library().require(other);
-            REQUIRE(type.ok());
+            REQUIRE((type.ok() || !is_tested(other)));
+            if (!type) continue;
             const model::SceneSpec scene = compiled(subject.blueprint);
             auto alone = started(scene), swapped = started(scene);
             if (other == subject.type || !(*type)->why_not_exchangeable(type_of(*alone, kSubject)).empty()) continue;
@@ -113,6 +114,7 @@ TEST_CASE("H1: there and back between two steps, with what the reply called lost
             CHECK(swapped->state_hash() == alone->state_hash());
             CHECK(first_difference(hashes(*alone, kAfterwards), hashes(*swapped, kAfterwards)) == -1);
         }
+    if (!tests_all_plugins()) return;
     CHECK(pairs > 150);
     CHECK(refused < pairs);  // shapes in a placed one, gaps without rows
 }

@@ -16,5 +16,5 @@ TEST_CASE("numeric fields alone at extremes: refused with a reason, or finite st
         for (const std::string& trouble : run_extremes(cases, 3)) FAIL_CHECK(trouble);
     }
     MESSAGE(count, " cases");
-    CHECK(count > 16 * 100);
+    CHECK((count > 16 * 100 || !tests_all_plugins()));
 }

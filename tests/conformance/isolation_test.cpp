@@ -10,10 +10,7 @@ using namespace plab::test;
 namespace
 {
 
-std::unique_ptr<plugins::PluginLibrary> another_library()
-{
-    return std::make_unique<plugins::PluginLibrary>(std::vector<std::string>{PLAB_BINARY_DIR "/lib/plab"});
-}
+std::unique_ptr<plugins::PluginLibrary> another_library() { return std::make_unique<plugins::PluginLibrary>(plugin_folders()); }
 
 }  // namespace
 
@@ -22,7 +19,7 @@ TEST_CASE("two libraries have types, declarations and columns of their own")
     const auto other = another_library();
     CHECK(other->loaded().empty());
     CHECK(other->names() == library().names());
-    for (const std::string& name : library().names())
+    for (const std::string& name : tested_types())
     {
         CAPTURE(name);
         const auto one = library().require(name), two = other->require(name);
@@ -67,7 +64,8 @@ TEST_CASE("the order in which plugins are loaded changes no bit")
     const auto backwards = another_library();
     std::vector<std::string> names = backwards->names();
     std::reverse(names.begin(), names.end());
-    for (const std::string& name : names) REQUIRE(backwards->require(name).ok());
+    // Others' plugins may lack a library on this machine.
+    for (const std::string& name : names) REQUIRE((backwards->require(name).ok() || !is_tested(name)));
     for (const Subject& subject : subjects())
     {
         CAPTURE(subject.type);

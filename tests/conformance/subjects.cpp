@@ -31,7 +31,8 @@ fs::path scene_for(const std::string& type)
 {
     for (std::string name = dotted(type); !name.empty();)
     {
-        if (const fs::path path = fs::path(PLAB_CONFORMANCE_SCENES) / (name + ".xml"); fs::exists(path)) return path;
+        for (const std::string& folder : target().scene_folders)
+            if (const fs::path path = fs::path(folder) / (name + ".xml"); fs::exists(path)) return path;
         const std::size_t dot = name.rfind('.');
         name = dot == std::string::npos ? std::string() : name.substr(0, dot);
     }
@@ -40,9 +41,9 @@ fs::path scene_for(const std::string& type)
 
 std::string how_to_add(const std::string& type)
 {
-    return "no scene gives " + type + " its participants: write tests/conformance/scenes/" + dotted(type) +
-           ".xml, a blueprint with <component id=\"subject\" type=\"$TYPE\" ...> and whoever it needs "
-           "(tests/conformance/README.md)";
+    return "no scene gives " + type + " its participants: write " +
+           (target().scene_folders.empty() ? "" : target().scene_folders[0] + "/") + dotted(type) +
+           ".xml, a blueprint with <component id=\"subject\" type=\"$TYPE\" ...> and whoever it needs";
 }
 
 std::string text_of(const fs::path& path, const std::string& type)
@@ -77,13 +78,55 @@ const Catalogue& catalogue()
     static const Catalogue instance = []
     {
         Catalogue out;
-        for (const std::string& type : library().names()) add_subject(out, type);
+        for (const std::string& type : tested_types()) add_subject(out, type);
         return out;
     }();
     return instance;
 }
 
+std::vector<std::string> files_of_plugins()
+{
+    if (!target().plugin.empty()) return {target().plugin};
+    std::vector<std::string> out;
+    for (const std::string& folder : plugin_folders())
+        for (const auto& entry : fs::directory_iterator(folder))
+            if (entry.path().extension() == ".manifest") out.push_back(fs::path(entry.path()).replace_extension(".so").string());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+std::vector<std::string> types_of_plugins()
+{
+    if (tests_all_plugins()) return library().names();
+    const auto plugin = library().load_plugin(target().plugin);
+    std::vector<std::string> out = plugin ? plugin->types : std::vector<std::string>();
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
 }  // namespace
+
+Target& target()
+{
+    static Target instance{{}, {PLAB_CONFORMANCE_SCENES}};
+    return instance;
+}
+
+bool tests_all_plugins() { return target().plugin.empty(); }
+
+const std::vector<std::string>& tested_plugins()
+{
+    static const std::vector<std::string> out = files_of_plugins();
+    return out;
+}
+
+const std::vector<std::string>& tested_types()
+{
+    static const std::vector<std::string> out = types_of_plugins();
+    return out;
+}
+
+bool is_tested(const std::string& type) { return std::binary_search(tested_types().begin(), tested_types().end(), type); }
 
 bool Subject::repeatable() const
 {

@@ -10,6 +10,20 @@
 namespace plab::test
 {
 
+/// What is tested: all plugins of this build, or one that was built elsewhere.
+struct Target
+{
+    std::string plugin;                      ///< file of the only one; "": all
+    std::vector<std::string> scene_folders;  ///< the first that has a scene for a type wins
+};
+/// To be changed before anything else is asked for.
+Target& target();
+bool tests_all_plugins();
+/// Files of the plugins that are tested, and the types in them, by name.
+const std::vector<std::string>& tested_plugins();
+const std::vector<std::string>& tested_types();
+bool is_tested(const std::string& type);
+
 /// The component of the type under test has this id in its scene.
 inline constexpr const char* kSubject = "subject";
 
@@ -22,7 +36,7 @@ struct Subject
     bool repeatable() const;
 };
 
-/// All types of all plugins of this build that have a scene, by name.
+/// All tested types that have a scene, by name.
 const std::vector<Subject>& subjects();
 /// What keeps types from being tested: a missing scene, one that cannot be read. Empty if all is well.
 const std::vector<std::string>& subjects_missing();

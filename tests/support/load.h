@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "blueprint/reader.h"
 #include "model/compile.h"
@@ -13,10 +14,17 @@
 namespace plab::test
 {
 
-/// The plugins of this build, shared by all scenes of a program.
+/// Where plugins are looked for: those of this build, unless a program says otherwise before it asks for the library.
+inline std::vector<std::string>& plugin_folders()
+{
+    static std::vector<std::string> folders{PLAB_BINARY_DIR "/lib/plab"};
+    return folders;
+}
+
+/// The plugins in those folders, shared by all scenes of a program.
 inline plugins::PluginLibrary& library()
 {
-    static plugins::PluginLibrary instance({PLAB_BINARY_DIR "/lib/plab"});
+    static plugins::PluginLibrary instance(plugin_folders());
     return instance;
 }
 
