@@ -1,5 +1,8 @@
 #include "gjk.h"
 
+#include "plab/eigen.h"
+
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -95,37 +98,14 @@ bool holds(const Simplex& s, const Vec3& w)
     return std::any_of(s.at.begin(), s.at.begin() + static_cast<std::ptrdiff_t>(s.count), [&](const Support& k) { return k.w == w; });
 }
 
-/// Solves M x = r by elimination with full pivoting; components of x in singular directions are 0.
-Vec3 solve_where_regular(Mat3 M, Vec3 r)
+/// Solves M x = r with full pivoting; components of x in singular directions are 0.
+Vec3 solve_where_regular(const Mat3& M, const Vec3& r)
 {
-    std::array<int, 3> column{0, 1, 2};
-    int rank = 0;
-    for (; rank < 3; ++rank)
-    {
-        int pr = rank, pc = rank;
-        for (int i = rank; i < 3; ++i)
-            for (int j = rank; j < 3; ++j)
-                if (std::fabs(M(i, j)) > std::fabs(M(pr, pc))) pr = i, pc = j;
-        if (std::fabs(M(pr, pc)) < 1e-9) break;
-        for (int j = 0; j < 3; ++j) std::swap(M(rank, j), M(pr, j));
-        std::swap(r[rank], r[pr]);
-        for (int i = 0; i < 3; ++i) std::swap(M(i, rank), M(i, pc));
-        std::swap(column[static_cast<std::size_t>(rank)], column[static_cast<std::size_t>(pc)]);
-        for (int i = rank + 1; i < 3; ++i)
-        {
-            const double f = M(i, rank) / M(rank, rank);
-            for (int j = rank; j < 3; ++j) M(i, j) -= f * M(rank, j);
-            r[i] -= f * r[rank];
-        }
-    }
-    Vec3 x;
-    for (int i = rank - 1; i >= 0; --i)
-    {
-        double sum = r[i];
-        for (int j = i + 1; j < rank; ++j) sum -= M(i, j) * x[column[static_cast<std::size_t>(j)]];
-        x[column[static_cast<std::size_t>(i)]] = sum / M(i, i);
-    }
-    return x;
+    constexpr double kLeastPivot = 1e-9;
+    Eigen::FullPivLU<Eigen::Matrix3d> factors(as_eigen(M));
+    if (!(factors.maxPivot() > kLeastPivot)) return {};
+    factors.setThreshold(kLeastPivot / factors.maxPivot());  // Eigen's threshold is relative
+    return from_eigen(factors.solve(as_eigen(r)).eval());
 }
 
 struct ClosestPoints

@@ -10,8 +10,8 @@ namespace
 
 constexpr std::array<std::array<std::uint32_t, 2>, 3> kPairsOfThree{{{0, 1}, {0, 2}, {1, 2}}};
 
-/// b += sign * [F, -F[r]; [q]F, -[q]F[r]] of F (3 x 3, W).
-void add_block(Block& b, const Mat3& F, const Vec3& q, const Vec3& r, double sign)
+/// b += sign * [F, -F[r]; [q]F, -[q]F[r]] of F (3 x 3, W); b row by row.
+void add_block(double* b, const Mat3& F, const Vec3& q, const Vec3& r, double sign)
 {
     // The rows of -F [r] are r x row: (F (w x r))_i = row_i . (w x r) = w . (r x row_i).
     Vec3 left[3], right[3];
@@ -20,9 +20,9 @@ void add_block(Block& b, const Mat3& F, const Vec3& q, const Vec3& r, double sig
         left[i] = Vec3{F.m[i][0], F.m[i][1], F.m[i][2]} * sign;
         right[i] = cross(r, left[i]);
     }
-    const auto row = [&b](std::size_t i, const Vec3& x, const Vec3& y)
+    const auto row = [b](std::size_t i, const Vec3& x, const Vec3& y)
     {
-        double* to = b.data() + 6 * i;
+        double* to = b + 6 * i;
         to[0] += x.x, to[1] += x.y, to[2] += x.z, to[3] += y.x, to[4] += y.y, to[5] += y.z;
     };
     for (std::size_t i = 0; i < 3; ++i) row(i, left[i], right[i]);
@@ -37,7 +37,7 @@ Column6 jacobian(const Line& line, std::uint32_t k)
     return {l.x, l.y, l.z, a.x, a.y, a.z};
 }
 
-void add_outer(Block& b, const Column6& x, const Column6& y, double g)
+void add_outer(double* b, const Column6& x, const Column6& y, double g)
 {
     for (std::size_t r = 0; r < 6; ++r)
         for (std::size_t c = 0; c < 6; ++c) b[6 * r + c] += g * x[r] * y[c];
@@ -50,7 +50,7 @@ void IslandMatrix::shape(const Problem& problem)
     edges_.clear();
     const auto join = [&](std::uint32_t i, std::uint32_t j)
     {
-        if (i != kNoIndex && j != kNoIndex && i != j) edges_.emplace_back(std::min(i, j), std::max(i, j));
+        if (i != kNoIndex && j != kNoIndex && i != j) edges_.push_back({std::min(i, j), std::max(i, j)});
     };
     for (const Point& p : problem.points) join(p.a, p.b);
     for (const Line& line : problem.lines)
@@ -58,7 +58,12 @@ void IslandMatrix::shape(const Problem& problem)
             if (j < line.count) join(line.mover[i], line.mover[j]);
     std::sort(edges_.begin(), edges_.end());
     edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
-    matrix_.shape(static_cast<std::uint32_t>(problem.movers.size()), edges_);
+    if (problem.movers.size() != nodes_.size() || edges_ != known_edges_)
+    {
+        nodes_.assign(problem.movers.size(), {linear::SparseBlocks::kMostSize});
+        matrix_.analyse(nodes_, edges_);
+        known_edges_ = edges_;
+    }
     pair_of_point_.clear(), pairs_of_line_.clear();
     for (const Point& p : problem.points) pair_of_point_.push_back(p.a != kNoIndex && p.b != kNoIndex ? matrix_.find(p.a, p.b) : kNoIndex);
     for (const Line& line : problem.lines)
@@ -78,7 +83,7 @@ void IslandMatrix::start(const Problem& problem)
     interruption_ = problem.interruption;
     for (std::uint32_t i = 0; i < problem.movers.size(); ++i)
     {
-        Block& b = matrix_.diagonal(i);
+        double* b = matrix_.diagonal(i);
         const Anchor& m = problem.anchors[i];
         b[0] = b[7] = b[14] = m.mass;
         for (std::size_t r = 0; r < 3; ++r)
@@ -112,8 +117,8 @@ void IslandMatrix::add(const Problem& problem, std::size_t i, double g)
         const auto [x, y] = kPairsOfThree[k];
         if (y >= line.count) continue;
         const std::uint32_t mx = line.mover[x], my = line.mover[y];
-        Block& of_x = mx == my ? matrix_.diagonal(mx) : matrix_.block(pairs_of_line_[i][k], mx);
-        Block& of_y = mx == my ? matrix_.diagonal(my) : matrix_.block(pairs_of_line_[i][k], my);
+        double* of_x = mx == my ? matrix_.diagonal(mx) : matrix_.block(pairs_of_line_[i][k], mx);
+        double* of_y = mx == my ? matrix_.diagonal(my) : matrix_.block(pairs_of_line_[i][k], my);
         add_outer(of_x, jacobian(line, x), jacobian(line, y), g);
         add_outer(of_y, jacobian(line, y), jacobian(line, x), g);
     }
@@ -121,8 +126,9 @@ void IslandMatrix::add(const Problem& problem, std::size_t i, double g)
 
 bool IslandMatrix::solve(std::span<Column6> x)
 {
+    if (x.empty()) return true;
     if (!matrix_.factor(interruption_)) return false;
-    matrix_.solve(x);
+    matrix_.solve({x.front().data(), 6 * x.size()});
     return std::all_of(x.begin(), x.end(),
                        [](const Column6& c) { return std::all_of(c.begin(), c.end(), [](double v) { return std::isfinite(v); }); });
 }

@@ -8,11 +8,17 @@
 /// ratios lose no digits.
 #pragma once
 
-#include "block_matrix.h"
+#include <array>
+#include <span>
+#include <vector>
+
+#include "linear/sparse_blocks.h"
 #include "problem.h"
 
 namespace plab::managers
 {
+
+using Column6 = std::array<double, 6>;
 
 class IslandMatrix
 {
@@ -29,9 +35,10 @@ public:
     bool solve(std::span<Column6> x);
 
 private:
-    BlockMatrix matrix_;
+    linear::SparseBlocks matrix_{linear::SparseBlocks::Kind::General};
     const Interruption* interruption_ = nullptr;
-    std::vector<BlockMatrix::Edge> edges_;
+    std::vector<linear::SparseNode> nodes_;
+    std::vector<linear::SparseEdge> edges_, known_edges_;  ///< of this problem, and those that the matrix was analysed for
     std::vector<std::uint32_t> pair_of_point_;
     std::vector<std::array<std::uint32_t, 3>> pairs_of_line_;
 };

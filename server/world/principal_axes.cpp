@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "plab/symmetric.h"
+
 namespace plab::world
 {
 namespace
@@ -23,31 +25,14 @@ Quat quaternion_of(const Columns& c)
     return normalized(Quat{c[0].y - c[1].x, c[2].x + c[0].z, c[1].z + c[2].y, 1 + zz - xx - yy});
 }
 
-/// One rotation in the plane p, q that brings m(p, q) to 0.
-void rotate_away(Mat3& m, Columns& v, int p, int q)
-{
-    if (m(p, q) == 0) return;
-    const double theta = (m(q, q) - m(p, p)) / (2 * m(p, q));
-    const double t = (theta < 0 ? -1 : 1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
-    const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-    const int r = 3 - p - q;
-    const double pq = m(p, q), pr = m(p, r), qr = m(q, r);
-    m(p, p) -= t * pq, m(q, q) += t * pq, m(p, q) = m(q, p) = 0;
-    m(p, r) = m(r, p) = c * pr - s * qr;
-    m(q, r) = m(r, q) = s * pr + c * qr;
-    const Vec3 a = v[static_cast<std::size_t>(p)], b = v[static_cast<std::size_t>(q)];
-    v[static_cast<std::size_t>(p)] = a * c - b * s, v[static_cast<std::size_t>(q)] = a * s + b * c;
-}
-
 }  // namespace
 
 PrincipalAxes principal_axes(const Mat3& inertia_B)
 {
-    Mat3 m = inertia_B;
-    Columns v{axis(0), axis(1), axis(2)};
-    for (int sweep = 0; sweep < 30 && std::fabs(m(0, 1)) + std::fabs(m(0, 2)) + std::fabs(m(1, 2)) > 0; ++sweep)
-        for (const auto& [p, q] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) rotate_away(m, v, p, q);
-    std::array<double, 3> d{m(0, 0), m(1, 1), m(2, 2)};
+    const SymmetricAxes found = symmetric_axes(inertia_B);
+    const Mat3& R = found.axes;
+    Columns v{Vec3{R(0, 0), R(1, 0), R(2, 0)}, Vec3{R(0, 1), R(1, 1), R(2, 1)}, Vec3{R(0, 2), R(1, 2), R(2, 2)}};
+    std::array<double, 3> d{found.values.x, found.values.y, found.values.z};
     for (const auto& [i, j] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 1)})
     {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);

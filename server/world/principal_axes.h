@@ -12,7 +12,7 @@ struct PrincipalAxes
     Quat q_BP;     ///< turns principal axes into B
 };
 
-/// By Jacobi rotations; a diagonal matrix keeps its bits.
+/// By Jacobi rotations (plab/symmetric.h); a diagonal matrix keeps its bits.
 PrincipalAxes principal_axes(const Mat3& inertia_B);
 /// The axes in the order 3, 2, 1, right-handed.
 PrincipalAxes reversed(const PrincipalAxes& axes);

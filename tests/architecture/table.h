@@ -21,7 +21,8 @@ struct Layer
 inline const std::vector<Layer>& layers()
 {
     static const std::vector<Layer> table{
-        {"server/sdk", {}, {}},
+        {"server/sdk", {}, {"Eigen/"}},  // plab/eigen.h alone, which no other header of it includes
+        {"server/linear", {"server/sdk"}, {}},
         {"server/model", {"server/sdk"}, {}},
         {"server/world", {"server/sdk", "server/model"}, {}},
         {"server/blueprint", {"server/sdk", "server/model"}, {"expat.h"}, false},
@@ -32,7 +33,7 @@ inline const std::vector<Layer>& layers()
         {"server/simulation/groups", {"server/sdk", "server/model", "server/world"}, {}},
         {"server/simulation/shafts", {"server/sdk", "server/model", "server/world", "server/simulation/groups"}, {}},
         {"server/simulation/rows",
-         {"server/sdk", "server/model", "server/world", "server/simulation/groups", "server/simulation/shafts"},
+         {"server/sdk", "server/linear", "server/model", "server/world", "server/simulation/groups", "server/simulation/shafts"},
          {}},
         {"server/simulation/systems",
          {"server/sdk", "server/model", "server/world", "server/simulation/costs", "server/simulation/groups", "server/simulation/shafts",
@@ -109,7 +110,8 @@ inline const std::vector<Layer>& layers()
         {"server/render", {"server/sdk"}, {"GL/", "png.h"}},
         {"server/objects/cameras", {"server/sdk", "server/render"}, {}},
         {"server/objects/*", {"server/sdk"}, {}},
-        {"interactions/detection", {"server/sdk"}, {"ode/"}},
+        {"interactions/detection", {"server/sdk"}, {"ode/", "Eigen/"}},
+        {"interactions/managers", {"server/sdk", "server/linear"}, {}},
         {"interactions/scripts", {"server/sdk"}, {"lua.hpp"}},
         {"interactions/*", {"server/sdk"}, {}},
         {"idl/recording", {"server/sdk", "idl"}, {"dds/", "zlib.h", "zstd.h", "lz4frame.h", "fcntl.h", "unistd.h", "sys/stat.h"}},
@@ -138,8 +140,8 @@ inline const std::vector<Layer>& layers()
         {"tests/bus/foreign", {"server", "clients", "idl", "tests"}, {"doctest/", "fastdds/", "plabPubSubTypes.h"}, false},
         {"tests",
          {"server", "interactions", "clients", "idl"},
-         {"doctest/", "nlohmann/", "dds/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/", "poll.h", "termios.h", "arpa/",
-          "netinet/"}},
+         {"doctest/", "nlohmann/", "dds/", "Eigen/", "unsupported/Eigen/", "png.h", "unistd.h", "fcntl.h", "signal.h", "dlfcn.h", "sys/",
+          "poll.h", "termios.h", "arpa/", "netinet/"}},
     };
     return table;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "check_positive.h"
+#include "plab/symmetric.h"
 
 namespace plab::bodies
 {
@@ -24,22 +25,6 @@ bool is_finite(const Mat3& a)
 bool is_symmetric(const Mat3& a) { return a == transposed(a); }
 bool is_diagonal(const Mat3& a) { return a(0, 1) == 0 && a(0, 2) == 0 && a(1, 2) == 0 && a(1, 0) == 0 && a(2, 0) == 0 && a(2, 1) == 0; }
 
-/// Makes a(p, q) zero by a rotation in their plane (Golub, Van Loan, Matrix computations, section 8.5.2).
-void jacobi_rotate(Mat3& a, int p, int q)
-{
-    if (a(p, q) == 0) return;
-    const double tau = (a(q, q) - a(p, p)) / (2 * a(p, q));
-    const double t = (tau >= 0 ? 1.0 : -1.0) / (std::fabs(tau) + std::sqrt(1 + tau * tau));
-    const double c = 1 / std::sqrt(1 + t * t), s = t * c;
-    const int r = 3 - p - q;
-    const double apq = a(p, q), arp = a(r, p), arq = a(r, q);
-    a(p, p) -= t * apq;
-    a(q, q) += t * apq;
-    a(p, q) = a(q, p) = 0;
-    a(r, p) = a(p, r) = c * arp - s * arq;
-    a(r, q) = a(q, r) = s * arp + c * arq;
-}
-
 std::string moments_text(const std::array<double, 3>& moments)
 {
     return number_text(moments[0]) + ", " + number_text(moments[1]) + ", " + number_text(moments[2]) + " kg m^2";
@@ -49,16 +34,8 @@ std::string moments_text(const std::array<double, 3>& moments)
 
 std::array<double, 3> principal_moments(const Mat3& inertia)
 {
-    // Cyclic Jacobi method: small eigenvalues keep their relative accuracy (Demmel, Veselic 1992), which a rod needs. It converges
-    // quadratically; 3x3 matrices take about five sweeps.
-    Mat3 a = inertia;
-    for (int sweep = 0; sweep < 30 && !is_diagonal(a); ++sweep)
-    {
-        jacobi_rotate(a, 0, 1);
-        jacobi_rotate(a, 0, 2);
-        jacobi_rotate(a, 1, 2);
-    }
-    std::array<double, 3> moments{a(0, 0), a(1, 1), a(2, 2)};
+    const Vec3 values = symmetric_axes(inertia).values;
+    std::array<double, 3> moments{values.x, values.y, values.z};
     std::sort(moments.begin(), moments.end());
     return moments;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dense_view.h"
+
 namespace plab::solvers
 {
 namespace
@@ -11,13 +13,14 @@ namespace
 constexpr double kTaylorReach = 0.7;  // 0.7^17 / 17! is below 1e-17
 constexpr int kMostSquarings = 60;
 
+/// Not finite where an element is not.
 double norm_of_rows(const SquareMatrix<double>& a)
 {
     double most = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
     {
         double sum = 0;
-        for (const double v : a.row(i)) sum += std::fabs(v);
+        for (std::size_t j = 0; j < a.size(); ++j) sum += std::fabs(a(i, j));
         if (!(sum <= most)) most = sum;
     }
     return most;
@@ -30,11 +33,11 @@ constexpr double kWeight8[4] = {0.362683783378361982965150, 0.313706645877887287
                                 0.101228536290376259152531};
 constexpr int kPowers = 17;
 
-void transpose(const SquareMatrix<double>& a, SquareMatrix<double>& out)
+using Column = Eigen::Map<Eigen::VectorXd>;
+
+Column column_of(std::vector<double>& numbers, std::size_t from, std::size_t count)
 {
-    out.resize(a.size());
-    for (std::size_t i = 0; i < a.size(); ++i)
-        for (std::size_t j = 0; j < a.size(); ++j) out(j, i) = a(i, j);
+    return Column(numbers.data() + from, static_cast<Eigen::Index>(count));
 }
 
 }  // namespace
@@ -66,7 +69,6 @@ void MatrixExponential::balance()
 /// sum_ = sum of a_^k / k!, k = 0 .. 16, in powers of a_^4.
 void MatrixExponential::taylor()
 {
-    const std::size_t n = a_.size();
     multiply(a_, a_, square_);
     multiply(a_, square_, cube_);
     multiply(square_, square_, fourth_);
@@ -76,11 +78,11 @@ void MatrixExponential::taylor()
     const auto add_block = [&](int first)
     {
         const double* c = inverse_factorial + first;
-        for (std::size_t i = 0; i < n * n; ++i) sum_.all()[i] += c[1] * a_.all()[i] + c[2] * square_.all()[i] + c[3] * cube_.all()[i];
-        for (std::size_t i = 0; i < n; ++i) sum_(i, i) += c[0];
+        view(sum_) += c[1] * view(a_) + c[2] * view(square_) + c[3] * view(cube_);
+        view(sum_).diagonal().array() += c[0];
     };
-    sum_.resize(n);
-    for (std::size_t i = 0; i < n * n; ++i) sum_.all()[i] = inverse_factorial[16] * fourth_.all()[i];
+    sum_.resize(a_.size());
+    view(sum_) = inverse_factorial[16] * view(fourth_);
     add_block(12);
     for (const int first : {8, 4, 0})
     {
@@ -124,13 +126,10 @@ void MatrixExponential::apply(int root, std::span<const double> v, std::span<dou
 {
     const SquareMatrix<double>& e = root_[static_cast<std::size_t>(root)];
     const std::size_t n = e.size();
-    std::fill_n(out.begin(), n, 0.0);
+    Column sum(out.data(), static_cast<Eigen::Index>(n));
+    sum.setZero();
     // By columns: one division for each, and sums that do not wait for one another.
-    for (std::size_t j = 0; j < n; ++j)
-    {
-        const double scaled = v[j] / scale_[j];
-        for (std::size_t i = 0; i < n; ++i) out[i] += e(i, j) * scaled;
-    }
+    for (std::size_t j = 0; j < n; ++j) sum += v[j] / scale_[j] * view(e).col(static_cast<Eigen::Index>(j));
     for (std::size_t i = 0; i < n; ++i) out[i] *= scale_[i];
 }
 
@@ -142,14 +141,13 @@ void MatrixExponential::start_gram(std::size_t constant)
     powers_.assign(kPowers * n, 0.0);
     powers_[constant] = 1 / scale_[constant];
     for (std::size_t k = 1; k < kPowers; ++k)
-        for (std::size_t i = 0; i < n; ++i)
-        {
-            double sum = 0;
-            for (std::size_t j = 0; j < n; ++j) sum += a_(i, j) * powers_[(k - 1) * n + j];
-            powers_[k * n + i] = sum / static_cast<double>(k);
-        }
+    {
+        Column power = column_of(powers_, k * n, n);
+        power.noalias() = view(a_) * column_of(powers_, (k - 1) * n, n);
+        power /= static_cast<double>(k);
+    }
     gram_.resize(n);
-    std::fill(gram_.all().begin(), gram_.all().end(), 0.0);
+    view(gram_).setZero();
     left_.resize(n);
     for (int node = 0; node < 8; ++node)
     {
@@ -160,18 +158,17 @@ void MatrixExponential::start_gram(std::size_t constant)
             for (std::size_t k = kPowers; k-- > 0;) y = y * theta + powers_[k * n + i];
             left_[i] = y;
         }
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t j = 0; j < n; ++j) gram_(i, j) += std::ldexp(weight, -squarings_) * left_[i] * left_[j];
+        const Column y = column_of(left_, 0, n);
+        view(gram_).noalias() += std::ldexp(weight, -squarings_) * y * y.transpose();
     }
 }
 
 /// To twice the time: gram_ += E gram_ E^T, E = E E; E in sum_.
 void MatrixExponential::double_gram()
 {
-    transpose(sum_, wide_);
-    multiply(gram_, wide_, spare_);
-    multiply(sum_, spare_, wide_);
-    for (std::size_t i = 0; i < gram_.all().size(); ++i) gram_.all()[i] += wide_.all()[i];
+    wide_.resize(a_.size());
+    view(wide_).noalias() = view(gram_) * view(sum_).transpose();
+    view(gram_).noalias() += view(sum_) * view(wide_);
     multiply(sum_, sum_, spare_);
     std::swap(sum_, spare_);
     flush();
@@ -188,8 +185,8 @@ std::size_t MatrixExponential::moments(std::size_t constant, std::size_t count, 
     // Of components that hardly vary the variance is rounding.
     left_.resize(n);
     for (std::size_t i = 0; i < n; ++i) left_[i] = 1e-15 * gram_(i, i);
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j) gram_(i, j) -= mean[i] * mean[j];
+    const Column of_mean = column_of(mean, 0, n);
+    view(gram_).noalias() -= of_mean * of_mean.transpose();
     const std::size_t rank = factorise_covariance(constant, count, spread);
     for (std::size_t i = 0; i < n; ++i) mean[i] *= scale_[i];
     return rank;
@@ -211,10 +208,9 @@ std::size_t MatrixExponential::factorise_covariance(std::size_t constant, std::s
         if (best == n) break;
         const double root = std::sqrt(gram_(best, best));
         spread.resize((rank + 1) * n, 0.0);
-        double* column = spread.data() + rank * n;
-        for (std::size_t i = 0; i < count; ++i) column[i] = i == constant ? 0.0 : gram_(i, best) / root;
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t j = 0; j < count; ++j) gram_(i, j) -= column[i] * column[j];
+        Column column = column_of(spread, rank * n, count);
+        for (std::size_t i = 0; i < count; ++i) column[static_cast<Eigen::Index>(i)] = i == constant ? 0.0 : gram_(i, best) / root;
+        view(gram_).topLeftCorner(column.size(), column.size()).noalias() -= column * column.transpose();
         gram_(best, best) = 0;
     }
     for (std::size_t k = 0; k < rank; ++k)

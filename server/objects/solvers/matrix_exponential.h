@@ -6,7 +6,9 @@
 namespace plab::solvers
 {
 
-/// exp(A) and its square roots exp(A / 2^p) by balancing, scaling, a Taylor polynomial of degree 16 and squaring.
+/// exp(A) and its square roots exp(A / 2^p) by balancing, scaling, a Taylor polynomial of degree 16 and squaring. Eigen's exp
+/// (unsupported/Eigen/MatrixFunctions) is not used, because it does not balance, which costs digits where the units of rows differ
+/// (tests/unit/solvers/own_algebra_test.cpp), and gives neither the roots nor the moments. Products are Eigen's.
 /// Sources: Moler, Van Loan, "Nineteen dubious ways ...", SIAM Rev. 45 (2003) 3, method 3; Parlett, Reinsch, Numer. Math. 13
 /// (1969) 293 (balancing by powers of two, which rounds nothing); Paterson, Stockmeyer, SIAM J. Comput. 2 (1973) 60.
 class MatrixExponential

@@ -79,7 +79,7 @@ void RadauStages::correct(double h)
     m_.complex.solve(m_.pair);
     for (std::size_t i = 0; i < n; ++i)
     {
-        m_.f[1][i] = m_.pair[i].re, m_.f[2][i] = m_.pair[i].im;
+        m_.f[1][i] = m_.pair[i].real(), m_.f[2][i] = m_.pair[i].imag();
         for (std::size_t s = 0; s < 3; ++s) m_.w[s][i] += m_.f[s][i];
         for (std::size_t s = 0; s < 3; ++s) m_.z[s][i] = kT[s][0] * m_.w[0][i] + kT[s][1] * m_.w[1][i] + kT[s][2] * m_.w[2][i];
     }

@@ -10,6 +10,7 @@
 #include "plab/dynamics.h"
 #include "plab/elliptic.h"
 #include "plab/rotation.h"
+#include "plab/symmetric.h"
 
 namespace plab
 {
@@ -22,8 +23,8 @@ struct PrincipalAxes
     Vec3 reciprocal;  ///< 1/(kg m^2)
 };
 
-/// Computed by Jacobi rotations, which costs nothing if the body's frame is principal already. The small moments of a needle are taken
-/// from the inverse inertia, which has them to full precision.
+/// Computed by Jacobi rotations (plab/symmetric.h), which costs nothing if the body's frame is principal already. The small moments of a
+/// needle are taken from the inverse inertia, which has them to full precision.
 PrincipalAxes principal_axes(const RigidMember& member);
 /// The same frame with its axes in the order of ascending moments.
 PrincipalAxes ascending(const PrincipalAxes& body);
@@ -92,20 +93,6 @@ namespace free_rotation
 
 inline double off_diagonal(const Mat3& a) { return std::fabs(a(0, 1)) + std::fabs(a(0, 2)) + std::fabs(a(1, 2)); }
 
-/// One Jacobi rotation: makes a(p, q) zero. Golub, Van Loan, Matrix computations, algorithm 8.5.1.
-inline void rotate_away(Mat3& a, Mat3& axes, int p, int q)
-{
-    if (a(p, q) == 0) return;
-    const double tau = (a(q, q) - a(p, p)) / (2 * a(p, q));
-    const double t = (tau >= 0 ? 1.0 : -1.0) / (std::fabs(tau) + std::sqrt(1 + tau * tau));
-    const double c = 1 / std::sqrt(1 + t * t), s = t * c;
-    Mat3 g = Mat3::identity();
-    g(p, p) = c, g(q, q) = c, g(p, q) = s, g(q, p) = -s;
-    a = transposed(g) * a * g;
-    a(p, q) = a(q, p) = 0;
-    axes = axes * g;
-}
-
 inline Vec3 column(const Mat3& a, int j) { return {a(0, j), a(1, j), a(2, j)}; }
 
 struct GaussRule
@@ -135,21 +122,21 @@ inline GaussRule rule_for(double length)
 
 inline PrincipalAxes principal_axes(const RigidMember& member)
 {
+    const SymmetricAxes found = symmetric_axes(member.inertia_B);
+    const Vec3& a = found.values;
     PrincipalAxes out;
-    out.axes = Mat3::identity();
+    out.axes = found.axes;
     if (free_rotation::off_diagonal(member.inertia_B) == 0)
     {
-        for (int i = 0; i < 3; ++i) out.moment[i] = member.inertia_B(i, i), out.reciprocal[i] = member.inverse_inertia_B(i, i);
+        out.moment = a;
+        for (int i = 0; i < 3; ++i) out.reciprocal[i] = member.inverse_inertia_B(i, i);
         return out;
     }
-    Mat3 a = member.inertia_B;
-    for (int sweep = 0; sweep < 12 && free_rotation::off_diagonal(a) > 0; ++sweep)
-        for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) free_rotation::rotate_away(a, out.axes, p, q);
-    const double largest = std::max({a(0, 0), a(1, 1), a(2, 2)}), smallest = std::min({a(0, 0), a(1, 1), a(2, 2)});
+    const double largest = std::max({a.x, a.y, a.z}), smallest = std::min({a.x, a.y, a.z});
     for (int i = 0; i < 3; ++i)
     {
         const Vec3 e = free_rotation::column(out.axes, i);
-        const bool small = a(i, i) * a(i, i) < largest * std::fabs(smallest);
+        const bool small = a[i] * a[i] < largest * std::fabs(smallest);
         out.reciprocal[i] = small ? dot(e, member.inverse_inertia_B * e) : 1 / dot(e, member.inertia_B * e);
         out.moment[i] = 1 / out.reciprocal[i];
     }

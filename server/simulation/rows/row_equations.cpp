@@ -111,7 +111,7 @@ void RowEquations::factor(double implied, double others)
         factors_.diagonal(first_joint + slot.joint)[slot.place * (joint.rows + 1)] = -soft;
         factors_.set_floor(unknown_of(slot), 0.1 * soft, soft);
     }
-    factors_.factor();
+    (void)factors_.factor();
     const auto small = factors_.small();
     any_small_ = std::find(small.begin(), small.end(), std::uint8_t{1}) != small.end();
 }

@@ -8,8 +8,8 @@
 ///
 /// With y = -lambda the equations become one symmetric matrix, K = [M J^T; J -C] (x; y) = (g; b), where C >= 0 is a small diagonal
 /// compliance. M is positive definite and -C is negative (semi)definite; such a quasi-definite matrix has a factorisation L D L^T with a
-/// diagonal D in a fixed order of elimination, without pivoting for size (sparse_ldlt.h). Nodes of K are members (bodies, shafts) and
-/// joints: rows between the same members form one joint of up to six rows. Mass and Jacobian are never multiplied out to J M^-1 J^T:
+/// diagonal D in a fixed order of elimination, without pivoting for size (linear/sparse_blocks.h). Nodes of K are members (bodies, shafts)
+/// and joints: rows between the same members form one joint of up to six rows. Mass and Jacobian are never multiplied out to J M^-1 J^T:
 /// along a tree of joints, elimination from the leaves causes no fill, takes linear time, and keeps its digits at large mass ratios.
 ///
 /// A tree of joints gets C = 0, because its rows are independent of one another. Rows that may depend on one another (joints on a closed
@@ -23,8 +23,8 @@
 #include <span>
 #include <vector>
 
+#include "linear/sparse_blocks.h"
 #include "plab/rows.h"
-#include "simulation/rows/sparse_ldlt.h"
 #include "simulation/shafts/constraint_graph.h"
 #include "world/host_tables.h"
 
@@ -201,7 +201,7 @@ private:
     std::vector<Entry> entries_;
     bool any_compliant_ = false;
 
-    SparseLdlt factors_;
+    linear::SparseBlocks factors_;
     double compliance_ = -1;  ///< -1: not factored yet
     bool any_small_ = false;
     std::vector<std::uint8_t> implied_;                         // by slot; empty: not noted

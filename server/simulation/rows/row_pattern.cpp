@@ -70,7 +70,7 @@ private:
         const std::uint32_t piece = out_.held_[held].piece;
         const auto key = std::pair(members, grounded);
         const auto known = open_joint_.find(key);
-        if (known != open_joint_.end() && out_.joints_[known->second].rows < SparseLdlt::kMostSize)
+        if (known != open_joint_.end() && out_.joints_[known->second].rows < linear::SparseBlocks::kMostSize)
         {
             if (piece_of_joint_[known->second] != piece) out_.joints_[known->second].compliant = true;
             return known->second;
@@ -92,10 +92,10 @@ private:
     void make_matrix()
     {
         const auto count = static_cast<std::uint32_t>(out_.members_.size());
-        std::vector<SparseNode> nodes;
+        std::vector<linear::SparseNode> nodes;
         for (const Member& m : out_.members_) nodes.push_back({out_.size_of(m), false, false});
         for (const Joint& j : out_.joints_) nodes.push_back({j.rows, true, !j.loop});
-        for (SparseEdge& e : edges_) e.joint += count;
+        for (linear::SparseEdge& e : edges_) e.a += count;
         out_.factors_.analyse(nodes, edges_);
         for (auto* v : {&out_.rhs_, &out_.x_, &out_.r_, &out_.before_, &out_.blunt_, &out_.scale_})
             v->assign(out_.factors_.unknowns(), 0.0);
@@ -108,7 +108,7 @@ private:
     std::map<std::pair<std::vector<std::uint32_t>, bool>, std::uint32_t> open_joint_;
     std::vector<std::uint32_t> piece_of_joint_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edge_;
-    std::vector<SparseEdge> edges_;
+    std::vector<linear::SparseEdge> edges_;
 };
 
 namespace

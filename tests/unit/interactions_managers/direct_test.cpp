@@ -158,30 +158,30 @@ TEST_CASE("D2: the work of one factorisation of a stack is that of its height; o
 {
     for (const std::uint32_t n : {10u, 20u, 50u, 100u})
     {
-        std::vector<BlockMatrix::Edge> chain;
-        for (std::uint32_t i = 0; i + 1 < n; ++i) chain.emplace_back(i, i + 1);
-        BlockMatrix m;
-        m.shape(n, chain);
-        CHECK(m.pairs() == n - 1);
+        std::vector<linear::SparseEdge> chain;
+        for (std::uint32_t i = 0; i + 1 < n; ++i) chain.push_back({i, i + 1});
+        linear::SparseBlocks m(linear::SparseBlocks::Kind::General);
+        m.analyse(std::vector<linear::SparseNode>(n, {6}), chain);
+        CHECK(m.blocks() == n - 1);
         CHECK(m.products() == 2 * (n - 1));
     }
     const auto wall = [](std::uint32_t wide, std::uint32_t high)
     {
-        std::vector<BlockMatrix::Edge> edges;
+        std::vector<linear::SparseEdge> edges;
         for (std::uint32_t k = 0; k < high; ++k)
             for (std::uint32_t i = 0; i < wide; ++i)
             {
                 const std::uint32_t at = k * wide + i;
-                if (i + 1 < wide) edges.emplace_back(at, at + 1);
+                if (i + 1 < wide) edges.push_back({at, at + 1});
                 if (k + 1 == high) continue;
                 // Every second row stands half a brick further: a brick lies on two.
-                edges.emplace_back(at, at + wide);
-                if (k % 2 == 0 && i > 0) edges.emplace_back(at, at + wide - 1);
-                if (k % 2 == 1 && i + 1 < wide) edges.emplace_back(at, at + wide + 1);
+                edges.push_back({at, at + wide});
+                if (k % 2 == 0 && i > 0) edges.push_back({at, at + wide - 1});
+                if (k % 2 == 1 && i + 1 < wide) edges.push_back({at, at + wide + 1});
             }
         std::sort(edges.begin(), edges.end());
-        BlockMatrix m;
-        m.shape(wide * high, edges);
+        linear::SparseBlocks m(linear::SparseBlocks::Kind::General);
+        m.analyse(std::vector<linear::SparseNode>(wide * high, {6}), edges);
         return static_cast<double>(m.products());
     };
     const double small = wall(10, 10), large = wall(40, 40);

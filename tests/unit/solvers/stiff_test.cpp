@@ -55,10 +55,36 @@ TEST_CASE("dense factors solve real and complex systems, and refuse singular one
     std::vector<Complex> c{{2, 3}, {1, 1}};  // x = (1, 1 + i)
     c[0] = {2, 3}, c[1] = {2, 0};
     complex.solve(c);
-    CHECK(c[0].re == doctest::Approx(1));
-    CHECK(c[0].im == doctest::Approx(0));
-    CHECK(c[1].re == doctest::Approx(1));
-    CHECK(c[1].im == doctest::Approx(1));
+    CHECK(c[0].real() == doctest::Approx(1));
+    CHECK(c[0].imag() == doctest::Approx(0));
+    CHECK(c[1].real() == doctest::Approx(1));
+    CHECK(c[1].imag() == doctest::Approx(1));
+}
+
+TEST_CASE("dense factors of more than one panel, with rows of units that are far apart; who wants them to stop is asked")
+{
+    // Rows of places and of speeds: the second half is 1e9 times as large. x = (1, 2, 3, ...).
+    constexpr std::size_t n = 70;
+    Factors<double> factors;
+    const auto fill = [&]
+    {
+        factors.matrix().resize(n);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = 0; j < n; ++j)
+                factors.matrix()(i, j) =
+                    (i < n / 2 ? 1.0 : 1e9) * (std::sin(static_cast<double>(3 * i * j + i + 1)) + (i == j ? 3.0 : 0.0));
+    };
+    fill();
+    std::vector<double> b(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) b[i] += factors.matrix()(i, j) * static_cast<double>(j + 1);
+    REQUIRE(factors.factorise());
+    factors.solve(b);
+    for (std::size_t i = 0; i < n; ++i) CHECK(b[i] == doctest::Approx(static_cast<double>(i + 1)).epsilon(1e-12));
+    fill();
+    int asked = 0;
+    CHECK(!factors.factorise([&] { return ++asked == 50; }));
+    CHECK(asked == 50);
 }
 
 // References: Test set for IVP solvers (Mazzia, Magherini), recomputed there in quadruple precision.

@@ -1,0 +1,43 @@
+// What stays own beside Eigen in the solvers: what Eigen's would lose.
+#include "objects/solvers/dense_view.h"
+#include "objects/solvers/matrix_exponential.h"
+
+#include <doctest/doctest.h>
+#include <Eigen/LU>
+#include <unsupported/Eigen/MatrixFunctions>
+
+using namespace plab::solvers;
+
+TEST_CASE("LU: Eigen's takes rows as they come, and loses all digits where their units differ")
+{
+    // x = (1, 1). The first row is in small units: its pivot of 1 is the smallest of its row by far.
+    Eigen::Matrix2d a;
+    a << 1, 1e17, 1, 1;
+    const Eigen::Vector2d theirs = a.partialPivLu().solve(Eigen::Vector2d(1e17, 2));
+    Factors<double> factors;
+    factors.matrix().resize(2);
+    view(factors.matrix()) = a;
+    REQUIRE(factors.factorise());
+    std::vector<double> ours{1e17, 2};
+    factors.solve(ours);
+    CHECK(theirs[0] == 0);  // should be 1
+    CHECK(ours[0] == doctest::Approx(1).epsilon(1e-15));
+    CHECK(ours[1] == doctest::Approx(1).epsilon(1e-15));
+}
+
+TEST_CASE("exp(A): Eigen's does not balance, and loses digits where units differ")
+{
+    // A turn by 1 rad between a place and a speed whose units are 1e12 apart: cos(1) on the diagonal.
+    Eigen::Matrix2d a;
+    a << 0, 1e12, -1e-12, 0;
+    const Eigen::Matrix2d theirs = a.exp();
+    MatrixExponential ours;
+    ours.matrix().resize(2);
+    view(ours.matrix()) = a;
+    REQUIRE(ours.compute());
+    const std::vector<double> v{1, 0};
+    std::vector<double> out(2);
+    ours.apply(0, v, out);
+    CHECK(std::fabs(out[0] - std::cos(1.0)) < 1e-15);
+    CHECK(std::fabs(theirs(0, 0) - std::cos(1.0)) > 1e-8);
+}
