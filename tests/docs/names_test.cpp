@@ -27,14 +27,20 @@ constexpr Foreign kForeign[] = {
     {"interactions/detection/README.md", "ode/ode.h", "a header of ODE"},
     {"server/docs/blueprint.md", "type/", "a placeholder"},
     {"server/docs/bus.md", "rt/", "how ROS names begin"},
+    {"server/docs/install.md", "share/plab/idl/plab.idl", "where the IDL is installed"},
     {"server/docs/peers.md", "results.json", "bench_peers writes it"},
     {"server/docs/peers.md", "summary.md", "bench_peers writes it"},
     {"server/docs/study.md", "results.json", "plab-study writes it"},
     {"server/docs/study.md", "reference_algorithm", "a key of a suite file, not a test"},
+    {"server/docs/tutorial.md", "inverse_square.cpp", "a file that the reader writes"},
+    {"server/docs/tutorial.md", "conformance/Field.Gravity.InverseSquare.xml", "a file that the reader writes"},
+    {"server/docs/tutorial.md", "ball.xml", "a file that the reader writes"},
+    {"server/docs/tutorial.md", "exchange.cpp", "a file that the reader writes"},
+    {"server/docs/tutorial.md", "share/plab/idl/plab.idl", "where the IDL is installed"},
 };
 /// Options of other programs: docker, podman, cmake, scripts and programs of the tests.
 constexpr std::string_view kForeignOptions[] = {"--format",  "--init",    "--no-healthcheck", "--component", "--network", "--internal",
-                                                "--compile", "--seconds", "--pile",           "--all",       "--print"};
+                                                "--compile", "--seconds", "--pile",           "--all",       "--print",   "--strip"};
 
 /// README.md of the root and of each folder, and server/docs without what is generated or tells of the past.
 std::vector<std::string> documents(const Declared& declared)
