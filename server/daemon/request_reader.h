@@ -1,6 +1,6 @@
 /// Reads the requests of clients on a thread of its own: parses blueprints, compiles scenes to load, and loads the plugins of the types
-/// that a request names. The step thread gets requests that only have to be exchanged, so that a step does not wait for XML or for the
-/// dynamic linker.
+/// that a request names. A step does not wait for XML or for the dynamic linker. What a request adds to the running scene is still compiled
+/// on the step thread, because that depends on the scene.
 #pragma once
 
 #include <condition_variable>

@@ -173,7 +173,7 @@ void Run::tell_given_up()
     const publish::Busy busy = publish::words_of(s_.progress().look(), simulation::now_ns());
     spdlog::error("{}: abandoned, because the run is to end; the state is that of t = {:.9g} s, before the step", publish::text_of(busy),
                   s_.time());
-    service_.take_last_requests();
+    service_.take_last_requests(kGrace);
 }
 
 /// Requests that still wait are saved with the snapshot. True if a snapshot was made.
@@ -191,6 +191,8 @@ bool Run::finish()
     table_.show(s_, true);
     if (trace_) trace_->sample(s_, true);
     if (options_.maps) print_mapped_libraries();
+    // Clients whose requests are being read get an answer, too.
+    service_.take_last_requests(kGrace);
     const bool saved = save();
     if (const std::size_t own = service_.close(); own > 0 && !saved)
     {

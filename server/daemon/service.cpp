@@ -87,7 +87,7 @@ Result<void> Service::open_bus(const DaemonOptions& options, const Wake& wake, I
     bus.busy_argument = const_cast<simulation::Progress*>(&simulation_->progress());
     bus.wake = [](void* service) { static_cast<Service*>(service)->wake_up(); };
     bus.wake_argument = this;
-    wake_ = &wake;
+    wake_ = &wake, interruption_ = &interruption;
     // The reader exists before the bus, which may call wake_up() as soon as it is open.
     reader_ = std::make_unique<RequestReader>([this](publish::RequestText& text) { return bus_is_open_ && bus_->take(text); }, *library_,
                                               simulation_->limits(), [&wake] { wake.wake(); });
@@ -129,6 +129,9 @@ void Service::take_requests()
 {
     if (!bus_) return;
     note_restart();
+    // A client asked for the shutdown, which takes its turn behind what is being read: a step begun now would be given up.
+    constexpr std::chrono::seconds kLongestRead(10);
+    if (interruption_->asked()) reader_->finish(kLongestRead);
     RequestReader::ReadRequest next;
     while (reader_->take(next))
     {
@@ -143,9 +146,9 @@ void Service::take_requests()
     }
 }
 
-void Service::take_last_requests()
+void Service::take_last_requests(std::chrono::milliseconds most)
 {
-    if (reader_) reader_->finish(kGrace);
+    if (reader_) reader_->finish(most);
     take_requests();
 }
 

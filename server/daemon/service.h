@@ -42,8 +42,8 @@ public:
     Result<void> save(const std::string& file) const;
     /// Passes requests that have arrived on the bus, and have been read, to the simulation; invalid ones are refused.
     void take_requests();
-    /// The same, after those that have arrived have been read, for which it waits a moment: the run is to end.
-    void take_last_requests();
+    /// The same, after those that have arrived have been read, for which it waits: the run is to end.
+    void take_last_requests(std::chrono::milliseconds most);
     /// Answers requests that took effect or failed: to clients, as events, as log lines. False if one of the command line was
     /// refused, because the run is then not the one that was asked for.
     bool answer();
@@ -107,6 +107,7 @@ private:
     std::unique_ptr<record::Recording> recording_;
     publish::Collector collector_;
     const Wake* wake_ = nullptr;
+    const Interruption* interruption_ = nullptr;
     SnapshotDesk snapshots_;  // wakes the loop; the members that it uses are declared above
     std::map<std::uint64_t, Origin> waiting_;
     /// Requests that name a step, even after they took effect: a snapshot may restore them.
