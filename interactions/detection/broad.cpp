@@ -37,6 +37,7 @@ void BroadPhase::reset(const std::string& kind, std::size_t parts)
     near_.clear(), half_spaces_.clear();
     raised_ = 0;
     search_ = make_pair_search(kind, parts);
+    grown_search_ = std::make_unique<TreeSearch>(parts);
     stale_ = true;
 }
 
@@ -48,10 +49,12 @@ void BroadPhase::add(const Collider& collider, std::uint32_t member, Membership 
     part.unbounded = collider.kind() == ColliderKind::Plane;
     part.collides = collider.kind() != ColliderKind::None;
     if (!part.collides) return;
-    if (part.unbounded)
-        search_->add_half_space(index, membership), half_spaces_.push_back(index);
-    else
-        search_->add_box(index, membership);
+    for (PairSearch* search : {search_.get(), static_cast<PairSearch*>(grown_search_.get())})
+        if (part.unbounded)
+            search->add_half_space(index, membership);
+        else
+            search->add_box(index, membership);
+    if (part.unbounded) half_spaces_.push_back(index);
 }
 
 /// Whether the box in the search structure covers the tight box with its margin, and is not far too large for it.
@@ -141,14 +144,14 @@ const std::vector<BroadPhase::Pair>& BroadPhase::find_pairs(double margin)
     return pairs_;
 }
 
-void BroadPhase::offer(std::uint32_t part, double growth, NearSweep& sweep) const
+void BroadPhase::grow(std::uint32_t part, double margin)
 {
     const Part& p = parts_[part];
     if (!p.collides) return;
-    if (p.unbounded) return sweep.set_half_space(part, p.normal, p.offset, growth);
-    const double grown = std::min(growth, kLargest);
-    const Vec3 by{grown, grown, grown};
-    sweep.set_box(part, p.tight.lower - by, p.tight.upper + by);
+    const double growth = std::min(margin, kLargest);
+    if (p.unbounded) return grown_search_->set_half_space(part, p.normal, p.offset + growth);
+    const Vec3 by{growth, growth, growth};
+    grown_search_->set_box(part, {p.tight.lower - by, p.tight.upper + by});
 }
 
 }  // namespace plab::detection

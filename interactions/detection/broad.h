@@ -4,13 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "bounds.h"
 #include "collider.h"
-#include "near_sweep.h"
+#include "geometry/box.h"
 #include "pair_search.h"
+#include "tree_search.h"
 
 namespace plab::detection
 {
@@ -32,8 +33,11 @@ public:
     void move(std::uint32_t part, const Collider& collider, const Pose& X_WS);
     /// Pairs (i, j), i < j, whose tight boxes are at most `margin` (m) apart; ordered by members, then parts.
     const std::vector<Pair>& find_pairs(double margin = 0);
-    /// Passes the tight box of a part, grown by `growth` (m), to a sweep.
-    void offer(std::uint32_t part, double growth, NearSweep& sweep) const;
+    /// Pairs (i, j), i < j, of which at least one part is in `parts`, whose tight boxes overlap when each is grown by the margin
+    /// (m, may be infinite) that it was last given by grow(); each at least once, in any order. No result of find_pairs() depends
+    /// on these two.
+    void grow(std::uint32_t part, double margin);
+    void find_grown(std::span<const std::uint32_t> parts, std::vector<Pair>& pairs) { grown_search_->find_of(parts, pairs); }
 
 private:
     struct Part
@@ -52,6 +56,7 @@ private:
     void search();
 
     std::unique_ptr<PairSearch> search_;
+    std::unique_ptr<TreeSearch> grown_search_;  // not one of ODE's spaces: these boxes differ in every step
     std::vector<Part> parts_;
     std::vector<std::uint32_t> half_spaces_;  // parts
     double raised_ = 0;                       // m, by which half-spaces are enlarged in the search structure

@@ -127,7 +127,7 @@ void OdeScene::rebuild(const Bodies& bodies, const Shapes& shapes, const Contact
         m.end_shape = static_cast<std::uint32_t>(body_shapes_.size());
     }
     broad_.reset(space_, parts_.size());
-    sweep_.reset(parts_.size()), near_.reserve(parts_.size());
+    near_.reserve(parts_.size());
     for (const Part& part : parts_) broad_.add(colliders_[part.collider], part.member, members_[part.member].membership);
 }
 
@@ -262,11 +262,10 @@ void OdeScene::report_near(const StepContext& context, ContactSink& sink)
     for (const Member& m : members_)
     {
         if (!all && context.active_bodies[m.body] == 0) continue;
-        for (std::uint32_t p = m.first_part; p < m.end_part; ++p) broad_.offer(p, motion_margin[m.body], sweep_), asked_.push_back(p);
+        for (std::uint32_t p = m.first_part; p < m.end_part; ++p) broad_.grow(p, motion_margin[m.body]), asked_.push_back(p);
     }
-    const auto& near = all ? sweep_.find_all() : sweep_.find_of(asked_);
-    near_.clear();
-    for (const auto& [p, q] : near) near_.emplace_back(parts_[p].member, parts_[q].member);
+    broad_.find_grown(asked_, near_);
+    for (BroadPhase::Pair& pair : near_) pair = {parts_[pair.first].member, parts_[pair.second].member};
     // Pairs of bodies with several parts may occur several times.
     std::sort(near_.begin(), near_.end());
     near_.erase(std::unique(near_.begin(), near_.end()), near_.end());

@@ -90,9 +90,8 @@ private:
     std::vector<PersistentQuery> persistent_;
     ContactPoints contact_points_;
     std::vector<ContactPoint> found_;
-    NearSweep sweep_;
     std::vector<std::uint32_t> asked_;    // parts of the bodies that are advanced
-    std::vector<BroadPhase::Pair> near_;  // members
+    std::vector<BroadPhase::Pair> near_;  // pairs that may collide within the step: parts, then members
     std::size_t pairs_ = 0;
     std::size_t parts_met_ = 0;  // shape pairs of the present pair of bodies
     double further_pairs_ = 0;   // for ContactSink::took

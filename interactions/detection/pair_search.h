@@ -7,10 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "bounds.h"
+#include "geometry/box.h"
 
 namespace plab::detection
 {
+
+using geometry::Box;
 
 using PartPair = std::pair<std::uint32_t, std::uint32_t>;
 

@@ -1,7 +1,7 @@
-/// Finds pairs of overlapping boxes with a bounding-box tree; searches again only for boxes that have moved.
+/// Finds pairs of overlapping boxes with a bounding-box tree; searches again only for boxes that have moved, or are asked for.
 #pragma once
 
-#include "box_tree.h"
+#include "geometry/box_tree.h"
 #include "pair_search.h"
 
 namespace plab::detection
@@ -17,6 +17,9 @@ public:
     void set_box(std::uint32_t part, const Box& box) override;
     void set_half_space(std::uint32_t part, const Vec3& normal, double offset) override;
     void find(std::vector<PartPair>& pairs) override;
+    /// Sets `pairs` to all (i, j), i < j, that overlap, may collide and have at least one part in `parts`; each at least once, in
+    /// any order. What find() returns next does not depend on these calls.
+    void find_of(std::span<const std::uint32_t> parts, std::vector<PartPair>& pairs);
 
 private:
     struct HalfSpace
@@ -25,17 +28,21 @@ private:
         Vec3 normal;
         double offset = 0;  // m
     };
-    void find_all(std::vector<PartPair>& pairs);
-    void find_moved(std::vector<PartPair>& pairs);
     void note_moved(std::uint32_t part);
+    bool refresh_tree();
+    void find_all(std::vector<PartPair>& pairs);
+    void find_chosen(std::span<const std::uint32_t> parts, std::span<const std::uint8_t> is_chosen, std::vector<PartPair>& pairs);
 
-    BoxTree tree_;
+    geometry::BoxTree tree_;
     std::vector<Box> boxes_;               // by part
     std::vector<Membership> memberships_;  // by part
     std::vector<std::uint8_t> has_box_;    // by part
-    std::vector<std::uint8_t> is_moved_;   // by part
+    std::vector<std::uint8_t> is_moved_;   // by part: since the last find()
+    std::vector<std::uint8_t> is_stale_;   // by part: the tree still has an earlier box
+    std::vector<std::uint8_t> is_asked_;   // by part, scratch
     std::vector<std::uint32_t> bounded_;   // parts with a box
-    std::vector<std::uint32_t> moved_;     // since the last find()
+    std::vector<std::uint32_t> moved_;     // parts with is_moved_
+    std::vector<std::uint32_t> stale_;     // parts with is_stale_
     std::vector<HalfSpace> half_spaces_;
     bool fresh_ = true;  // no tree has been built yet
     std::size_t moves_since_build_ = 0;

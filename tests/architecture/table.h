@@ -23,6 +23,7 @@ inline const std::vector<Layer>& layers()
     static const std::vector<Layer> table{
         {"server/sdk", {}, {"Eigen/"}},  // plab/eigen.h alone, which no other header of it includes
         {"server/linear", {"server/sdk"}, {}},
+        {"server/geometry", {"server/sdk"}, {}},
         {"server/model", {"server/sdk"}, {}},
         {"server/world", {"server/sdk", "server/model"}, {}},
         {"server/blueprint", {"server/sdk", "server/model"}, {"expat.h"}, false},
@@ -59,7 +60,7 @@ inline const std::vector<Layer>& layers()
          {"server/sdk", "server/model", "server/world", "server/simulation/costs", "server/simulation/shafts", "server/simulation/events"},
          {}},
         {"server/simulation/watch",
-         {"server/sdk", "server/model", "server/world", "server/simulation/contacts", "server/simulation/step"},
+         {"server/sdk", "server/geometry", "server/model", "server/world", "server/simulation/contacts", "server/simulation/step"},
          {}},
         {"server/simulation/requests", {"server/sdk", "server/model", "server/simulation/costs"}, {}},
         {"server/simulation/run",
@@ -110,7 +111,7 @@ inline const std::vector<Layer>& layers()
         {"server/render", {"server/sdk"}, {"GL/", "png.h"}},
         {"server/objects/cameras", {"server/sdk", "server/render"}, {}},
         {"server/objects/*", {"server/sdk"}, {}},
-        {"interactions/detection", {"server/sdk"}, {"ode/", "Eigen/"}},
+        {"interactions/detection", {"server/sdk", "server/geometry"}, {"ode/", "Eigen/"}},
         {"interactions/managers", {"server/sdk", "server/linear"}, {}},
         {"interactions/scripts", {"server/sdk"}, {"lua.hpp"}},
         {"interactions/*", {"server/sdk"}, {}},

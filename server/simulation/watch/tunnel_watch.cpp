@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "simulation/contacts/shape_width.h"
 
@@ -129,7 +128,7 @@ bool TunnelWatch::passed(const RunView& s, std::uint32_t body, std::uint32_t oth
 }
 
 /// Computes the boxes that the crowd's bodies swept over. Returns false if none moved far enough to pass through another.
-bool TunnelWatch::sweep(const RunView& s, const Crowd& crowd)
+bool TunnelWatch::find_swept_boxes(const RunView& s, const Crowd& crowd)
 {
     const Bodies& bodies = s.world.host().bodies;
     const std::span<const double> radius = s.stepper.radius_of_body();
@@ -139,46 +138,36 @@ bool TunnelWatch::sweep(const RunView& s, const Crowd& crowd)
                length_squared(bodies.position[b] - start_[b].position) > least_width_[b] * least_width_[b];
     };
     if (std::none_of(crowd.bodies.begin(), crowd.bodies.end(), is_fast)) return false;
-    swept_.clear();
-    for (std::uint32_t place = 0; place < crowd.bodies.size(); ++place)
+    swept_.assign(crowd.bodies.size(), {});
+    bounded_.clear(), fast_.clear();
+    for (std::uint32_t i = 0; i < crowd.bodies.size(); ++i)
     {
-        const std::uint32_t b = crowd.bodies[place];
+        const std::uint32_t b = crowd.bodies[i];
         if (!std::isfinite(radius[b])) continue;  // a plane: a body behind it overlaps it
-        const Vec3 &from = start_[b].position, &to = bodies.position[b], around{radius[b], radius[b], radius[b]};
-        const Vec3 lower{std::min(from.x, to.x), std::min(from.y, to.y), std::min(from.z, to.z)};
-        const Vec3 upper{std::max(from.x, to.x), std::max(from.y, to.y), std::max(from.z, to.z)};
-        swept_.push_back({lower - around, upper + around, place, is_fast(b)});
+        const Vec3 around{radius[b], radius[b], radius[b]};
+        const geometry::Box before{start_[b].position - around, start_[b].position + around};
+        swept_[i] = geometry::joined(before, {bodies.position[b] - around, bodies.position[b] + around});
+        bounded_.push_back(i);
+        if (is_fast(b)) fast_.push_back(i);
     }
-    std::sort(swept_.begin(), swept_.end(),
-              [](const Swept& one, const Swept& two) { return std::tie(one.lower.x, one.place) < std::tie(two.lower.x, two.place); });
     return true;
 }
 
-/// Sweep and prune along x, then an exact test of the candidates.
+/// Tests exactly what the boxes of fast bodies overlap.
 void TunnelWatch::find_passages(const RunView& s, const Crowd& crowd)
 {
-    active_.clear(), passages_.clear();
-    const auto look = [&](const Swept& one, const Swept& two)
-    {
-        if (one.fast && passed(s, crowd.bodies[one.place], crowd.bodies[two.place])) passages_.push_back({one.place, two.place});
-    };
-    for (const Swept& item : swept_)
-    {
-        std::erase_if(active_, [&](const Swept* other) { return other->upper.x < item.lower.x; });
-        for (const Swept* other : active_)
-        {
-            const bool apart = other->upper.y < item.lower.y || item.upper.y < other->lower.y || other->upper.z < item.lower.z ||
-                               item.upper.z < other->lower.z;
-            if (apart) continue;
-            look(item, *other);
-            look(*other, item);
-        }
-        active_.push_back(&item);
-    }
+    passages_.clear();
+    tree_.build(swept_, bounded_);
+    for (const std::uint32_t i : fast_)
+        tree_.query(swept_[i],
+                    [&](std::uint32_t j)
+                    {
+                        if (i != j && passed(s, crowd.bodies[i], crowd.bodies[j])) passages_.push_back({i, j});
+                    });
     std::sort(passages_.begin(), passages_.end());
 }
 
-void TunnelWatch::tell(const RunView& s, const Crowd& crowd, std::vector<Event>& events)
+void TunnelWatch::report_passages(const RunView& s, const Crowd& crowd, std::vector<Event>& events)
 {
     const world::World& world = s.world;
     for (const Passage& p : passages_)
@@ -202,9 +191,9 @@ void TunnelWatch::after_step(const RunView& s, std::vector<Event>& events)
 {
     for (const Crowd& crowd : crowds_)
     {
-        if (crowd.certified || !sweep(s, crowd)) continue;
+        if (crowd.certified || !find_swept_boxes(s, crowd)) continue;
         find_passages(s, crowd);
-        tell(s, crowd, events);
+        report_passages(s, crowd, events);
     }
     if (!crowds_.empty() && s.stepper.report().deepest > shallow_) find_overlaps(s, events);
 }

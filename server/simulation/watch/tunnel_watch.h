@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/box_tree.h"
 #include "plab/context.h"
 #include "plab/tables.h"
 #include "simulation/watch/run_view.h"
@@ -63,13 +64,6 @@ private:
         bool certified = false;  ///< its resolution detects every collision inside the step: bodies may bounce around one another
     };
 
-    /// The box that a body swept over in the step, in W, m; `place`: index in the crowd.
-    struct Swept
-    {
-        Vec3 lower, upper;
-        std::uint32_t place = 0;
-        bool fast = false;  ///< moved farther than its width, and not reported yet
-    };
     /// Indices in the crowd: `body` passed through `other`.
     struct Passage
     {
@@ -78,9 +72,9 @@ private:
     };
 
     void look_up(const RunView& s);
-    bool sweep(const RunView& s, const Crowd& crowd);
+    bool find_swept_boxes(const RunView& s, const Crowd& crowd);
     void find_passages(const RunView& s, const Crowd& crowd);
-    void tell(const RunView& s, const Crowd& crowd, std::vector<Event>& events);
+    void report_passages(const RunView& s, const Crowd& crowd, std::vector<Event>& events);
     void find_overlaps(const RunView& s, std::vector<Event>& events);
     bool passed(const RunView& s, std::uint32_t body, std::uint32_t other) const;
 
@@ -91,8 +85,10 @@ private:
     TunnelMemory memory_;
     double shallow_ = 0;  ///< m: penetrations up to this are not deep for any body
     // Of the crowd being examined.
-    std::vector<Swept> swept_;          ///< by lower.x
-    std::vector<const Swept*> active_;  ///< those whose x interval contains the present x
+    std::vector<geometry::Box> swept_;    ///< by index in the crowd: the box that the body swept over in the step, in W
+    std::vector<std::uint32_t> bounded_;  ///< indices in the crowd: bodies with such a box
+    std::vector<std::uint32_t> fast_;     ///< those of them that moved farther than their width and are not reported yet
+    geometry::BoxTree tree_;              ///< of swept_
     std::vector<Passage> passages_;
 };
 

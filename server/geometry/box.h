@@ -5,7 +5,7 @@
 
 #include "plab/vector.h"
 
-namespace plab::detection
+namespace plab::geometry
 {
 
 /// Empty while lower > upper.
@@ -51,4 +51,4 @@ inline bool reaches(const Vec3& normal, double offset, const Box& box, double gr
     return lowest <= offset + growth + 1e-14 * size;
 }
 
-}  // namespace plab::detection
+}  // namespace plab::geometry

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "bounds.h"
+#include "geometry/box.h"
 
-namespace plab::detection
+namespace plab::geometry
 {
 
 class BoxTree
@@ -65,4 +65,4 @@ private:
     std::vector<Task> tasks_;                   // scratch
 };
 
-}  // namespace plab::detection
+}  // namespace plab::geometry

@@ -1,9 +1,9 @@
-#include "box_tree.h"
+#include "geometry/box_tree.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace plab::detection
+namespace plab::geometry
 {
 namespace
 {
@@ -139,4 +139,4 @@ void BoxTree::refit(std::uint32_t node)
         nodes_[node].box = joined(nodes_[nodes_[node].left].box, nodes_[nodes_[node].right].box);
 }
 
-}  // namespace plab::detection
+}  // namespace plab::geometry
