@@ -124,11 +124,26 @@ bool BroadPhase::near(const Part& a, const Part& b) const
 void BroadPhase::search()
 {
     search_->find(near_);
-    // The order of the pairs depends on which part moved last; sorting removes that dependence.
-    const auto key = [&](const Pair& p) { return std::tuple(parts_[p.first].member, parts_[p.second].member, p.first, p.second); };
-    std::sort(near_.begin(), near_.end(), [&](const Pair& x, const Pair& y) { return key(x) < key(y); });
-    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+    sort_pairs();
     stale_ = false;
+}
+
+/// The order in which a search finds pairs depends on which part moved last; sorting removes that dependence. Parts are numbered by member,
+/// so pairs are first distributed by the member of their first part, which leaves short runs to sort.
+void BroadPhase::sort_pairs()
+{
+    const std::size_t members = parts_.empty() ? 0 : parts_.back().member + std::size_t{1};
+    run_ends_.assign(members + 1, 0);
+    for (const Pair& p : near_) ++run_ends_[parts_[p.first].member + std::size_t{1}];
+    for (std::size_t m = 1; m <= members; ++m) run_ends_[m] += run_ends_[m - 1];
+    sorted_.resize(near_.size());
+    for (const Pair& p : near_) sorted_[run_ends_[parts_[p.first].member]++] = p;  // a run's start becomes its end
+    const auto before = [&](const Pair& x, const Pair& y)
+    { return std::tuple(parts_[x.second].member, x.first, x.second) < std::tuple(parts_[y.second].member, y.first, y.second); };
+    for (std::size_t m = 0, begin = 0; m < members; begin = run_ends_[m++])
+        std::sort(sorted_.begin() + begin, sorted_.begin() + run_ends_[m], before);
+    near_.swap(sorted_);
+    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
 }
 
 const std::vector<BroadPhase::Pair>& BroadPhase::find_pairs(double margin)

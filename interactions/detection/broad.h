@@ -54,6 +54,7 @@ private:
     void widen(std::uint32_t part);
     void raise_half_spaces();
     void search();
+    void sort_pairs();
 
     std::unique_ptr<PairSearch> search_;
     std::unique_ptr<TreeSearch> grown_search_;  // not one of ODE's spaces: these boxes differ in every step
@@ -61,6 +62,8 @@ private:
     std::vector<std::uint32_t> half_spaces_;  // parts
     double raised_ = 0;                       // m, by which half-spaces are enlarged in the search structure
     std::vector<Pair> near_, pairs_;
+    std::vector<Pair> sorted_;             // scratch
+    std::vector<std::uint32_t> run_ends_;  // by member, scratch
     bool stale_ = true;
     double growth_ = 0;  // m, by which the tight boxes are grown in the present query
 };

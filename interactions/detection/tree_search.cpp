@@ -46,16 +46,15 @@ void TreeSearch::set_half_space(std::uint32_t part, const Vec3& normal, double o
     note_moved(part);
 }
 
-/// Searches for all pairs: one query per box; each pair is reported by its part of lower index.
+/// Searches for all pairs.
 void TreeSearch::find_all(std::vector<PartPair>& pairs)
 {
     pairs.clear();
-    for (const std::uint32_t i : bounded_)
-        tree_.query(boxes_[i],
-                    [&](std::uint32_t j)
-                    {
-                        if (i < j && may_meet(memberships_[i], memberships_[j])) pairs.emplace_back(i, j);
-                    });
+    tree_.query_pairs(
+        [&](std::uint32_t i, std::uint32_t j)
+        {
+            if (may_meet(memberships_[i], memberships_[j])) pairs.push_back(std::minmax(i, j));
+        });
     for (const HalfSpace& h : half_spaces_)
         for (const std::uint32_t i : bounded_)
             if (may_meet(memberships_[h.part], memberships_[i]) && reaches(h.normal, h.offset, boxes_[i]))

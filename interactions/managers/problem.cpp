@@ -231,6 +231,11 @@ void Problem::apply_impulses()
             Anchor& m = anchors[line.mover[k]];
             m.push += line.linear[k] * line.impulse, m.turn += line.angular[k] * line.impulse;
         }
+    apply_same_impulses();
+}
+
+void Problem::apply_same_impulses()
+{
     for (std::size_t i = 0; i < movers.size(); ++i)
     {
         const Anchor& anchor = anchors[i];

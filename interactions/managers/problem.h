@@ -89,6 +89,8 @@ public:
     /// Sets the movers' velocities to those without impulses plus the effect of the present impulses, summed in a fixed order so
     /// that the result is reproducible.
     void apply_impulses();
+    /// The same where no impulse and no point has changed since the last call of apply_impulses(): its sums are used again.
+    void apply_same_impulses();
     /// Writes the velocities to the tables; call apply_impulses first.
     void write_speeds(Bodies& bodies, Shafts& shafts);
 

@@ -93,7 +93,8 @@ private:
     double h_, rate_;
     Softness soft_, against_fixed_;
     bool bounces_ = false;
-    double most_ = 0;  ///< J: kinetic energy after the sub-step's kick, which contacts must not exceed
+    bool applied_ = false;  ///< the impulses have been applied in an earlier sub-step of this step
+    double most_ = 0;       ///< J: kinetic energy after the sub-step's kick, which contacts must not exceed
     bool limits_bounce_ = false;
     double allowed_ = 0;  ///< J: kinetic energy at the start of the step plus the work of the forces since
 };
@@ -168,10 +169,15 @@ void SoftIsland::kick()
     problem_.read_speeds(bodies_, shafts_);
     if (bounces_) note_kicks(false);
     // The impulse that stopped an impact is no estimate for the impulses after it.
+    bool changes = !applied_ || !problem_.lines.empty();  // targets limit the impulses of lines
     for (std::size_t i = 0; i < problem_.points.size(); ++i)
-        if (island_.contacts[i].approach > 0) problem_.points[i].impulse = {};
+        if (island_.contacts[i].approach > 0 && problem_.points[i].impulse != Vec3{}) problem_.points[i].impulse = {}, changes = true;
     set_targets(problem_, island_, h_, 0);
-    problem_.apply_impulses();
+    if (changes)
+        problem_.apply_impulses();
+    else
+        problem_.apply_same_impulses();
+    applied_ = true;
 }
 
 void SoftIsland::write()
@@ -191,7 +197,7 @@ void SoftIsland::move()
     for (std::size_t i = 0; i < problem_.points.size(); ++i) memory_.depth[i] -= h_ * problem_.relative_velocity(problem_.points[i]).z;
     island_.motion->move(h_);
     problem_.turn_with(bodies_);
-    problem_.apply_impulses();
+    problem_.apply_same_impulses();  // those that write() applied
 }
 
 void SoftIsland::sweep_points(bool soft)

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/box.h"
@@ -39,6 +40,34 @@ public:
         }
     }
 
+    /// Calls found(i, j) once for each pair of items whose boxes overlap; the order, also of i and j, is unspecified.
+    template <class Found>
+    void query_pairs(Found&& found)
+    {
+        if (root_ == kNone) return;
+        node_pairs_.assign(1, {root_, root_});
+        while (!node_pairs_.empty())
+        {
+            const auto [a, b] = node_pairs_.back();
+            node_pairs_.pop_back();
+            const Node &one = nodes_[a], &other = nodes_[b];
+            if (a == b)
+            {
+                if (one.left == kNone) continue;
+                node_pairs_.insert(node_pairs_.end(), {{one.left, one.right}, {one.left, one.left}, {one.right, one.right}});
+                continue;
+            }
+            if (!overlap(one.box, other.box)) continue;
+            const bool leaf = one.left == kNone, other_leaf = other.left == kNone;
+            if (leaf && other_leaf)
+                found(one.item, other.item);
+            else if (other_leaf || (!leaf && half_surface(one.box) >= half_surface(other.box)))
+                node_pairs_.insert(node_pairs_.end(), {{one.left, b}, {one.right, b}});
+            else
+                node_pairs_.insert(node_pairs_.end(), {{a, other.left}, {a, other.right}});
+        }
+    }
+
 private:
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     struct Node
@@ -61,8 +90,9 @@ private:
     std::vector<Node> nodes_;
     std::uint32_t root_ = kNone;
     std::vector<std::uint32_t> leaf_of_item_;
-    std::vector<std::uint32_t> stack_, order_;  // scratch
-    std::vector<Task> tasks_;                   // scratch
+    std::vector<std::uint32_t> stack_, order_;                         // scratch
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> node_pairs_;  // scratch
+    std::vector<Task> tasks_;                                          // scratch
 };
 
 }  // namespace plab::geometry

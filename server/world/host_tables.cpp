@@ -158,24 +158,6 @@ void HostTables::disown(Facet facet, std::uint32_t index)
     if (facet == Facet::Quantities) component_of_quantities[index] = kNoIndex;
 }
 
-std::uint32_t HostTables::component_of(Ref ref) const
-{
-    switch (ref.facet)
-    {
-        case Facet::Body:
-            return component_of_body[ref.index];
-        case Facet::Shaft:
-            return component_of_shaft[ref.index];
-        case Facet::Shape:
-            return component_of_shape[ref.index];
-        case Facet::Quantities:
-            return component_of_quantities[ref.index];
-        case Facet::Component:
-            break;
-    }
-    return ref.index;
-}
-
 Value get_hosted(const HostTables& t, Facet facet, std::uint32_t i, std::string_view name)
 {
     if (facet == Facet::Shaft)

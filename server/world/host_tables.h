@@ -29,6 +29,24 @@ struct HostTables
     std::uint32_t component_of(Ref ref) const;
 };
 
+inline std::uint32_t HostTables::component_of(Ref ref) const
+{
+    switch (ref.facet)
+    {
+        case Facet::Body:
+            return component_of_body[ref.index];
+        case Facet::Shaft:
+            return component_of_shaft[ref.index];
+        case Facet::Shape:
+            return component_of_shape[ref.index];
+        case Facet::Quantities:
+            return component_of_quantities[ref.index];
+        case Facet::Component:
+            break;
+    }
+    return ref.index;
+}
+
 /// Fields whose live values are in the host tables, by the names that the State types declare (server/docs/notation.md). `index` is the
 /// host row. An unknown name or facet gives no value.
 Value get_hosted(const HostTables& tables, Facet facet, std::uint32_t index, std::string_view name);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "plab/surface.h"
 #include "simulation/contacts/contact_rules.h"
@@ -37,14 +38,6 @@ double curve_radius(const Bodies& bodies, const Shapes& shapes, std::uint32_t b)
         for (const std::uint32_t part : g.parts) add(shapes.geometry[part]);
     }
     return least;
-}
-
-const PairState* known_pair(const ContactCache& cache, const world::World& world, std::uint32_t detector, const Contact& c)
-{
-    const auto key = [&](std::uint32_t d, Ref a, Ref b) { return std::tuple(world.rank(d), world.rank(a), world.rank(b)); };
-    const auto at = std::lower_bound(cache.pairs().begin(), cache.pairs().end(), key(detector, c.a, c.b),
-                                     [&](const PairState& p, const auto& k) { return key(p.detector, p.a, p.b) < k; });
-    return at != cache.pairs().end() && at->detector == detector && at->a == c.a && at->b == c.b ? &*at : nullptr;
 }
 
 /// m: gap that opens between two round bodies because they move straight on for h while they slide along one another. One step opens
@@ -169,9 +162,10 @@ void ContactBook::detect_with_gaps(std::uint32_t index, std::vector<FoundContact
     detect(detector, index, {}, false, out, margin);
     // Use the detected normal, not the stored one: this detection serves the next step as well, and it has to give the same result in a
     // step that starts from a snapshot, where the stored normal may differ.
+    std::size_t near = 0;
     const auto margin_of = [&](const Contact& c)
     {
-        const PairState* pair = known_pair(cache_, step_.world, detector.component, c);
+        const PairState* pair = std::as_const(cache_).find(detector.component, c.a, c.b, step_.world, near);
         const double base = persistence_margin(c.a, c.b), radius = std::min(radius_of_body_[c.a.index], radius_of_body_[c.b.index]);
         if (!pair || !pressed(*pair) || !std::isfinite(radius)) return base;
         return sliding_margin(step_.world.host(), c.a, c.b, c.normal, base, radius, step_.frame.step);
@@ -203,9 +197,11 @@ double ContactBook::gap_margin(const PairState& pair, double h) const
 void ContactBook::drop_far(std::vector<FoundContact>& out, double h) const
 {
     const Bodies& bodies = step_.world.host().bodies;
+    std::size_t near = 0;
     const auto far = [&](const FoundContact& f)
     {
-        const PairState* pair = known_pair(cache_, step_.world, detectors_[f.detector].component, f.contact);
+        const std::uint32_t detector = detectors_[f.detector].component;
+        const PairState* pair = cache_.find(detector, f.contact.a, f.contact.b, step_.world, near);
         const double margin = pair ? persistence_margin(*pair) : persistence_margin(f.contact.a, f.contact.b);
         return f.contact.depth <= -margin && !may_close(bodies, radius_of_body_, f.contact, 0, h);
     };

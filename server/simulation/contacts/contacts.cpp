@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "world/state_hash.h"
 
@@ -31,6 +32,28 @@ PairState* ContactCache::find(std::uint32_t detector, Ref a, Ref b, const world:
 {
     const auto at = position_of(pairs_, world, detector, a, b);
     return at != pairs_.end() && at->detector == detector && at->a == a && at->b == b ? &*at : nullptr;
+}
+
+/// Searches from `near` in steps that double, and then between the last two places.
+const PairState* ContactCache::find(std::uint32_t detector, Ref a, Ref b, const world::World& world, std::size_t& near) const
+{
+    const auto key = key_of(world, detector, a, b);
+    const auto before = [&](const PairState& p, const auto& k) { return key_of(world, p) < k; };
+    std::size_t first = std::min(near, pairs_.size()), end = first;
+    if (first > 0 && !before(pairs_[first - 1], key))
+        first = 0;
+    else
+        for (std::size_t stride = 1; end < pairs_.size() && before(pairs_[end], key); stride *= 2)
+            first = end + 1, end = std::min(end + stride, pairs_.size());
+    const auto at = std::lower_bound(pairs_.begin() + static_cast<std::ptrdiff_t>(first), pairs_.begin() + static_cast<std::ptrdiff_t>(end),
+                                     key, before);
+    near = static_cast<std::size_t>(at - pairs_.begin());
+    return at != pairs_.end() && at->detector == detector && at->a == a && at->b == b ? &*at : nullptr;
+}
+
+PairState* ContactCache::find(std::uint32_t detector, Ref a, Ref b, const world::World& world, std::size_t& near)
+{
+    return const_cast<PairState*>(std::as_const(*this).find(detector, a, b, world, near));
 }
 
 PairState& ContactCache::get_or_add(std::uint32_t detector, Ref a, Ref b, const world::World& world, Tick now, bool& added)

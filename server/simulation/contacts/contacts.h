@@ -5,6 +5,7 @@
 /// restored and hashed with the scene.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -114,7 +115,20 @@ struct PairState : PairHead
 {
     static constexpr std::size_t kMostContacts = 16;
 
+    PairState() = default;
+    /// Copies the first `count` contacts only: most pairs have far fewer than there is room for, and lists of pairs are moved in each step.
+    PairState(const PairState& other) : PairHead(other) { copy_contacts(other); }
+    PairState& operator=(const PairState& other)
+    {
+        PairHead::operator=(other);
+        copy_contacts(other);
+        return *this;
+    }
+
     std::array<KnownContact, kMostContacts> contacts;
+
+private:
+    void copy_contacts(const PairState& other) { std::copy_n(other.contacts.begin(), count, contacts.begin()); }
 };
 
 /// All known pairs, sorted by detector, a and b in id order.
@@ -122,6 +136,9 @@ class ContactCache
 {
 public:
     PairState* find(std::uint32_t detector, Ref a, Ref b, const world::World& world);
+    /// The same, faster for whoever asks for pairs in the order of pairs(), or nearly so: `near` is where the last one was, 0 at first.
+    PairState* find(std::uint32_t detector, Ref a, Ref b, const world::World& world, std::size_t& near);
+    const PairState* find(std::uint32_t detector, Ref a, Ref b, const world::World& world, std::size_t& near) const;
     PairState& get_or_add(std::uint32_t detector, Ref a, Ref b, const world::World& world, Tick now, bool& added);
     /// Adds pairs that are not known yet, in one pass. `fresh` is sorted like pairs().
     void add_sorted(std::span<const PairState> fresh, const world::World& world);

@@ -38,6 +38,7 @@ void HeldIslands::begin_step()
 void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
 {
     fresh_.clear(), first_found_.clear();
+    std::size_t near = 0;
     for (std::size_t i = 0; i < found.size();)
     {
         const FoundContact& first = found[i];
@@ -45,7 +46,7 @@ void HeldIslands::adopt(std::vector<FoundContact>& found, double time)
         std::size_t end = i;
         for (; end < found.size() && same_pair(found[end], first); ++end) deepest = std::max(deepest, found[end].contact.depth);
         const Detector& d = contacts_.detectors()[first.detector];
-        if (d.by_rows && d.persists() && !contacts_.cache().find(d.component, first.contact.a, first.contact.b, step_.world))
+        if (d.by_rows && d.persists() && !contacts_.cache().find(d.component, first.contact.a, first.contact.b, step_.world, near))
         {
             PairState& pair = fresh_.emplace_back();
             pair.detector = d.component, pair.a = first.contact.a, pair.b = first.contact.b, pair.since = step_.frame.tick;
@@ -108,18 +109,19 @@ void HeldIslands::collect_contacts(double from, double h)
 {
     touching_.clear(), pair_of_contact_.clear();
     const auto& detectors = contacts_.detectors();
+    std::size_t near = 0;
+    const auto pair_of = [&](const FoundContact& f)
+    { return contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world, near); };
     const bool known = from == 0 && is_current();
     const bool locates = std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return !d.persists(); });
     if (!known || locates) contacts_.touching_pairs_of(held_, touching_, h);
     if (!known || !std::any_of(detectors.begin(), detectors.end(), [](const Detector& d) { return d.persists(); }))
     {
-        for (const FoundContact& f : touching_)
-            pair_of_contact_.push_back(contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world));
+        for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
         return;
     }
     std::erase_if(touching_, [&](const FoundContact& f) { return detectors[f.detector].persists(); });
-    for (const FoundContact& f : touching_)
-        pair_of_contact_.push_back(contacts_.cache().find(detectors[f.detector].component, f.contact.a, f.contact.b, step_.world));
+    for (const FoundContact& f : touching_) pair_of_contact_.push_back(pair_of(f));
     add_known_contacts();
 }
 

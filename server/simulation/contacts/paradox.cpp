@@ -12,12 +12,16 @@ namespace
 /// A contact that slides less than this fraction of the radius of gyration in a step counts as sticking.
 constexpr double kNoSlip = 0x1p-24;
 
-/// n . K j: the change of the velocity at p along n by an impulse j there. K is symmetric, so n and j may be exchanged.
-double coupling(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n, const Vec3& j)
+/// Adds n . K n and n . K j of a body: the changes of the velocity at p along n by unit impulses there along n, and by an impulse j. The
+/// levers are rotated into the axes of the body, which costs less than rotating its inertia.
+void add_couplings(const Bodies& bodies, std::uint32_t b, const Vec3& p, const Vec3& n, const Vec3& j, double& of_n, double& of_j)
 {
-    if (!bodies.dynamic(b)) return 0;
+    if (!bodies.dynamic(b)) return;
     const Vec3 r = p - bodies.position[b];
-    return bodies.inverse_mass[b] * dot(n, j) + dot(cross(r, n), bodies.inverse_inertia_W(b) * cross(r, j));
+    const Mat3 R = rotation_matrix(bodies.orientation[b]);
+    const Vec3 lever = transposed_times(R, cross(r, n)), turn = bodies.inverse_inertia_B[b] * lever;
+    of_n += bodies.inverse_mass[b] + dot(turn, lever);
+    of_j += bodies.inverse_mass[b] * dot(n, j) + dot(turn, transposed_times(R, cross(r, j)));
 }
 
 }  // namespace
@@ -31,10 +35,9 @@ double pressing_share(const Bodies& bodies, const Contact& c, double h)
     const std::array<std::uint32_t, 2> both{c.a.index, c.b.index};
     if (!(speed * h > kNoSlip * least_gyration(bodies, both))) return 1;
     const Vec3 force = c.normal - slip * (c.friction / speed);
-    const auto sum = [&](const Vec3& j)
-    { return coupling(bodies, c.a.index, c.point, c.normal, j) + coupling(bodies, c.b.index, c.point, c.normal, j); };
-    const double alone = sum(c.normal);
-    return alone > 0 ? sum(force) / alone : 1;
+    double alone = 0, sliding = 0;
+    for (const std::uint32_t b : both) add_couplings(bodies, b, c.point, c.normal, force, alone, sliding);
+    return alone > 0 ? sliding / alone : 1;
 }
 
 }  // namespace plab::simulation
