@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plab/symmetric.h"
+
 namespace plab::managers
 {
 namespace
@@ -13,6 +15,21 @@ double slip_mobility(const Mat3& K)
 {
     const double mean = 0.5 * (K(0, 0) + K(1, 1)), half = 0.5 * (K(0, 0) - K(1, 1));
     return mean + std::sqrt(half * half + K(0, 1) * K(0, 1));
+}
+
+/// Sets the inertias of a body at its present attitude.
+void set_inertia(Mover& mover, Anchor& anchor, const Bodies& bodies)
+{
+    const std::uint32_t b = anchor.host;
+    anchor.isotropic = is_isotropic(bodies.inertia_B[b]);
+    if (anchor.isotropic)
+    {
+        mover.inverse_inertia = bodies.inverse_inertia_B[b], anchor.inertia = bodies.inertia_B[b];
+        return;
+    }
+    const Mat3 R = rotation_matrix(bodies.orientation[b]), R_T = transposed(R);
+    mover.inverse_inertia = R * bodies.inverse_inertia_B[b] * R_T;
+    anchor.inertia = R * bodies.inertia_B[b] * R_T;
 }
 
 void add_mobility(Point& p, const Mover& m, const Vec3& r)
@@ -55,15 +72,13 @@ void Problem::turn_with(const Bodies& bodies)
     for (std::size_t i = 0; i < movers.size(); ++i)
     {
         if (anchors[i].shaft) continue;
-        const std::uint32_t b = anchors[i].host;
-        const Mat3 R = rotation_matrix(bodies.orientation[b]), R_T = transposed(R);
-        movers[i].inverse_inertia = R * bodies.inverse_inertia_B[b] * R_T;
-        anchors[i].inertia = R * bodies.inertia_B[b] * R_T;
+        if (!anchors[i].isotropic) set_inertia(movers[i], anchors[i], bodies);
         // The momentum is constant while a body turns freely; the spin without impulses is what the impulses have not
         // contributed to it.
-        anchors[i].w = bodies.angular_velocity[b] - movers[i].inverse_inertia * anchors[i].written;
+        anchors[i].w = bodies.angular_velocity[anchors[i].host] - movers[i].inverse_inertia * anchors[i].written;
     }
-    for (Point& p : points) set_mobility(p);
+    for (Point& p : points)
+        if (!is_isotropic_at(p.a) || !is_isotropic_at(p.b)) set_mobility(p);
     for (Line& line : lines) set_mobility(line);
 }
 
@@ -73,13 +88,11 @@ void Problem::add_bodies(const Island& island, const Bodies& bodies)
     for (const std::uint32_t b : island.bodies)
     {
         mover_of_body_[b] = static_cast<std::uint32_t>(movers.size());
-        const Mat3 R = rotation_matrix(bodies.orientation[b]), R_T = transposed(R);
         Mover& m = movers.emplace_back();
         m.inverse_mass = bodies.inverse_mass[b];
-        m.inverse_inertia = R * bodies.inverse_inertia_B[b] * R_T;
         Anchor& anchor = anchors.emplace_back();
         anchor.host = b, anchor.mass = bodies.mass[b];
-        anchor.inertia = R * bodies.inertia_B[b] * R_T;
+        set_inertia(m, anchor, bodies);
     }
 }
 

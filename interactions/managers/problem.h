@@ -34,6 +34,7 @@ struct Anchor
 {
     std::uint32_t host = kNoIndex;  ///< row in Bodies or Shafts
     bool shaft = false;
+    bool isotropic = false;  ///< the same inertia in all axes: it does not change when the body turns
     double mass = 1;
     Mat3 inertia;     ///< W
     Vec3 v, w;        ///< velocities without the impulses of this solve
@@ -75,7 +76,8 @@ class Problem
 public:
     /// Sets geometry, masses and initial impulses (warm start). Targets and velocities are still to be set.
     void load(const Island& island, const Bodies& bodies, const Shafts& shafts);
-    /// Updates inertias, mobilities and the spins without impulses to the present attitudes, after bodies have turned freely.
+    /// Updates inertias, mobilities and the spins without impulses to the present attitudes, after bodies have turned freely. Balls and
+    /// cubes have the same inertia at all attitudes.
     /// Contact points stay where they were found, relative to the centres of mass: a round body that has turned touches with
     /// another of its points, so the point must not turn with it.
     void turn_with(const Bodies& bodies);
@@ -118,6 +120,7 @@ private:
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
     std::uint32_t mover_of(Ref who) const;
+    bool is_isotropic_at(std::uint32_t mover) const { return mover == kNoIndex || anchors[mover].isotropic; }
 
     std::vector<std::uint32_t> mover_of_body_, mover_of_shaft_;  ///< by row in Bodies or Shafts
     std::vector<Vec3> contact_points_;

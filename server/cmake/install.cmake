@@ -34,7 +34,7 @@ install(DIRECTORY server/docs/ DESTINATION share/doc/plab COMPONENT doc FILES_MA
 
 # The SDK: headers, the libraries of clients, the wire's IDL, and what CMake and pkg-config ask for.
 set(PLAB_PACKAGE_DIR lib/cmake/plab)
-install(DIRECTORY server/sdk/plab DESTINATION include COMPONENT sdk FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY server/base/plab server/sdk/plab DESTINATION include COMPONENT sdk FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY clients/link DESTINATION include/plab-link COMPONENT sdk FILES_MATCHING PATTERN "*.h")
 file(GLOB wire_headers CONFIGURE_DEPENDS idl/*.h)
 install(FILES ${wire_headers} DESTINATION include/plab-link/idl COMPONENT sdk)
@@ -44,7 +44,7 @@ configure_file(server/cmake/install_header.cmake.in ${PROJECT_BINARY_DIR}/packag
 install(SCRIPT ${PROJECT_BINARY_DIR}/package/install_header.cmake COMPONENT sdk)
 install(FILES idl/plab.idl DESTINATION share/plab/idl COMPONENT sdk)
 install(TARGETS plab-manifest EXPORT plab-sdk RUNTIME DESTINATION bin COMPONENT sdk)
-install(TARGETS plab_determinism plab_sdk EXPORT plab-sdk COMPONENT sdk)
+install(TARGETS plab_determinism plab_base plab_sdk EXPORT plab-sdk COMPONENT sdk)
 install(TARGETS plab_idl_c plab_wire_names plab_wire plab_link EXPORT plab-link ARCHIVE DESTINATION lib COMPONENT sdk)
 # --strip is for programs; of archives the debug information is 9 parts of 10, and names sources that are not there.
 foreach(archive plab_idl_c plab_wire_names plab_wire plab_link)

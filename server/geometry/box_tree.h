@@ -54,7 +54,8 @@ public:
             if (a == b)
             {
                 if (one.left == kNone) continue;
-                node_pairs_.insert(node_pairs_.end(), {{one.left, one.right}, {one.left, one.left}, {one.right, one.right}});
+                for (const auto& [x, y] : {std::pair{one.left, one.right}, {one.left, one.left}, {one.right, one.right}})
+                    node_pairs_.emplace_back(x, y);
                 continue;
             }
             if (!overlap(one.box, other.box)) continue;
@@ -62,9 +63,9 @@ public:
             if (leaf && other_leaf)
                 found(one.item, other.item);
             else if (other_leaf || (!leaf && half_surface(one.box) >= half_surface(other.box)))
-                node_pairs_.insert(node_pairs_.end(), {{one.left, b}, {one.right, b}});
+                node_pairs_.emplace_back(one.left, b), node_pairs_.emplace_back(one.right, b);
             else
-                node_pairs_.insert(node_pairs_.end(), {{a, other.left}, {a, other.right}});
+                node_pairs_.emplace_back(a, other.left), node_pairs_.emplace_back(a, other.right);
         }
     }
 

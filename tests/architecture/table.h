@@ -21,9 +21,10 @@ struct Layer
 inline const std::vector<Layer>& layers()
 {
     static const std::vector<Layer> table{
+        {"server/base", {}, {}},  // everybody may include it
         {"server/sdk", {}, {"Eigen/"}},  // plab/eigen.h alone, which no other header of it includes
         {"server/linear", {"server/sdk"}, {}},
-        {"server/geometry", {"server/sdk"}, {}},
+        {"server/geometry", {}, {}},
         {"server/model", {"server/sdk"}, {}},
         {"server/world", {"server/sdk", "server/model"}, {}},
         {"server/blueprint", {"server/sdk", "server/model"}, {"expat.h"}, false},
@@ -106,33 +107,33 @@ inline const std::vector<Layer>& layers()
           "server/figures", "server/program", "server/completion"},
          {"CLI/", "nlohmann/", "time.h", "unistd.h", "sys/utsname.h"},
          false},
-        {"server/program", {"server/sdk"}, {"CLI/", "signal.h", "sys/ioctl.h", "time.h", "unistd.h"}, false},
-        {"server/figures", {"server/sdk"}, {"cairo/"}, false},
-        {"server/render", {"server/sdk"}, {"GL/", "png.h"}},
+        {"server/program", {}, {"CLI/", "signal.h", "sys/ioctl.h", "time.h", "unistd.h"}, false},
+        {"server/figures", {}, {"cairo/"}, false},
+        {"server/render", {}, {"GL/", "png.h"}},
         {"server/objects/cameras", {"server/sdk", "server/render"}, {}},
         {"server/objects/*", {"server/sdk"}, {}},
         {"interactions/detection", {"server/sdk", "server/geometry"}, {"ode/", "Eigen/"}},
         {"interactions/managers", {"server/sdk", "server/linear"}, {}},
         {"interactions/scripts", {"server/sdk"}, {"lua.hpp"}},
         {"interactions/*", {"server/sdk"}, {}},
-        {"idl/recording", {"server/sdk", "idl"}, {"dds/", "zlib.h", "zstd.h", "lz4frame.h", "fcntl.h", "unistd.h", "sys/stat.h"}},
-        {"idl", {"server/sdk"}, {"dds/", "sys/", "unistd.h"}},
-        {"clients/link", {"server/sdk", "idl"}, {"dds/", "nlohmann/"}},
-        {"clients/completion", {"server/sdk", "server/program", "clients/link"}, {"unistd.h"}, false},
+        {"idl/recording", {"idl"}, {"dds/", "zlib.h", "zstd.h", "lz4frame.h", "fcntl.h", "unistd.h", "sys/stat.h"}},
+        {"idl", {}, {"dds/", "sys/", "unistd.h"}},
+        {"clients/link", {"idl"}, {"dds/", "nlohmann/"}},
+        {"clients/completion", {"server/program", "clients/link"}, {"unistd.h"}, false},
         {"clients/viewer",
-         {"server/sdk", "server/program", "server/render", "idl", "idl/recording", "clients/link", "clients/completion"},
+         {"server/program", "server/render", "idl", "idl/recording", "clients/link", "clients/completion"},
          {"CLI/", "unistd.h", "sys/", "fcntl.h", "signal.h", "spawn.h"}},
-        {"clients/recorder", {"server/sdk", "idl", "idl/recording", "clients/link"}, {"dds/"}},
-        {"clients/playback", {"server/sdk", "idl", "idl/recording", "clients/link"}, {"dds/", "poll.h", "sys/", "termios.h", "unistd.h"}},
+        {"clients/recorder", {"idl", "idl/recording", "clients/link"}, {"dds/"}},
+        {"clients/playback", {"idl", "idl/recording", "clients/link"}, {"dds/", "poll.h", "sys/", "termios.h", "unistd.h"}},
         {"clients/recordings",
-         {"server/sdk", "server/program", "server/figures", "idl", "idl/recording", "clients/link", "clients/logger"},
+         {"server/program", "server/figures", "idl", "idl/recording", "clients/link", "clients/logger"},
          {}},
         {"clients/control",
-         {"server/sdk", "server/program", "server/figures", "idl", "idl/recording", "clients/link", "clients/logger", "clients/recordings",
+         {"server/program", "server/figures", "idl", "idl/recording", "clients/link", "clients/logger", "clients/recordings",
           "clients/recorder", "clients/playback", "clients/completion"},
          {"CLI/", "nlohmann/", "unistd.h", "sys/", "signal.h", "spawn.h", "fcntl.h"}},
         {"clients/*",
-         {"server/sdk", "server/program", "idl", "clients/link", "clients/completion"},
+         {"server/program", "idl", "clients/link", "clients/completion"},
          {"CLI/", "nlohmann/", "unistd.h", "sys/", "signal.h"}},
         {"tests/bench/peers",
          {"server", "tests/support"},
@@ -157,7 +158,7 @@ inline const Words& generated_files()
 /// Folders that includes are relative to, beside the file's own folder and the root of its layer.
 inline const Words& include_roots()
 {
-    static const Words roots{"server/sdk", "server", "interactions", "clients", "tests", ""};
+    static const Words roots{"server/base", "server/sdk", "server", "interactions", "clients", "tests", ""};
     return roots;
 }
 

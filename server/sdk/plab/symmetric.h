@@ -9,6 +9,13 @@
 namespace plab
 {
 
+/// Whether a is a number times the identity, as the inertia of a ball or a cube is: such a body has the same inertia in all axes.
+constexpr bool is_isotropic(const Mat3& a)
+{
+    return a(0, 0) == a(1, 1) && a(1, 1) == a(2, 2) && a(0, 1) == 0 && a(0, 2) == 0 && a(1, 2) == 0 && a(1, 0) == 0 && a(2, 0) == 0 &&
+           a(2, 1) == 0;
+}
+
 struct SymmetricAxes
 {
     Vec3 values;  ///< in no particular order; of a diagonal matrix its own

@@ -3,11 +3,22 @@
 #include <algorithm>
 
 #include "plab/free_rotation.h"
+#include "plab/rotation.h"
+#include "plab/symmetric.h"
 
 namespace plab::simulation
 {
 namespace
 {
+
+/// turn_freely() for a body with one moment of inertia, which turns about its angular momentum at a constant rate.
+void turn_about_momentum(Bodies& bodies, std::uint32_t b, const Vec3& momentum, double h)
+{
+    if (momentum == Vec3{} || !is_finite(momentum)) return;
+    const Quat turn = exp_rotation(momentum * (bodies.inverse_inertia_B[b](0, 0) * h));
+    bodies.orientation[b] = normalized(turn * bodies.orientation[b]);
+    bodies.refresh_spin(b);
+}
 
 Vec3 scaled(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
@@ -15,6 +26,7 @@ Vec3 scaled(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * 
 
 void turn_freely(Bodies& bodies, std::uint32_t b, const Vec3& lacking, double h)
 {
+    if (is_isotropic(bodies.inverse_inertia_B[b])) return turn_about_momentum(bodies, b, bodies.angular_momentum[b] - lacking, h);
     const Quat start = bodies.orientation[b];
     const bool needle = bodies.needle[b] != 0;
     const RigidMember member{start, bodies.inertia_B[b], bodies.inverse_inertia_B[b], bodies.mass[b], needle};
