@@ -115,7 +115,7 @@ private:
     void set_mobility(Point& p) const;
     void set_mobility(Line& line) const;
     void add_line(const ConstraintRow& row, std::uint32_t index);
-    std::uint32_t mover_of(Ref who) const;
+    std::uint32_t mover_of(Ref participant) const;
 
     std::vector<std::uint32_t> mover_of_body_, mover_of_shaft_;  ///< by row in Bodies or Shafts
     std::vector<Vec3> contact_points_;

@@ -152,12 +152,12 @@ TEST_CASE("a shadow says what a swap would do, and nothing has been done")
     const Place before = place_of(server.name());
     const Json reported = parse(control(server, {"shadow", "contact.response", "--with", "Response/None", "--for", "0.2", "--json"}));
     CHECK(reported["steps"] == 48);
-    CHECK(reported["course"].back()["time"].get<double>() == doctest::Approx(0.45));
+    CHECK(reported["differences"].back()["time"].get<double>() == doctest::Approx(0.45));
     for (const char* future : {"without", "with"})
         for (const char* cost : {"cost_ns_per_step", "mean_cost_ns_per_step"}) CHECK(reported[future][cost].get<double>() > 0);
     // Nobody touches yet: the two are the same, to the bit.
-    CHECK(reported["course"][0]["distance"] == 0.0);
-    CHECK(reported["course"][0]["turn"] == 0.0);
+    CHECK(reported["differences"][0]["distance"] == 0.0);
+    CHECK(reported["differences"][0]["turn"] == 0.0);
     CHECK(control(server, {"shadow", "contact.response", "--with", "Field/Gravity"}).code == 1);
     CHECK(place_of(server.name()) == before);
     CHECK(server.end() == 0);

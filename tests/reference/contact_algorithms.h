@@ -86,13 +86,13 @@ struct Bound
     /// "located", "certified", "halved" (by bisections), "at ends" (None, Speculative), "*", or a resolution.
     const char* when;
     /// "*", "springs", or the beginning of a law's name: "Impulse", "Rows", "Rows/SoftStep", "Penalty".
-    const char* who;
+    const char* response;
     std::array<double, N> most;
     std::array<double, N> least = {};
 
     bool fits(const Algorithm& algorithm) const
     {
-        const std::string_view time = when, answer = who;
+        const std::string_view time = when, answer = response;
         const bool at_time = time == "*" || algorithm.is(time) || (time == "located" && algorithm.locates()) ||
                              (time == "certified" && algorithm.certifies()) ||
                              (time == "halved" && algorithm.locates() && !algorithm.certifies()) ||
@@ -122,7 +122,7 @@ void check_algorithms(const std::vector<Algorithm>& algorithms, const Bound<N> (
         }
     }
     for (std::size_t i = 0; i < Lines; ++i)
-        CHECK_MESSAGE(used[i], "no algorithm has the line ", std::string(table[i].when), " + ", std::string(table[i].who));
+        CHECK_MESSAGE(used[i], "no algorithm has the line ", std::string(table[i].when), " + ", std::string(table[i].response));
 }
 
 }  // namespace plab::test

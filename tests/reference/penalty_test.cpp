@@ -304,15 +304,15 @@ TEST_CASE("a spring too stiff for the pieces it may have says so, and holds all 
 TEST_CASE("many at once: a heap of damped balls settles and stays together")
 {
     std::string scene = kGround + std::string(kGravity);
-    std::string who = "ground";
+    std::string bodies = "ground";
     for (int i = 0; i < 27; ++i)
     {
         const std::string id = "s" + std::to_string(i);
         const double x = 0.21 * (i % 3) + 1e-3 * ((i * 7) % 5), y = 0.21 * (i / 3 % 3) + 1e-3 * ((i * 3) % 4), z = 0.101 + 0.21 * (i / 9);
         scene += ball(id, "mass=\"1\" position=\"" + text(x) + " " + text(y) + " " + text(z) + "\"");
-        who += " " + id;
+        bodies += " " + id;
     }
-    Scene s(scene + contact(who, penalty(1e4, " response.restitution=\"0\" response.steps_per_contact=\"20\"")), "dt=\"1/60\"");
+    Scene s(scene + contact(bodies, penalty(1e4, " response.restitution=\"0\" response.steps_per_contact=\"20\"")), "dt=\"1/60\"");
     REQUIRE_MESSAGE(s.loaded(), s.error());
     s.run(0.5);
     CHECK(s.real("contact.response", "penetration") < 0.01);

@@ -30,9 +30,9 @@ std::string law(double restitution, double friction)
     return "response.restitution=\"" + text(restitution) + "\" response.friction=\"" + text(friction) + "\"";
 }
 
-std::string contact(const char* resolution, const char* response, const std::string& who, double restitution, double friction)
+std::string contact(const char* resolution, const char* response, const std::string& bodies, double restitution, double friction)
 {
-    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + who + "\" resolution=\"Resolution/" + resolution +
+    return "<component id=\"contact\" type=\"CDetection/ODE\" between=\"" + bodies + "\" resolution=\"Resolution/" + resolution +
            "\" response=\"Response/" + response + "\" " + law(restitution, friction) + "/>";
 }
 
@@ -118,11 +118,11 @@ TEST_CASE("a stack that is let go stands in its first step after one event, and 
     constexpr int kHigh = 40;
     const auto cubes_at = [](const std::vector<Vec3>& places, const char* resolution)
     {
-        std::string cubes, who;
+        std::string cubes, bodies;
         for (std::size_t i = 0; i < places.size(); ++i)
-            cubes += box("c" + std::to_string(i), {0.5, 0.5, 0.5}, at(places[i], {})), who += "c" + std::to_string(i) + " ";
+            cubes += box("c" + std::to_string(i), {0.5, 0.5, 0.5}, at(places[i], {})), bodies += "c" + std::to_string(i) + " ";
         return "<component id=\"plane\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"plane\"/>" + cubes +
-               gravity(who) + contact(resolution, "Impulse", who + "ground", 0.3, 0.5);
+               gravity(bodies) + contact(resolution, "Impulse", bodies + "ground", 0.3, 0.5);
     };
     for (const char* resolution : {"LocalRoot", "ConservativeAdvancement"})
     {
@@ -156,16 +156,16 @@ TEST_CASE("a wall of bricks that touch one another is let go: its first step tak
     for (const char* response : kResponses)
     {
         CAPTURE(std::string(response));
-        std::string bricks, who;
+        std::string bricks, bodies;
         for (int i = 0; i < kBricks; ++i)
         {
             const int row = i / kRow;
             const std::string id = "b" + std::to_string(i);
             bricks += box(id, {0.5, 0.25, 0.25}, at({i % kRow + (row % 2 == 0 ? 0.0 : 0.5), 0, 0.5 * row + 0.25}));
-            who += id + " ";
+            bodies += id + " ";
         }
         Scene s("<component id=\"plane\" type=\"Shape/Plane\"/><component id=\"ground\" type=\"State/Static\" shape=\"plane\"/>" + bricks +
-                    gravity(who) + contact("LocalRoot", response, who + "ground", 0, 0.5),
+                    gravity(bodies) + contact("LocalRoot", response, bodies + "ground", 0, 0.5),
                 "dt=\"1/60\"");
         REQUIRE_MESSAGE(s.loaded(), s.error());
         s.warnings_expected = true;

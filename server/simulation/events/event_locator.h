@@ -195,7 +195,7 @@ private:
     // event_joints.cpp: impacts of bodies that joints hold.
     bool find_jointed();
     void respond(double time);
-    void note_who_rests();
+    void note_resting_contacts();
     void join(double time);
     double closing() const;
     void compress(double time);

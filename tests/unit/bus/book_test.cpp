@@ -23,9 +23,9 @@ publish::Answer answer(const publish::ClientId& id, std::uint64_t number, Tick s
     return a;
 }
 
-RequestBook::Decision open(RequestBook& book, std::uint16_t who, std::uint64_t number, const RequestBook::Load& load = {})
+RequestBook::Decision open(RequestBook& book, std::uint16_t client_number, std::uint64_t number, const RequestBook::Load& load = {})
 {
-    return book.open(client(who), number, load, std::nullopt);
+    return book.open(client(client_number), number, load, std::nullopt);
 }
 
 constexpr RequestBook::Load kFar{.names_step = true}, kShutdown{.shutdown = true};
@@ -127,7 +127,8 @@ TEST_CASE("one client has a share of those that may wait, and has it back when t
 TEST_CASE("requests that name a step leave room for those that do not")
 {
     RequestBook book({.waiting = 5, .kept_for_next_step = 2});
-    for (std::uint16_t who = 1; who <= 3; ++who) CHECK(open(book, who, 1, kFar).verdict == Verdict::New);
+    for (std::uint16_t client_number = 1; client_number <= 3; ++client_number)
+        CHECK(open(book, client_number, 1, kFar).verdict == Verdict::New);
     const auto far = open(book, 4, 1, kFar);
     CHECK(far.verdict == Verdict::Refused);
     CHECK(why(far).find("3 requests that name a step, the maximum of these, are already waiting") == 0);
@@ -198,10 +199,10 @@ TEST_CASE("the client that was silent for longest is forgotten, but none that st
 {
     RequestBook book({.clients = 3});
     CHECK(open(book, 1, 1).verdict == Verdict::New);  // stays open
-    for (std::uint16_t who = 2; who <= 4; ++who)
+    for (std::uint16_t client_number = 2; client_number <= 4; ++client_number)
     {
-        CHECK(open(book, who, 1).verdict == Verdict::New);
-        CHECK(book.close(answer(client(who), 1)));
+        CHECK(open(book, client_number, 1).verdict == Verdict::New);
+        CHECK(book.close(answer(client(client_number), 1)));
     }
     CHECK(book.clients() == 3);
     CHECK(open(book, 1, 1).verdict == Verdict::Waiting);
@@ -212,11 +213,11 @@ TEST_CASE("the client that was silent for longest is forgotten, but none that st
 TEST_CASE("answers take a bounded amount of memory, however long they are")
 {
     RequestBook book({.answer_bytes = 100000});
-    for (std::uint16_t who = 1; who <= 50; ++who)
+    for (std::uint16_t client_number = 1; client_number <= 50; ++client_number)
         for (std::uint64_t n = 1; n <= 10; ++n)
         {
-            CHECK(open(book, who, n).verdict == Verdict::New);
-            publish::Answer long_one = answer(client(who), n);
+            CHECK(open(book, client_number, n).verdict == Verdict::New);
+            publish::Answer long_one = answer(client(client_number), n);
             long_one.reply.errors.push_back(reason(std::string(5000, 'x')));
             CHECK(book.close(long_one));
             CHECK(book.answer_bytes() <= 100000);

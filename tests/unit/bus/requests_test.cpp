@@ -305,13 +305,13 @@ TEST_CASE("clients whose requests never become due do not lock out the others")
     fill(a_pause(), wire::kRequestsKeptForNextStep);
     REQUIRE(caller.send(a_pause()).ok());
     CHECK(reply(caller).second.reasons.at(0).find("1024 requests, the maximum for all clients together,") == 0);
-    for (link::Caller* who : {&caller, &greedy.front()})
+    for (link::Caller* asking : {&caller, &greedy.front()})
     {
-        REQUIRE(who->send({{{"shutdown"}}, std::nullopt, std::nullopt}).ok());
+        REQUIRE(asking->send({{{"shutdown"}}, std::nullopt, std::nullopt}).ok());
         const publish::RequestText got = next(bus);
         CHECK(got.operations[0].verb == "shutdown");
         answer(bus, got, 2);
-        CHECK(reply(*who).second.done());
+        CHECK(reply(*asking).second.done());
     }
 }
 

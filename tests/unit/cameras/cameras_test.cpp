@@ -25,9 +25,9 @@ struct Viewer final : ImageSink
     std::uint32_t width = 0, height = 0;
 
     bool wanted() const override { return looks; }
-    void show(std::uint32_t who, std::uint32_t w, std::uint32_t h, std::vector<std::uint8_t> rgba) override
+    void show(std::uint32_t camera, std::uint32_t w, std::uint32_t h, std::vector<std::uint8_t> rgba) override
     {
-        component = who, width = w, height = h;
+        component = camera, width = w, height = h;
         pictures.push_back(std::move(rgba));
     }
     /// Red, green, blue of the picture's middle.

@@ -126,8 +126,8 @@ TEST_CASE("random impacts never gain energy, keep momentum and part at the right
         const double closing = dot(n, b.velocity_at(1, c[0].point) - b.velocity_at(0, c[0].point));
         const Impact impact = respond(b, c);
         REQUIRE(impact.converged);
-        const double parting = dot(n, b.velocity_at(1, c[0].point) - b.velocity_at(0, c[0].point));
-        CHECK(parting >= -1e-12 * 20);
+        const double separation_speed = dot(n, b.velocity_at(1, c[0].point) - b.velocity_at(0, c[0].point));
+        CHECK(separation_speed >= -1e-12 * 20);
         if (closing >= 0) CHECK(c[0].impulse == Vec3{});
         worst_gain = std::max(worst_gain, (total_energy(b) - before) / before);
         worst_momentum = std::max(worst_momentum, length(momentum() - p) / p_size);

@@ -56,9 +56,9 @@ public:
         for (std::uint32_t k = 0; k < row.count; ++k)
         {
             const RowBlock& b = row.blocks[k];
-            sum += b.who.facet == Facet::Shaft
-                       ? b.angular.x * host().shafts.speed[b.who.index]
-                       : dot(b.linear, host().bodies.velocity[b.who.index]) + dot(b.angular, host().bodies.angular_velocity[b.who.index]);
+            sum += b.participant.facet == Facet::Shaft ? b.angular.x * host().shafts.speed[b.participant.index]
+                                                       : dot(b.linear, host().bodies.velocity[b.participant.index]) +
+                                                             dot(b.angular, host().bodies.angular_velocity[b.participant.index]);
         }
         return sum;
     }

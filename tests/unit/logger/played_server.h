@@ -28,11 +28,11 @@ public:
         collisions_ = wire::Writer<plab_v2_Collisions>::make(participant_, publisher_).take();
         metrics_ = wire::Writer<plab_v2_Metrics>::make(participant_, publisher_).take();
         frames_ = wire::Writer<plab_v2_Frame>::make(participant_, publisher_).take();
-        tell_state();
+        publish_state();
     }
 
     const std::string& name() const { return name_; }
-    void tell_state()
+    void publish_state()
     {
         plab_v2_Server s = state();
         REQUIRE(server_.write(s) == 0);

@@ -73,7 +73,7 @@ std::vector<Vec3> dense_accelerations(Mechanism& m)
         for (std::uint32_t j = 0; j < row.count; ++j)
             for (int c = 0; c < 3; ++c)
             {
-                const std::size_t u = 6 * row.blocks[j].who.index + static_cast<std::size_t>(c);
+                const std::size_t u = 6 * row.blocks[j].participant.index + static_cast<std::size_t>(c);
                 a[n + k][u] = a[u][n + k] = row.blocks[j].linear[c];
                 a[n + k][u + 3] = a[u + 3][n + k] = row.blocks[j].angular[c];
             }

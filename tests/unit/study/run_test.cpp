@@ -204,11 +204,11 @@ TEST_CASE("a stiff spring at a long step blows up: told as that, and no further 
     REQUIRE(explicit_one.ok());
     RunOptions how;
     how.until = 2, how.quantities = {"table.position.z"};
-    const RunRecord blown = record_run(library(), *explicit_one, how);
-    CHECK(blown.outcome == Outcome::BlewUp);
-    CHECK(name_of(blown.outcome) == "blew up");
-    CHECK(blown.why.find("table") != std::string::npos);
-    CHECK(blown.reached < 2);
+    const RunRecord failed = record_run(library(), *explicit_one, how);
+    CHECK(failed.outcome == Outcome::BlewUp);
+    CHECK(name_of(failed.outcome) == "blew up");
+    CHECK(failed.why.find("table") != std::string::npos);
+    CHECK(failed.reached < 2);
     auto exponential = apply(spec, library(), {{"solver", "Exponential"}, {"dt", "1/60"}});
     REQUIRE(exponential.ok());
     CHECK(record_run(library(), *exponential, how).ok());
