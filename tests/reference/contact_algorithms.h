@@ -1,7 +1,7 @@
 /// All combinations of algorithms that can answer a contact, and tables of the error bounds for each.
 ///
 /// A line of a table covers a set of algorithms; the first line that matches an algorithm applies. Each algorithm must match a
-/// line and each line an algorithm, so whoever adds an algorithm must state its bound.
+/// line and each line an algorithm, so a new algorithm requires that its bound is stated.
 #pragma once
 
 #include <doctest/doctest.h>

@@ -91,7 +91,7 @@ struct Mesh
     const char *driver, *driven;
     double factor;
 };
-/// Three in a loop, a loop just missed, two on a pair, one between prescribed speeds.
+/// Three in a loop, a loop that almost closes, two on a pair, one between prescribed speeds.
 std::vector<Mesh> bad_meshes(std::size_t v)
 {
     if (v < 2) return {{"a", "b", 2}, {"b", "c", 3}, {"a", "c", v == 0 ? 5 : 5.9999}};

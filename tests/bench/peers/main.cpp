@@ -53,7 +53,7 @@ std::vector<std::string> split(const std::string& text)
     return out;
 }
 
-/// Takes the option `name` with its value; false if it is none of ours.
+/// Takes the option `name` with its value; false if it is not an option of this program.
 bool take(Options& o, std::string_view name, const std::string& value)
 {
     if (name == "--case") return o.cases = split(value), true;

@@ -26,7 +26,7 @@ std::string setting_of(const Point& p)
     return p.run.settings + (p.run.control.empty() ? " dt " + p.run.step.text() : " tol " + p.run.control);
 }
 
-/// A point of the peers' front and what pLab has for it.
+/// A point of the peers' front and pLab's best result for it.
 struct Standing
 {
     const Point* peer = nullptr;

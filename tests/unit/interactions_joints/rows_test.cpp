@@ -40,7 +40,7 @@ const Case kCases[] = {
 
 }  // namespace
 
-TEST_CASE("rows: J and bias agree with central differences, error with the rate of its row")
+TEST_CASE("rows: J and bias agree with central differences, and the error with the rate of its row")
 {
     for (const Case& c : kCases)
     {
@@ -75,7 +75,7 @@ TEST_CASE("rows: J and bias agree with central differences, error with the rate 
     }
 }
 
-TEST_CASE("rows between bodies are action and reaction: no force and no moment is left over")
+TEST_CASE("rows between bodies are action and reaction: no net force and no net moment remains")
 {
     for (const Case& c : kCases)
     {

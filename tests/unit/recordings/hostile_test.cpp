@@ -1,4 +1,4 @@
-// Files and messages that are not what they seem: something is told, nothing falls over.
+// Malformed files and messages: they are reported, and nothing crashes.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -64,7 +64,7 @@ std::string recording_of(const std::string& name, const std::vector<recording::B
     return path;
 }
 
-/// The sample with each of its bytes changed in turn, and cut at each byte.
+/// The sample with each of its bytes changed in turn, and truncated at each byte.
 template <class T>
 std::vector<recording::Bytes> bent(const T& sample)
 {
@@ -84,7 +84,7 @@ std::vector<recording::Bytes> bent(const T& sample)
 
 }  // namespace
 
-TEST_CASE("a file with a byte changed is read as far as it goes, or refused")
+TEST_CASE("a file with a changed byte is read as far as possible, or refused")
 {
     const std::string whole = bytes_of(make_recording("flip.mcap", {.steps = 12, .compression = recording::Compression::None}));
     const std::string path = fresh_path("flipped.mcap");
@@ -99,7 +99,7 @@ TEST_CASE("a file with a byte changed is read as far as it goes, or refused")
     CHECK(opened > tried / 2);
 }
 
-TEST_CASE("a file that is cut anywhere is read as far as it goes, or refused")
+TEST_CASE("a file that is truncated anywhere is read as far as possible, or refused")
 {
     const std::string whole = bytes_of(make_recording("cuts.mcap", {.steps = 12, .compression = recording::Compression::None}));
     const std::string path = fresh_path("cut.mcap");
@@ -118,7 +118,7 @@ TEST_CASE("a file that is cut anywhere is read as far as it goes, or refused")
     CHECK(last > 10);
 }
 
-TEST_CASE("a message that is no sample is counted and left out")
+TEST_CASE("a message that is not a valid sample is counted and left out")
 {
     std::vector<plab_v2_BodyState> bodies(2);
     plab_v2_Frame frame{};
@@ -129,13 +129,13 @@ TEST_CASE("a message that is no sample is counted and left out")
     REQUIRE(log.ok());
     auto summary = summary_of(*log);
     REQUIRE(summary.ok());
-    CHECK(summary->troubles.count > frames.size() / 2);  // all that were cut, and some others
+    CHECK(summary->troubles.count > frames.size() / 2);  // all truncated ones, and some others
     CHECK(summary->troubles.texts.size() == Troubles::kMostTexts);
     CHECK(summary->messages + summary->troubles.count == frames.size());
     CHECK(use(path));
 }
 
-TEST_CASE("bent metrics, events and journals do no harm")
+TEST_CASE("altered metrics, events and journals do no harm")
 {
     char text[] = "<b>bold";
     std::vector<plab_v2_InteractionMetrics> interactions(1);
@@ -164,12 +164,12 @@ TEST_CASE("bent metrics, events and journals do no harm")
     CHECK(page.find(text) == std::string::npos);
 }
 
-TEST_CASE("topics of others are counted, and not taken for ours")
+TEST_CASE("foreign topics are counted, and not taken for pLab's")
 {
     const std::string path = fresh_path("others.mcap");
     auto writer = recording::Writer::create(path);
     REQUIRE(writer.ok());
-    // The name of our topic, another version of its type.
+    // The name of pLab's topic, with another version of its type.
     const auto schema = writer->add_schema({0, "plab::v9::Frame", "omgidl", "module plab { module v9 { struct Frame { long x; }; }; };"});
     REQUIRE(schema.ok());
     const auto ours = writer->add_channel({0, *schema, "plab/states", "cdr", {}});

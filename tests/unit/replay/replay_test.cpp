@@ -1,4 +1,4 @@
-// Recorded runs made again: the same hashes, and the first difference found where there is one.
+// Recorded runs are repeated: the same hashes, and the first difference is found if there is one.
 #include "replay/replay.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace plab::test
 namespace
 {
 
-/// A recording in memory: what a recorder would have written of a run.
+/// A recording in memory: what a recorder would have written about a run.
 class MemoryLog final : public record::RunLog
 {
 public:
@@ -64,7 +64,7 @@ public:
     std::size_t next = 0;
 };
 
-/// Runs a scene and writes it down.
+/// Runs a scene and records it.
 class Taping
 {
 public:
@@ -146,7 +146,7 @@ TEST_CASE("a run with a swap, a set, an added and a removed component gives the 
         CHECK(report.requests == 2);
         CHECK(report.last_hash == taping.scene.hash());
     }
-    // From the snapshot in the middle on, and only as far as it is asked for.
+    // From the snapshot in the middle on, and only as far as requested.
     replay::ReplayOptions from;
     from.from = 55;
     CHECK(made_again(taping.log, from).verified == 60);
@@ -171,11 +171,11 @@ TEST_CASE("runs follow one another, each from its own first snapshot")
     CHECK(made_again(taping.log, second).verified == 10);
 }
 
-TEST_CASE("a request that the recording does not know shows at its step, with object, column and both values")
+TEST_CASE("a request that is not in the recording shows as a difference at its step, with object, column and both values")
 {
     Taping taping(kBall);
     taping.step(25);
-    REQUIRE(taping.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);  // behind the recorder's back
+    REQUIRE(taping.scene.ask(simulation::PushOperation{"ball", {0.5, 0, 0}, {}}).done);  // without the recorder
     taping.step(25);
     taping.keep_snapshot("periodic");
     taping.step(5);
@@ -194,7 +194,7 @@ TEST_CASE("a request that the recording does not know shows at its step, with ob
     CHECK(text.find("ball.position: recorded ") != std::string::npos);
 }
 
-TEST_CASE("without a frame of the step the next one tells the column, whichever of it and the snapshot comes first")
+TEST_CASE("without a frame at the step the next one identifies the column, whether it or the snapshot comes first")
 {
     for (const int snapshot_at : {27, 40})
     {
@@ -217,7 +217,7 @@ TEST_CASE("without a frame of the step the next one tells the column, whichever 
     }
 }
 
-TEST_CASE("a gap in the numbers of the journal is a doubt, also between two runs")
+TEST_CASE("a gap in the numbers of the journal is reported, also between two runs")
 {
     Taping taping(kBall);
     taping.step(5);
@@ -231,7 +231,7 @@ TEST_CASE("a gap in the numbers of the journal is a doubt, also between two runs
     const replay::ReplayReport between = made_again(taping.log);
     REQUIRE(between.doubts.size() == 1);
     CHECK(between.doubts[0].find("entries 2 to 3 are missing, after step 5 of run") != std::string::npos);
-    // What came before the first entry is known of plabd's own recordings only.
+    // Only for plabd's own recordings it is known that there was nothing before the first entry.
     taping.log.entries[0].number = 3;
     CHECK(made_again(taping.log).doubts.empty());
     taping.log.about["recorder"] = "plabd";

@@ -37,7 +37,7 @@ public:
         host.shafts.root[i] = i;
         return {Facet::Shaft, i};
     }
-    /// Both points are where p is now.
+    /// Both joint points are at the present position p.
     std::uint32_t ball(Ref a, Ref b, const Vec3& p) { return ball(a, in_frame(a, p), b, in_frame(b, p)); }
     std::uint32_t ball(Ref a, const Vec3& p_a, Ref b, const Vec3& p_b)
     {

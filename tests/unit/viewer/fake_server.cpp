@@ -138,8 +138,8 @@ private:
 
 void nap(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-/// Plays the script from its first step on. The states of a real server come at its own pace, whoever listens; here
-/// they wait for a subscriber, so that the tests know what it can see.
+/// Plays the script from its first step on. The states of a real server come at its own pace, with or without readers; here
+/// they wait for a subscriber, so that the tests know what it receives.
 void play(const Script& script, Stage& stage, const std::stop_token& stop)
 {
     const auto start = Clock::now();
