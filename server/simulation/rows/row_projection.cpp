@@ -246,10 +246,10 @@ void RowSystem::relax_positions(const StepContext& context, ProjectionReport& re
         equations_.set_rows(rows_, pieces_);
         const double error = measure_positions();
         if (!(error > kProjectionRounding) || report.iterations == kMostIterations) break;
-        const bool stands = fresh && error > 0.5 * before;
-        if (stands && error < kContradiction) break;
+        const bool stagnates = fresh && error > 0.5 * before;
+        if (stagnates && error < kContradiction) break;
         if (soft && std::fabs(error - before) < 1e-10 * error) break;
-        soft = soft || stands;
+        soft = soft || stagnates;
         if (error > kGoodContraction * before) factored_ = false;
         fresh = correct_positions(context, soft ? RowEquations::kSoftCompliance : RowEquations::kCompliance);
         before = error;

@@ -145,18 +145,18 @@ TEST_CASE("every byte of a closed file changed, one at a time")
     for (const Compression compression : kAll)
     {
         const SampleFile file(compression, 3);
-        Bytes bent = file.bytes;
+        Bytes altered = file.bytes;
         std::size_t least = file.lines.size();
-        for (std::size_t i = 0; i < bent.size(); ++i)
+        for (std::size_t i = 0; i < altered.size(); ++i)
             for (const int change : {0x01, 0x80, 0xff})
             {
                 CAPTURE(static_cast<int>(compression));
                 CAPTURE(i);
                 CAPTURE(change);
-                bent[i] = static_cast<std::uint8_t>(bent[i] ^ change);
-                check_reader(bent, file);
-                least = std::min(least, check_recovery(bent, file));
-                bent[i] = file.bytes[i];
+                altered[i] = static_cast<std::uint8_t>(altered[i] ^ change);
+                check_reader(altered, file);
+                least = std::min(least, check_recovery(altered, file));
+                altered[i] = file.bytes[i];
             }
         // One change can cost at most one of three chunks.
         CHECK(least == 8);
@@ -166,30 +166,30 @@ TEST_CASE("every byte of a closed file changed, one at a time")
 TEST_CASE("every byte of a file that was not closed changed, one at a time")
 {
     const SampleFile file(Compression::Lz4, 3, false);
-    Bytes bent = file.bytes;
-    for (std::size_t i = 0; i < bent.size(); ++i)
+    Bytes altered = file.bytes;
+    for (std::size_t i = 0; i < altered.size(); ++i)
     {
         CAPTURE(i);
-        bent[i] = static_cast<std::uint8_t>(bent[i] ^ 0x55);
-        check_reader(bent, file);
-        (void)check_recovery(bent, file);
-        bent[i] = file.bytes[i];
+        altered[i] = static_cast<std::uint8_t>(altered[i] ^ 0x55);
+        check_reader(altered, file);
+        (void)check_recovery(altered, file);
+        altered[i] = file.bytes[i];
     }
 }
 
 TEST_CASE("changed times in a chunk's header: with an index nothing is lost, without one it is an error")
 {
     const SampleFile closed(Compression::Zstd, 5);
-    Bytes bent = closed.bytes;
+    Bytes altered = closed.bytes;
     const std::size_t place = closed.ends[1] + kRecordHead;
-    bent[place] = static_cast<std::uint8_t>(bent[place] ^ 0x01);  // start_time
-    CHECK(read_all(*open(bent)).lines == by_time(closed.lines));
-    const Recovered whole = recover_bytes(bent);
+    altered[place] = static_cast<std::uint8_t>(altered[place] ^ 0x01);  // start_time
+    CHECK(read_all(*open(altered)).lines == by_time(closed.lines));
+    const Recovered whole = recover_bytes(altered);
     REQUIRE(whole.report);
     CHECK(whole.report->verdict == Verdict::Whole);
     CHECK(whole.report->mended.size() == 2);  // the chunk, and the CRC of all data
 
-    Bytes cut(bent.begin(), bent.begin() + static_cast<std::ptrdiff_t>(closed.ends[4]));
+    Bytes cut(altered.begin(), altered.begin() + static_cast<std::ptrdiff_t>(closed.ends[4]));
     const ReadBack back = read_all(*open(cut));
     CHECK(back.lines.size() == 16);
     REQUIRE(back.errors.size() == 1);
@@ -200,9 +200,9 @@ TEST_CASE("changed times in a chunk's header: with an index nothing is lost, wit
 TEST_CASE("a chunk in the middle is damaged: the loss is reported by topic and time")
 {
     const SampleFile file(Compression::Zstd, 5);
-    Bytes bent = file.bytes;
-    bent[file.ends[1] + 90] = static_cast<std::uint8_t>(bent[file.ends[1] + 90] ^ 0xff);
-    const Recovered out = recover_bytes(bent);
+    Bytes altered = file.bytes;
+    altered[file.ends[1] + 90] = static_cast<std::uint8_t>(altered[file.ends[1] + 90] ^ 0xff);
+    const Recovered out = recover_bytes(altered);
     REQUIRE(out.report);
     const RecoveryReport& report = *out.report;
     CHECK(report.verdict == Verdict::SomethingLost);
@@ -225,19 +225,19 @@ TEST_CASE("the first chunk, which declares the channels, is damaged: the others 
 {
     SampleFile file(Compression::None, 5, false);
     // Without a summary, only a later chunk could declare them: there is none here.
-    Bytes bent = file.bytes;
-    const std::size_t first = static_cast<std::size_t>(open(bent)->index().chunks[0].offset);
-    bent[first + 60] = static_cast<std::uint8_t>(bent[first + 60] ^ 0xff);
-    const Recovered lost = recover_bytes(bent);
+    Bytes altered = file.bytes;
+    const std::size_t first = static_cast<std::size_t>(open(altered)->index().chunks[0].offset);
+    altered[first + 60] = static_cast<std::uint8_t>(altered[first + 60] ^ 0xff);
+    const Recovered lost = recover_bytes(altered);
     REQUIRE(lost.report);
     CHECK(lost.report->messages == 0);
     CHECK(lost.report->undeclared == 16);
     CHECK(lost.report->text().find("lost: 16 messages whose channels are not declared\n") != std::string::npos);
     // With a summary, the summary declares them.
     const SampleFile closed(Compression::None, 5);
-    bent = closed.bytes;
-    bent[first + 60] = static_cast<std::uint8_t>(bent[first + 60] ^ 0xff);
-    const Recovered saved = recover_bytes(bent);
+    altered = closed.bytes;
+    altered[first + 60] = static_cast<std::uint8_t>(altered[first + 60] ^ 0xff);
+    const Recovered saved = recover_bytes(altered);
     REQUIRE(saved.report);
     CHECK(saved.report->messages == 16);
 }
@@ -296,9 +296,9 @@ TEST_CASE("the start of a file is missing: the rest is found, and the loss is re
     CHECK(orphans.report->undeclared == 8);
     // If the declarations survive, everything after the damage is kept: for example with the first 64 KB overwritten.
     const SampleFile closed(Compression::Lz4, 5);
-    Bytes bent = closed.bytes;
-    std::fill_n(bent.begin(), gone, std::uint8_t{0});
-    const Recovered out = recover_bytes(bent);
+    Bytes altered = closed.bytes;
+    std::fill_n(altered.begin(), gone, std::uint8_t{0});
+    const Recovered out = recover_bytes(altered);
     REQUIRE(out.report);
     CHECK(out.report->verdict == Verdict::SomethingLost);
     CHECK(out.report->messages == 8);
@@ -335,11 +335,11 @@ TEST_CASE("impossible sizes in a file are refused before memory is allocated")
     const SampleFile file(Compression::Zstd, 1);
     auto reader = open(file.bytes);
     const std::size_t chunk = static_cast<std::size_t>(reader->index().chunks[0].offset);
-    Bytes bent = file.bytes;
-    bent[chunk + kRecordHead + 8 + 8 + 3] = 0x10;  // uncompressed_size becomes 256 MB
-    const ReadBack back = read_all(*open(bent));
+    Bytes altered = file.bytes;
+    altered[chunk + kRecordHead + 8 + 8 + 3] = 0x10;  // uncompressed_size becomes 256 MB
+    const ReadBack back = read_all(*open(altered));
     REQUIRE(back.errors.size() == 1);
     CHECK(back.errors[0].text().find("bytes cannot hold 268") != std::string::npos);
-    bent[chunk + kRecordHead + 8 + 8 + 7] = 0x10;
-    CHECK(read_all(*open(bent)).errors.at(0).text().find("larger than 536870912 bytes, which is the limit") != std::string::npos);
+    altered[chunk + kRecordHead + 8 + 8 + 7] = 0x10;
+    CHECK(read_all(*open(altered)).errors.at(0).text().find("larger than 536870912 bytes, which is the limit") != std::string::npos);
 }

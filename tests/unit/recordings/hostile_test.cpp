@@ -66,7 +66,7 @@ std::string recording_of(const std::string& name, const std::vector<recording::B
 
 /// The sample with each of its bytes changed in turn, and truncated at each byte.
 template <class T>
-std::vector<recording::Bytes> bent(const T& sample)
+std::vector<recording::Bytes> altered(const T& sample)
 {
     recording::Encoder encoder;
     const auto encoded = encoder.encode(sample);
@@ -123,7 +123,7 @@ TEST_CASE("a message that is not a valid sample is counted and left out")
     std::vector<plab_v2_BodyState> bodies(2);
     plab_v2_Frame frame{};
     frame.run = 1, frame.bodies._buffer = bodies.data(), frame.bodies._length = frame.bodies._maximum = 2;
-    const std::vector<recording::Bytes> frames = bent(frame);
+    const std::vector<recording::Bytes> frames = altered(frame);
     const std::string path = recording_of<plab_v2_Frame>("bent_frames.mcap", frames);
     auto log = Log::open(path);
     REQUIRE(log.ok());
@@ -143,19 +143,19 @@ TEST_CASE("altered metrics, events and journals do no harm")
     interactions[0].component_id = interactions[0].requested = text;
     plab_v2_Metrics metrics{};
     metrics.interactions._buffer = interactions.data(), metrics.interactions._length = metrics.interactions._maximum = 1;
-    CHECK(use(recording_of<plab_v2_Metrics>("bent_metrics.mcap", bent(metrics))));
+    CHECK(use(recording_of<plab_v2_Metrics>("bent_metrics.mcap", altered(metrics))));
     std::vector<plab_v2_Operation> operations(1);
     operations[0] = {};
     operations[0].verb = text, operations[0].target = text;
     plab_v2_Journal journal{};
     journal.operations._buffer = operations.data(), journal.operations._length = journal.operations._maximum = 1;
-    CHECK(use(recording_of<plab_v2_Journal>("bent_journal.mcap", bent(journal))));
+    CHECK(use(recording_of<plab_v2_Journal>("bent_journal.mcap", altered(journal))));
     std::vector<plab_v2_EventInfo> entries(1);
     entries[0] = {};
     entries[0].kind = entries[0].severity = entries[0].message = text;
     plab_v2_Events events{};
     events.entries._buffer = entries.data(), events.entries._length = events.entries._maximum = 1;
-    const std::string file = recording_of<plab_v2_Events>("bent_events.mcap", bent(events));
+    const std::string file = recording_of<plab_v2_Events>("bent_events.mcap", altered(events));
     CHECK(use(file));
     auto log = Log::open(file);
     REQUIRE(log.ok());
